@@ -48,13 +48,16 @@ A feature lies in the datum frame that its location is toleranced to, made of th
 place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
 geometry alone: they never see a pose.
 
-Gears in a machined housing are both, joined at the bores (`machine/`):
+Machines are both in one world (`machine/`): shafts lie in bores of parts, and trains turn the joints between parts.
 
     bores        where shafts lie nominally machine/nominal.py          housed
     displaced    deviations -> axes         machine/bores.py            Bores.exactly     (and to first order)
-    both         placed, then meshed        machine/roads.py            MachineRoad
+    chains       links, joints, poses       machine/chain.py            Chain
+    drives       which train turns which    machine/drives.py           drives_of
+    all          placed, meshed, turned     machine/roads.py            MachineRoad
 
-Each road of the assembly hands the axes of the trial to the same road of the gears, as deviations that nobody draws.
+Each road of the assembly hands the axes of the trial to the same road of the gears, and this one hands back how far its
+trains turn the joints, pose by pose: both as deviations that nobody draws.
 
 `analyses/` asks what takes several studies (shims, compensation), `report/` and `cli/` show what is there. The analytic
 road gets the same deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A

@@ -1,8 +1,8 @@
 """Numbers with their units, as a user writes them: `2.5 mm`, `-19 um`, `20 deg`, `11.5e-6 1/K`.
 
 The grammar is strict on purpose: one number, a blank or none, one unit of the table below. Inside tol3d
-lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N. What is counted has its own
-word for a unit: `3 pins`, `1 pin`.
+lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N, masses kg. What is counted
+has its own word for a unit: `3 pins`, `1 pin`.
 """
 
 import math
@@ -16,7 +16,7 @@ from typing import Any, Final, Literal
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
-Dimension = Literal["length", "angle", "temperature", "expansion", "force", "stiffness", "count"]
+Dimension = Literal["length", "angle", "temperature", "expansion", "force", "stiffness", "mass", "count"]
 
 ARCMIN: Final = 10800 / math.pi  # in a radian
 RAD_PER_ARCMIN: Final = math.pi / 10800
@@ -35,9 +35,10 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "expansion": {"1/K": 1.0, "/K": 1.0, "um/m/K": 1e-6, "ppm/K": 1e-6},
     "force": {"N": 1.0, "kN": 1e3, "mN": 1e-3},
     "stiffness": {"N/mm": 1.0, "N/um": 1e3, "N/m": 1e-3},
+    "mass": {"kg": 1.0, "g": 1e-3, "t": 1e3},
     "count": {"pins": 1.0, "pin": 1.0},
 }
-"""What one of each unit is in mm, rad, K, 1/K, N or N/mm; counts are numbers of what is counted."""
+"""What one of each unit is in mm, rad, K, 1/K, N, N/mm or kg; counts are numbers of what is counted."""
 
 EXAMPLES: Final[dict[Dimension, str]] = {
     "length": "4.5 um",
@@ -46,6 +47,7 @@ EXAMPLES: Final[dict[Dimension, str]] = {
     "expansion": "11.5e-6 1/K",
     "force": "60 N",
     "stiffness": "1500 N/mm",
+    "mass": "30 kg",
     "count": "3 pins",
 }
 DIMENSION_WORDS: Final[dict[Dimension, str]] = {
@@ -55,6 +57,7 @@ DIMENSION_WORDS: Final[dict[Dimension, str]] = {
     "expansion": "expansion coefficient",
     "force": "force",
     "stiffness": "stiffness",
+    "mass": "mass",
     "count": "count",
 }
 LARGEST: Final[dict[Dimension, float]] = {
@@ -64,9 +67,10 @@ LARGEST: Final[dict[Dimension, float]] = {
     "expansion": 1.0,
     "force": 1e9,
     "stiffness": 1e9,
+    "mass": 1e9,
     "count": 1e6,
 }
-"""Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm, 1]: a kilometre, 1600 turns; products of such stay finite."""
+"""Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm, kg, 1]: a kilometre, 1600 turns; products of such stay finite."""
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 ABSOLUTE_ZERO: Final = -293.15  # K from 20 degC, from which temperatures count
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
@@ -98,7 +102,7 @@ class Quantity:
 
     @property
     def internal(self) -> float:
-        """The value in mm, rad, K, 1/K, N or N/mm."""
+        """The value in mm, rad, K, 1/K, N, N/mm or kg."""
         return self.number * FACTORS[self.dimension][self.unit]
 
     def __str__(self) -> str:

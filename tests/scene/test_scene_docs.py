@@ -60,7 +60,7 @@ def test_the_table_of_what_is_published_of_the_whole_has_every_key_and_its_field
 def test_the_table_of_units_is_that_of_the_grammar() -> None:
     rows = {what: set(re.findall(r"`([^`]+)`", cells[0])) - {"µm"} for what, cells in PAGE.table("Units", "what").rows}
     names = {"length": "length", "angle": "angle", "temperature": "temperature difference", "expansion": "expansion"}
-    names |= {"force": "force", "stiffness": "stiffness", "count": "count"}
+    names |= {"force": "force", "stiffness": "stiffness", "mass": "mass", "count": "count"}
     for dimension, units in FACTORS.items():
         row = next(row for what, row in rows.items() if what.startswith(names[dimension]))
         assert row == set(units)

@@ -20,6 +20,7 @@ INNER = {
     "expansion": "1/K",
     "force": "N",
     "stiffness": "N/mm",
+    "mass": "kg",
     "count": "dimensionless",
 }
 

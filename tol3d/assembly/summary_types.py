@@ -9,6 +9,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, NotNegative
 
 PRESENTER: Final = "tol3d.assembly.presenting"
+POSE_ERRORS: Final = ("position_error", "orientation_error")
 
 
 class AssemblyMeasureSummary(MeasureSummary):
@@ -25,12 +26,18 @@ class AssemblyMeasureSummary(MeasureSummary):
         default=LEFT_OUT, description="of a clearance: chord errors of the meshes of both parts, together"
     )
 
+    pose: Maybe[Label] = Field(default=LEFT_OUT, description="in which it is read, where the scene's moves have poses")
+    component: Maybe[Label] = Field(default=LEFT_OUT, description="of an error of place or turn: x, y, z or size")
+
     @property
     def words(self) -> str:
         """See MeasureSummary.
 
         >>> AssemblyMeasureSummary.model_construct(kind="gap", of=["base.rim", "cover.rim"]).words
         'gap from base.rim to cover.rim'
+        >>> given = {"kind": "position_error", "of": ["link 6.flange", "base"], "component": "x", "pose": "far"}
+        >>> AssemblyMeasureSummary.model_construct(**given).words
+        'x of the position error of link 6.flange, as base sees it, at far'
         >>> AssemblyMeasureSummary.model_construct(kind="difference", of=["upper gap", "lower gap"]).words
         'upper gap less lower gap'
         >>> AssemblyMeasureSummary.model_construct(kind="inspected_size", of=["base.bore"]).words
@@ -43,16 +50,20 @@ class AssemblyMeasureSummary(MeasureSummary):
         kind = self.kind.replace("_", " ")
         if self.kind == "clearance":
             return f"clearance from {self.of[0]} to {self.of[1]}, within {self.chord_error_um:.3g} um by their meshes"
+        at = f", at {self.pose}" if self.pose else ""
+        if self.kind in POSE_ERRORS:
+            along = "" if self.component == "size" else f"{self.component} of the "
+            return f"{along}{kind} of {self.of[0]}, as {self.of[1]} sees it{at}"
         if self.kind == "difference":
-            return " less ".join(self.of)
+            return " less ".join(self.of) + at
         if len(self.of) == 2 and self.kind not in ("virtual_clearance", "inspected_pattern"):
-            return f"{kind} from {self.of[0]} to {self.of[1]}"
-        return f"{kind} of {', '.join(self.of)}"
+            return f"{kind} from {self.of[0]} to {self.of[1]}{at}"
+        return f"{kind} of {', '.join(self.of)}{at}"
 
     @property
     def identity(self) -> tuple[str | None, ...]:
         """See MeasureSummary."""
-        return (self.kind, *self.of)
+        return (self.kind, *self.of, *(own for own in (self.pose, self.component) if own))
 
 
 SUMMARY_KINDS: Final = SummaryKinds(common=(AssemblyMeasureSummary,))

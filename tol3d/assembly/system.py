@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar, Final, TypeVar
 
@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
 from tol3d.assembly.from_scene import Meant, understood
+from tol3d.assembly.from_scene.assembly import pose_names
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.measures import PoseErrorSpec
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.nominal_relations import misses
@@ -69,11 +71,13 @@ class AssemblySystem(PlainSystem):
         assembly: nominally, and by its drawings.
         named: by measure, the features that it names, or two measures.
         idle: sentences on tolerances that act on nothing.
+        components: by measure that is an error of place or turn, which of it is read.
     """
 
     assembly: Assembly
     named: Mapping[str, tuple[str, ...]]
     idle: tuple[str, ...] = ()
+    components: Mapping[str, str] = field(default_factory=dict)
 
     statuses: ClassVar[Statuses] = STATUSES
 
@@ -94,7 +98,8 @@ class AssemblySystem(PlainSystem):
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Its kind, what it is of, and by which laws deviations lie in the zones that act on it."""
         laws = laws_told(own for own in self.acting(measure) if isinstance(own.draw, ZoneDraw))
-        return {**super().describe(measure), "of": list(self.named[measure.name]), **laws}
+        of, component = self.named[measure.name], self.components.get(measure.name)
+        return {**super().describe(measure), "of": list(of), **({"component": component} if component else {}), **laws}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """Measures of the nominal assembly that the roads read differently, or not at all."""
@@ -281,27 +286,33 @@ def moments_of(contributor: Contributor) -> tuple[Array, Array]:
     return mean, draw.sigma**2 * np.eye(len(mean))
 
 
-def assembly_system(scene: Scene) -> AssemblySystem:
+def assembly_system(scene: Scene, pose: str = "") -> AssemblySystem:
     """What a scene of an assembly means.
 
     Args:
         scene: the scene.
+        pose: in which moves that have poses lay their parts, with the measures that are read there; "" for the first.
 
     Raises:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
-    placed = _asked(scene, lambda: _settled(scene))
+    pose = pose or next(iter(pose_names(scene)), "")
+    placed = _asked(scene, lambda: _settled(scene, pose))
     for miss in misses(placed.assembly):
         raise scene.refuse(("moves", miss.move, "relations", miss.number), miss.sentence)
     kind = _kind_of(placed.assembly)
     assembly = _asked(scene, lambda: _faced(placed))
     idle = tuple(idle_forms(Drawing(scene)))
-    made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named, idle)
+    made = kind(scene.scene, placed.contributors, placed.measures, assembly, placed.named, idle, _components(scene))
     _asked(
         scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
     )
     measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
     return replace(made, measures=measures)
+
+
+def _components(scene: Scene) -> Mapping[str, str]:
+    return {name: spec.component for name, spec in scene.measures.items() if isinstance(spec, PoseErrorSpec)}
 
 
 def _kind_of(assembly: Assembly) -> type[AssemblySystem]:
@@ -334,18 +345,18 @@ def widely(contributors: Sequence[Contributor]) -> Array:
     return np.concatenate([np.zeros((MOTIONS, 0)), *columns], axis=1)
 
 
-def _settled(scene: Scene) -> Meant:
+def _settled(scene: Scene, pose: str) -> Meant:
     """What a scene means, parts at the poses in which its moves lay them without deviations.
 
     A part that cannot be laid so, such as by pins beside their holes, stays where it is drawn.
     """
     meaning, poses = understood(scene), poses_of(scene)
-    drawn = meaning.at(poses)
+    drawn = meaning.at(poses, pose)
     found = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
     settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
     if all(pose.tobytes() == poses[name].tobytes() for name, pose in settled.items()):
         return drawn  # with what is known of it already
-    return meaning.at({**poses, **settled})
+    return meaning.at({**poses, **settled}, pose)
 
 
 def _asked(scene: Scene, ask: Callable[[], T]) -> T:

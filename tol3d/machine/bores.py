@@ -69,11 +69,12 @@ class Bores:
             slopes = [(last[k] - first[k]) / length for k in range(2)]
             found += [first[k] - slopes[k] * first[2] for k in range(2)]
             found += [last[k] - slopes[k] * last[2] for k in range(2)]
-        return np.stack(found, axis=1)
+        return np.stack(found, axis=1) if found else np.zeros((0, 0))
 
     def to_first_order(self, read: Mapping[str, Array]) -> Array:
         """The same columns to first order: displacements along the axes do not matter."""
-        return np.stack([np.asarray(read[name]) for name in self.lateral_names], axis=1)
+        found = [np.asarray(read[name]) for name in self.lateral_names]
+        return np.stack(found, axis=1) if found else np.zeros((0, 0))
 
 
 def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:

@@ -69,6 +69,42 @@ def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool =
     )
 
 
+def with_joints(form: ClosedForm, joints: Sequence[tuple[float, ClosedForm]], order: Sequence[str]) -> ClosedForm:
+    """Moments of what is read of a part, with what trains turn it by.
+
+    Contributors of two trains, or of a train and the part, are added up where they are; their common part of the
+    variance is that of coefficients added up, as long as each acts by one coefficient.
+
+    Args:
+        form: of the part, its joints in the middle of their plays.
+        joints: by how much each lost motion moves what is read, and the moments of that.
+        order: of the contributors.
+    """
+    shares: dict[str, Share] = {share.name: share for share in form.shares}
+    for factor, own in joints:
+        for share in own.shares:
+            added = Share(share.name, factor * share.coefficient, factor * share.mean, factor**2 * share.variance)
+            shares[share.name] = _together(shares[share.name], added) if share.name in shares else added
+    together = tuple(shares[name] for name in order if name in shares)
+    nominal = form.nominal + sum(factor * own.nominal for factor, own in joints)
+    sigma = float(np.sqrt(sum(share.variance for share in together)))
+    leaning = form.leaning.union(*(own.leaning for _, own in joints))
+    return replace(
+        form,
+        nominal=nominal,
+        mean=nominal + sum(share.mean for share in together),
+        sigma=sigma,
+        shares=together,
+        leaning=leaning,
+    )
+
+
+def _together(first: Share, second: Share) -> Share:
+    """Of one contributor that acts twice, by one coefficient each: sigma is that of both added up."""
+    sigmas = [np.sign(own.coefficient) * np.sqrt(own.variance) for own in (first, second)]
+    return Share(first.name, first.coefficient + second.coefficient, first.mean + second.mean, float(sum(sigmas)) ** 2)
+
+
 def _leaning(model: Model, measure: GearMeasure) -> set[str]:
     """Contributors of the gears, displacements of the bores too, that lean a gear where its lean counts."""
     stacks = [stack_of(model, model.mesh(own.mesh), own.reading) for _, own in measure.kind.backlashes]

@@ -4,6 +4,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from tol3d.assembly.from_scene.assembly import pose_names
+from tol3d.assembly.grammar.measures import PositionErrorSpec
+from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.distributions.constant import Constant
@@ -17,6 +20,10 @@ from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.machine.bores import Bores, bores_of
 from tol3d.machine.counted import refuse_counted_twice
+from tol3d.machine.drives import drives_of
+from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
+from tol3d.machine.joined import HIDDEN, is_hidden
+from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.nominal import HousedShaft, housed
 from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene, Vocabulary
@@ -24,6 +31,9 @@ from tol3d.scene.implausible import warned
 from tol3d.scene.schema import SECTIONS
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Planar
+from tol3d.system.measure import Measure
+from tol3d.system.plain import stated_of
+from tol3d.system.stated import component_slices
 
 KIND = "shaft_in_bores"
 
@@ -34,23 +44,73 @@ def machine_system(scene: Scene) -> MachineSystem:
     Raises:
         SceneError: what one of its parts does not allow, bores that do not fit the meshes, or what counts twice.
     """
-    drawn = assembly_system(_entries_of(scene, ASSEMBLY))
+    parts = _parts_of(scene)
+    poses = {pose: assembly_system(parts, pose) for pose in pose_names(parts) or ("",)}
+    drawn = next(iter(poses.values()))
     place = housed(scene, _gears_of(scene), drawn.assembly)
     bores = bores_of(drawn.assembly, tuple(place.shafts.values()))
     gears = gear_system(place.scene)
     model = replace(gears.model, contributors=(*gears.model.contributors, *_by_bores(gears.model, bores)))
+    by_name: dict[str, Measure] = {own.name: own for own in gears.measures}
+    by_name |= {own.name: own for system in poses.values() for own in system.measures}
+    by_name |= {name: _worst(scene, name, spec) for name, spec in scene.of(WorstPositionErrorSpec).items()}
     made = MachineSystem(
         name=scene.scene,
         contributors=_in_order(scene, gears, drawn),
-        measures=tuple(own for name in scene.measures for own in _of_name(gears, drawn) if own.name == name),
+        measures=tuple(by_name[name] for name in scene.measures),
         gears=GearSystem(model),
-        drawn=drawn,
+        poses=poses,
         bores=bores,
         worlds=place.worlds,
         off_shafts=tuple(_off_shafts(scene, bores)),
+        drives=tuple(drives_of(scene, model)),
     )
     refuse_counted_twice(scene, made)
+    _refuse_turned_bores(scene, made)
     return made
+
+
+def _parts_of(scene: Scene) -> Scene:
+    """Its assembly: parts with drawings, the moves that place them, and what is read of them, in every pose."""
+    parts = _entries_of(scene, ASSEMBLY)
+    moves = {
+        name: move for name, move in scene.moves.items() if name in parts.moves or isinstance(move, StatedMoveSpec)
+    }
+    measures: dict[str, Any] = dict(parts.measures)
+    for spec in scene.of(WorstPositionErrorSpec).values():
+        for pose in spec.poses or pose_names(scene):
+            given = {"kind": "position_error", "of": spec.of, "from": spec.from_, "at": pose}
+            measures[_size_name(spec, pose)] = PositionErrorSpec.model_validate(given)
+    return parts.model_copy(update={"moves": moves, "measures": measures})
+
+
+def _size_name(spec: WorstPositionErrorSpec, pose: str) -> str:
+    """The measure of the assembly that is a worst one's in a pose; scenes cannot name one so."""
+    return f"{HIDDEN}{spec.of} from {spec.from_} at {pose}"
+
+
+def _worst(scene: Scene, name: str, spec: WorstPositionErrorSpec) -> WorstMeasure:
+    sizes = tuple((pose, _size_name(spec, pose)) for pose in spec.poses or pose_names(scene))
+    return WorstMeasure(
+        *stated_of(name, spec), worse="high", adds_up=False, sizes=sizes, any_flank=spec.flanks == "any"
+    )
+
+
+def _refuse_turned_bores(scene: Scene, system: MachineSystem) -> None:
+    """Refuse shafts between parts that a joint turns against each other: the shaft would turn what it lies in.
+
+    Raises:
+        SceneError: at the move that lays the shaft.
+    """
+    slices = component_slices(system.drawn)
+    for drive in system.drives:
+        turned = system.displacing[:, slices[drive.turn]].reshape(-1, 4)
+        for own, displaced in zip(system.bores.shafts, turned, strict=True):
+            if displaced.any():
+                first, last = (bore.words for bore in own.bores)
+                words = f"expected bores that no joint turns, got {first!r} and {last!r}, which {drive.joint!r} turns"
+                ring = f"the shaft is in a ring of reads: {own.shaft}, {drive.joint}, its bores"
+                raise scene.refuse(("moves", own.move, "in"), f"{words} with what its shafts drive; {ring}")
 
 
 def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
@@ -62,10 +122,6 @@ def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
         for k, at in enumerate(places):
             if isinstance(shaft, ShaftSpec) and (sentence := off_shaft(own.shaft, shaft, at)):
                 yield warned(("moves", own.move, "in", k), sentence)
-
-
-def _of_name(*systems: GearSystem | AssemblySystem) -> Iterator[Any]:
-    return (measure for system in systems for measure in system.measures)
 
 
 def _entries_of(scene: Scene, vocabulary: Vocabulary) -> Scene:
@@ -115,11 +171,12 @@ def _effect(model: Model, shaft: HousedShaft, moved: float, fixed: float) -> Any
 
 def _in_order(scene: Scene, gears: GearSystem, drawn: AssemblySystem) -> tuple[Any, ...]:
     """All contributors in the scene's order; a copy's after its original's; one of both is that of the gears."""
-    every: tuple[Any, ...] = (*drawn.contributors, *gears.contributors)
+    by_parts = [own for own in drawn.contributors if not is_hidden(own)]
+    every: tuple[Any, ...] = (*by_parts, *gears.contributors)
     by_name = {str(own.name): own for own in every}
     places = {name: place for place, name in enumerate(scene.tolerances)}
     before: dict[str, int] = {own.name: places[own.name] for own in gears.contributors}
     last = 0
-    for each in drawn.contributors:
+    for each in by_parts:
         last = before[each.name] = places.get(each.name, last)
     return tuple(by_name[name] for name in sorted(by_name, key=lambda name: before[name]))

@@ -1,4 +1,4 @@
-"""Gears and an assembly joined at the bores: whose columns are whose, and how bores follow from deviations."""
+"""Gears and an assembly in one world: whose columns are whose, and how bores and joints follow from deviations."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.system import AssemblySystem
+from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.placing import road as placing
+from tol3d.assembly.system import AssemblySystem, widely
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.gearing.model import Contributor as GearContributor
@@ -16,12 +18,17 @@ from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.bores import Bores
+from tol3d.machine.drives import JointDrive
 from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+
+HIDDEN: Final = "."
+"""With which names of contributors and measures begin that no scene has."""
 
 NOTHING: Final = 1e-12
 """Displacement [mm] of an axis per mm, rad or K that is rounding."""
@@ -29,8 +36,16 @@ NOTHING: Final = 1e-12
 FLAT: Final = 1e-6
 """Displacement per deviation of one that raises it to both sides."""
 
+TURN: Final = 1e-2
+"""rad; a measure that it does not change hangs on no joint that turns by it."""
+
 STEP: Final = 1e-4
 """mm; over which the analytic road's slopes by displacements of bores are taken, to both sides."""
+
+
+def is_hidden(own: Contributor | Measure) -> bool:
+    """Whether nobody draws a contributor, or reads a measure: it stands between gears and assembly."""
+    return own.name.startswith(HIDDEN)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,25 +57,62 @@ class Joined:
         contributors: of gears and of the assembly, in the scene's order.
         measures: likewise.
         gears: whose last contributors are the displacements of the bores: two a shaft, x and y each, that nobody draws.
-        drawn: the assembly as the scene has it.
-        bores: the same assembly with what reads its bores.
+        poses: the assembly as the scene has it, by pose with the measures that are read there; the pose is "" where its
+            moves have none.
+        bores: that of the first pose with what reads its bores.
         worlds: by the first shaft of each train in bores, where its world lies in that of the parts (4, 4).
         off_shafts: warnings of bores beyond the ends of their shafts.
+        drives: joints that trains turn.
     """
 
     name: str
     contributors: tuple[Any, ...]
     measures: tuple[Any, ...]
     gears: GearSystem
-    drawn: AssemblySystem
+    poses: Mapping[str, AssemblySystem]
     bores: Bores
     worlds: Mapping[str, Array]
     off_shafts: tuple[str, ...] = ()
+    drives: tuple[JointDrive, ...] = ()
+
+    @property
+    def drawn(self) -> AssemblySystem:
+        """The assembly in its first pose."""
+        return next(iter(self.poses.values()))
+
+    @cached_property
+    def pose_of(self) -> Mapping[str, str]:
+        """The pose in which each measure of the assembly is read, by name."""
+        return {own.name: pose for pose, system in self.poses.items() for own in system.measures}
 
     @cached_property
     def assembly(self) -> AssemblySystem:
         """The assembly's system, with what reads the bores."""
         return replace(self.drawn, assembly=self.bores.assembly)
+
+    def joints_of(self, name: str) -> tuple[JointDrive, ...]:
+        """The drives on whose joints a measure of the assembly hangs, by what it reads of a build like others."""
+        if name not in self._known_joints:
+            self._known_joints[name] = tuple(self._hung_on(name)) if self.drives else ()
+        return self._known_joints[name]
+
+    @cached_property
+    def _known_joints(self) -> dict[str, tuple[JointDrive, ...]]:
+        """By measure, as far as they were asked for."""
+        return {}
+
+    def _hung_on(self, name: str) -> Iterator[JointDrive]:
+        own = self.poses[self.pose_of[name]]
+        slices = component_slices(self.drawn)
+        turns = [slices[drive.turn].start for drive in self.drives]
+        if own.assembly.measures[name].kind == "clearance":
+            yield from self.drives
+            return
+        rows = np.repeat(widely(own.contributors)[:1], 1 + len(turns), axis=0)
+        rows[np.arange(1, len(rows)), turns] += TURN
+        values, codes = placing.values(own.assembly, rows, [name])[name]
+        same = (codes == OK) & (codes[0] == OK) & (np.abs(values - values[0]) < NOTHING)
+        yield from (drive for drive, kept in zip(self.drives, same[1:], strict=True) if not kept)
 
     @property
     def drawn_by_gears(self) -> tuple[GearContributor, ...]:
@@ -74,8 +126,26 @@ class Joined:
 
     @cached_property
     def assembly_places(self) -> NDArray[np.intp]:
-        """Where the columns of the assembly's contributors lie among all."""
-        return self._places(self.drawn.contributors)
+        """Where the columns of the assembly's contributors lie among all, those that somebody draws."""
+        return self._places([own for own in self.drawn.contributors if not is_hidden(own)])
+
+    @cached_property
+    def _drawn_columns(self) -> NDArray[np.intp]:
+        """Which columns of the assembly somebody draws."""
+        slices = component_slices(self.drawn)
+        ranges = [
+            np.arange(*slices[own.name].indices(1 << 30)) for own in self.drawn.contributors if not is_hidden(own)
+        ]
+        return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
+
+    def of_assembly(self, deviations: Array) -> Array:
+        """Deviations (trials, columns) as the assembly has them; 0 of what nobody draws."""
+        own = np.asarray(deviations[:, self.assembly_places])
+        if len(self._drawn_columns) == self.drawn.assembly.width:
+            return own
+        found = np.zeros((len(own), self.drawn.assembly.width))
+        found[:, self._drawn_columns] = own
+        return found
 
     def _places(self, contributors: Sequence[Contributor]) -> NDArray[np.intp]:
         slices = component_slices(self)
@@ -84,12 +154,13 @@ class Joined:
 
     def gear_trials(self, trials: Trials, displaced: Array) -> Trials:
         """Trials as the gears see them, the bores displaced (trials, shafts * 4) [mm]."""
-        return replace(trials, deviations=np.concatenate([trials.deviations[:, self.gear_places], displaced], axis=1))
+        own = trials.deviations[:, self.gear_places]
+        return replace(trials, deviations=np.concatenate([own, displaced], axis=1) if displaced.size else own)
 
     def linear_gear_trials(self, trials: Trials) -> Trials:
         """The same, the bores displaced to first order."""
         names = self.bores.lateral_names
-        read = torsors.values(self.bores.assembly, trials.deviations[:, self.assembly_places], names)
+        read = torsors.values(self.bores.assembly, self.of_assembly(trials.deviations), names)
         return self.gear_trials(trials, self.bores.to_first_order(read))
 
     @cached_property

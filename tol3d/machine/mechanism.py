@@ -1,19 +1,23 @@
-"""Gears in a machined housing, as a mechanism: one move that joins the kinds of gears with those of assemblies."""
+"""Machines, as a mechanism: moves that join the kinds of gears with those of assemblies, at bores and at joints."""
 
 from typing import Final
 
 from tol3d.machine.grammar.checks import laid_too_early, laid_twice, shafts_thicker_than_bores
+from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.system.mechanism import Mechanism
 
 MACHINE: Final = Mechanism(
     name="machine",
-    moves=(ShaftInBoresSpec,),
+    moves=(OpenChainSpec, ShaftInBoresSpec),
+    measures=(WorstPositionErrorSpec,),
     checks=(laid_twice, laid_too_early),
     warnings=(shafts_thicker_than_bores,),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),
     system="tol3d.machine.from_scene:machine_system",
+    summary="tol3d.machine.summary_types:SUMMARY_KINDS",
     presenter="tol3d.machine.presenting",
     requires=("python-fcl", "cadquery"),
 )

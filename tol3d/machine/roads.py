@@ -1,24 +1,52 @@
-"""Both roads of gears in a housing: the assembly is placed, then the gears mesh on the axes that its bores give."""
+"""Both roads of a machine: the assembly is placed, gears mesh on the axes of its bores, trains turn its joints.
 
-from collections.abc import Mapping, Sequence
+The assembly is read where its joints then stand, in each pose.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from itertools import islice
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import road as torsors
 from tol3d.gearing.model.measure import Measure as GearMeasure
+from tol3d.machine.drives import HALF, JointDrive
 from tol3d.machine.joined import Joined
+from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.statuses import FROM_ASSEMBLIES
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import reason_column
 from tol3d.system.road import Answers, Codes, Road
+from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
+Details = dict[str, NDArray[np.generic]]
+
+ROWS: Final = 16384
+"""Builds that are placed at once where joints lie on several flanks."""
+
+NOT_TURNED: Final = int(FROM_ASSEMBLIES[NO_BUILD])
+"""The status of what a joint carries whose train jams or finds no contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """Joints of some trials.
+
+    Args:
+        play: by reading of a drive (trials,) [rad].
+        failed: by reading, trials in which the train has none (trials,).
+    """
+
+    play: Mapping[str, Array]
+    failed: Mapping[str, NDArray[np.bool_]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +57,14 @@ class MachineRoad:
         system: whose.
         gears: the gears' own road.
         exact: whether parts are placed by finite poses; else by torsors.
-        solids: reads clearances of whole parts; None where there are none.
+        solids: by pose, what reads clearances of whole parts; none where there are none.
         chords: by clearance, what chord errors of a witness and of what it checks explain [mm]; else empty.
     """
 
     system: Joined
     gears: Road
     exact: bool
-    solids: SolidReader | None = None
+    solids: Mapping[str, SolidReader] = field(default_factory=dict)
     chords: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -58,33 +86,138 @@ class MachineRoad:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
+        system = self.system
         of_gears = [measure for measure in measures if isinstance(measure, GearMeasure)]
-        others = [measure.name for measure in measures if not isinstance(measure, GearMeasure)]
-        values, codes, details = self._read(trials, (*self.system.bores.names, *others) if of_gears else others)
-        hidden = {reason_column(name) for name in self.system.bores.names}
-        shown = {name: own for name, own in details.items() if name not in hidden}
-        own = Answers(
-            {name: values[name][:, None] for name in others}, details=shown, status=self._status(codes, others)
+        worst = [measure for measure in measures if isinstance(measure, WorstMeasure)]
+        others = [measure.name for measure in measures if not isinstance(measure, GearMeasure | WorstMeasure)]
+        turning = self._turning(others, worst)
+        needed = {own.name: own for drive, pose in turning for own in [drive.readings[pose]]}
+        first = [name for name in others if system.pose_of[name] == next(iter(system.poses))]
+        still = first if not turning else [name for name in first if not system.joints_of(name)]
+        reads_gears = bool(of_gears or needed)
+        values, codes, details = self._read(trials, (*system.bores.names, *still) if reads_gears else still)
+        hidden = {reason_column(name) for name in system.bores.names}
+        shown: Details = {name: own for name, own in details.items() if name not in hidden}
+        found = Answers(
+            {name: values[name][:, None] for name in still}, details=shown, status=self._status(codes, still)
         )
-        if not of_gears:
-            return own
+        if not reads_gears:
+            return self._with_poses(found, trials, [name for name in others if name not in still], _Turned({}, {}))
         seen, failed = self._seen(trials, values, codes)
-        answers = self.gears.answers(seen, of_gears)
-        return self._joined(answers, own, of_gears, failed)
+        gears = self.gears.answers(seen, [*of_gears, *needed.values()])
+        gears = self._without_axes(gears, [*of_gears, *needed.values()], failed)
+        turned = _turned_by(gears, needed)
+        if needed:
+            gears = _only(gears, {own.name for own in of_gears})
+        found = self._with_poses(found, trials, [name for name in others if name not in still], turned)
+        for measure in worst:
+            found = _joined(found, self._worst(trials, measure, turned))
+        return _joined(gears, found) if of_gears else found
 
     def gear_trials(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, and by shaft what became of its bores (trials,), codes of this system."""
         values, codes, _ = self._read(trials, self.system.bores.names)
         return self._seen(trials, values, codes)
 
+    # joints -----------------------------------------------------------------------------------------
+
+    def _turning(self, names: Iterable[str], worst: Sequence[WorstMeasure]) -> list[tuple[JointDrive, str]]:
+        """The drives, each with a pose, that some measures hang on."""
+        system = self.system
+        wanted = [(drive, system.pose_of[name]) for name in names for drive in system.joints_of(name)]
+        wanted += [(drive, pose) for own in worst for pose, name in own.sizes for drive in system.joints_of(name)]
+        return list({(drive.joint, pose): (drive, pose) for drive, pose in wanted}.values())
+
+    def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: _Turned) -> Answers:
+        """Answers, and measures of the assembly in their poses."""
+        poses = self.system.pose_of
+        for pose in dict.fromkeys(poses[name] for name in names):
+            own = [name for name in names if poses[name] == pose]
+            answers = _joined(answers, self._in_pose(trials, own, pose, turned))
+        return answers
+
+    def _in_pose(self, trials: Trials, names: Sequence[str], pose: str, turned: _Turned) -> Answers:
+        system = self.system
+        deviations = self._turned(trials, pose, turned)
+        values, codes, details = self._placed(deviations, names, pose)
+        status, reasons = self._status(codes, names), Details()
+        found = {name: np.asarray(values[name])[:, None] for name in names}
+        for name in names:
+            drives = system.joints_of(name)
+            if not drives:
+                continue
+            before = status.get(name, np.zeros(len(trials), dtype=np.int8))
+            reason = np.asarray(details.get(reason_column(name), np.full(len(trials), "")))
+            for drive in drives:
+                failed = turned.failed[drive.readings[pose].name] & (before == 0)
+                reason = np.where(failed, f"joint {drive.joint}", reason)
+                before = np.where(failed, np.int8(NOT_TURNED), before).astype(np.int8)
+            status[name], reasons[reason_column(name)] = before, reason
+            found[name] = np.where((before != 0)[:, None], np.nan, found[name])
+        return Answers(found, details={**details, **reasons}, status=status)
+
+    def _turned(self, trials: Trials, pose: str, turned: _Turned, sides: Mapping[str, float] | None = None) -> Array:
+        """Deviations (trials, columns) of the assembly, its joints turned to one end of their plays.
+
+        Args:
+            trials, pose, turned: whose, where, by what.
+            sides: by joint, to which end; by their loads if not given.
+        """
+        system = self.system
+        deviations, drawn = system.of_assembly(trials.deviations), component_slices(system.drawn)
+        for drive in system.drives:
+            name = drive.readings[pose].name
+            if name not in turned.play:
+                continue
+            side: Array | float = drive.sides[pose] if sides is None else sides[drive.joint]
+            if not side:
+                side = deviations[:, drawn[drive.flank].start]
+            play = np.where(turned.failed[name], 0.0, turned.play[name])
+            deviations[:, drawn[drive.turn].start] = HALF * side * play
+        return deviations
+
+    def _worst(self, trials: Trials, measure: WorstMeasure, turned: _Turned) -> Answers:
+        """The largest over poses, and over flanks; of a trial in which a joint has no play there is none."""
+        largest, place = np.full(len(trials), -np.inf), np.full(len(trials), "", dtype=f"<U{measure.longest}")
+        status, reason = np.zeros(len(trials), dtype=np.int8), np.full(len(trials), "")
+        for pose, name in measure.sizes:
+            drives = self.system.joints_of(name)
+            for sides in batched(measure.combinations([drive.joint for drive in drives]), max(1, ROWS // len(trials))):
+                builds = np.concatenate([self._turned(trials, pose, turned, each) for each in sides])
+                values, codes, _ = self._placed(builds, [name], pose)
+                shape = len(sides), len(trials)
+                if codes:
+                    own = FROM_ASSEMBLIES[codes[name]].reshape(shape).max(axis=0)
+                    status = np.maximum(status, own).astype(np.int8)
+                highest = values[name].reshape(shape).max(axis=0)
+                larger = highest > largest
+                largest, place = np.where(larger, highest, largest), np.where(larger, pose, place)
+            for drive in drives:
+                failed = turned.failed[drive.readings[pose].name] & (status == 0)
+                reason = np.where(failed, f"joint {drive.joint}", reason)
+                status = np.where(failed, np.int8(NOT_TURNED), status).astype(np.int8)
+        lost = status != 0
+        details = {f"worst pose:{measure.name}": np.where(lost, "", place), reason_column(measure.name): reason}
+        return Answers({measure.name: np.where(lost, np.nan, largest)[:, None]}, {}, details, {measure.name: status})
+
+    # bores ------------------------------------------------------------------------------------------
+
     def _read(
         self, trials: Trials, names: Sequence[str]
     ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
+        """Measures of the assembly in its first pose that no joint turns; see _placed."""
+        return self._placed(self.system.of_assembly(trials.deviations), names, "")
+
+    def _placed(
+        self, deviations: Array, names: Sequence[str], pose: str
+    ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
         """Measures of the assembly, what became of them in its own codes, empty where all are built, and details."""
-        assembly, deviations = self.system.bores.assembly, trials.deviations[:, self.system.assembly_places]
+        first = next(iter(self.system.poses))
+        its_bores = not pose or pose == first
+        assembly = self.system.bores.assembly if its_bores else self.system.poses[pose].assembly
         if not self.exact:
             return torsors.values(assembly, deviations, names), {}, {}
-        found, decided = placing.answers(assembly, deviations, names, self.solids)
+        found, decided = placing.answers(assembly, deviations, names, self.solids.get(first if its_bores else pose))
         values = {name: own for name, (own, _) in found.items()}
         return values, {name: codes for name, (_, codes) in found.items()}, decided
 
@@ -103,18 +236,17 @@ class MachineRoad:
     def _status(self, codes: Mapping[str, Codes], names: Sequence[str]) -> dict[str, Codes]:
         return {name: FROM_ASSEMBLIES[codes[name]] for name in names} if codes else {}
 
-    def _joined(
-        self, answers: Answers, own: Answers, measures: Sequence[GearMeasure], failed: Mapping[str, Codes]
-    ) -> Answers:
-        """Answers of gears and of the assembly; a backlash whose bores are not where they should be has none."""
-        values, status = {**answers.values, **own.values}, {**answers.status, **own.status}
-        if any(codes.any() for codes in failed.values()):
-            for measure in measures:
-                before = status.get(measure.name, np.zeros(len(values[measure.name]), dtype=np.int8))
-                codes = np.max([np.zeros_like(before), *(failed[shaft] for shaft in self._shafts(measure))], axis=0)
-                status[measure.name] = np.where(codes != 0, codes, before).astype(np.int8)
-                values[measure.name] = np.where((codes != 0)[:, None], np.nan, values[measure.name])
-        return replace(answers, values=values, details={**answers.details, **own.details}, status=status)
+    def _without_axes(self, answers: Answers, measures: Sequence[GearMeasure], failed: Mapping[str, Codes]) -> Answers:
+        """Answers of gears; one whose bores are not where they should be has none."""
+        if not any(codes.any() for codes in failed.values()):
+            return answers
+        values, status = dict(answers.values), dict(answers.status)
+        for measure in measures:
+            before = status.get(measure.name, np.zeros(len(values[measure.name]), dtype=np.int8))
+            codes = np.max([np.zeros_like(before), *(failed[shaft] for shaft in self._shafts(measure))], axis=0)
+            status[measure.name] = np.where(codes != 0, codes, before).astype(np.int8)
+            values[measure.name] = np.where((codes != 0)[:, None], np.nan, values[measure.name])
+        return replace(answers, values=values, status=status)
 
     def _shafts(self, measure: GearMeasure) -> set[str]:
         """Shafts in bores of the meshes that a measure reads."""
@@ -122,3 +254,37 @@ class MachineRoad:
         meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
         shafts = {model.layout.carrying[gear][0] for mesh in meshes for gear in (mesh.driver, mesh.driven)}
         return shafts & {own.shaft for own in self.system.bores.shafts}
+
+
+def batched(items: Iterator[Mapping[str, float] | None], size: int) -> Iterator[list[Mapping[str, float] | None]]:
+    """Items, so many at a time."""
+    while batch := list(islice(items, size)):
+        yield batch
+
+
+def _turned_by(answers: Answers, readings: Iterable[str]) -> _Turned:
+    """What trains leave free."""
+    play, failed = {}, {}
+    for name in readings:
+        play[name] = np.asarray(answers.values[name][:, 0])
+        codes = answers.status.get(name, np.zeros(len(play[name]), dtype=np.int8))
+        failed[name] = (codes != 0) | ~np.isfinite(play[name])
+    return _Turned(play, failed)
+
+
+def _joined(first: Answers, second: Answers) -> Answers:
+    return Answers(
+        {**first.values, **second.values},
+        {**first.terms, **second.terms},
+        {**first.details, **second.details},
+        {**first.status, **second.status},
+    )
+
+
+def _only(answers: Answers, names: set[str]) -> Answers:
+    """Answers of some measures."""
+    values = {name: own for name, own in answers.values.items() if name in names}
+    terms = {key: own for key, own in answers.terms.items() if key[0] in names}
+    return replace(
+        answers, values=values, terms=terms, status={name: own for name, own in answers.status.items() if name in names}
+    )

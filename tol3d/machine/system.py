@@ -1,4 +1,4 @@
-"""Gears in a housing as a study sees them: the gears' system and the assembly's, joined at the bores."""
+"""A machine as a study sees it: the gears' system and the assembly's, joined at bores and at joints."""
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,8 +13,10 @@ from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.assembly.zones import laws_told
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.system import EXACT, ROADS, GearSystem
-from tol3d.machine.closed_form import closed_form
-from tol3d.machine.joined import Joined
+from tol3d.machine.closed_form import closed_form, with_joints
+from tol3d.machine.drives import HALF, JointDrive
+from tol3d.machine.joined import Joined, is_hidden
+from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.regressors import regress_bores
 from tol3d.machine.roads import MachineRoad
 from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES
@@ -42,7 +44,7 @@ class MachineSystem(Joined):
     @property
     def _is_clearing(self) -> bool:
         """Whether clearances of whole parts are asked."""
-        return isinstance(self.drawn, ClearanceSystem)
+        return any(isinstance(system, ClearanceSystem) for system in self.poses.values())
 
     @property
     def statuses(self) -> Statuses:
@@ -66,20 +68,31 @@ class MachineSystem(Joined):
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""
-        yield from self.drawn.problems()
+        for system in self.poses.values():
+            yield from system.problems()
         yield from self.gears.problems()
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """See System: of gears also by which laws the bores lie in their zones."""
+        if isinstance(measure, WorstMeasure):
+            return {
+                "kind": measure.kind,
+                "of": list(self._worst_of(measure)),
+                "poses": [own for own, _ in measure.sizes],
+            }
         found = self._owner(measure).describe(measure)
         if not isinstance(measure, GearMeasure):
-            return found
+            return {**found, **({"pose": pose} if (pose := self.pose_of[measure.name]) else {})}
         slices = component_slices(self.drawn)
         moving = (own for own in self.drawn.contributors if self.displacing[:, slices[own.name]].any())
         return {**found, **laws_told(moving)}
 
     def _owner(self, measure: Measure) -> GearSystem | AssemblySystem:
-        return self.gears if isinstance(measure, GearMeasure) else self.assembly
+        return self.gears if isinstance(measure, GearMeasure) else self.poses[self.pose_of[measure.name]]
+
+    def _worst_of(self, measure: WorstMeasure) -> tuple[str, ...]:
+        pose, name = measure.sizes[0]
+        return self.poses[pose].named[name]
 
     # its trials -------------------------------------------------------------------------------------
 
@@ -118,7 +131,9 @@ class MachineSystem(Joined):
     def materials(self, road: str) -> Any:
         """See System."""
         own = self.gears.materials(road)
-        return (own, self.drawn.materials(road)) if self._is_clearing and road != ANALYTIC_ROAD else own
+        if not self._is_clearing or road == ANALYTIC_ROAD:
+            return own
+        return own, {pose: system.materials(road) for pose, system in self.poses.items()}
 
     def road(self, name: str, materials: Any) -> Road:
         """See System: each system's own, gears by what the assembly's says of the bores."""
@@ -128,26 +143,49 @@ class MachineSystem(Joined):
         own, solids = materials
         gears = self.gears.road(name, own)
         if name == EXACT:
-            return MachineRoad(self, gears, exact, reader_of(solids))
-        given, finer = solids
-        chords = {name: given[name].chord_error + pair.chord_error for name, pair in finer.items()}
-        return MachineRoad(self, gears, exact, reader_of(finer), chords)
+            return MachineRoad(self, gears, exact, {pose: reader_of(pairs) for pose, pairs in solids.items()})
+        chords = {
+            name: given[name].chord_error + pair.chord_error
+            for given, finer in solids.values()
+            for name, pair in finer.items()
+        }
+        return MachineRoad(self, gears, exact, {pose: reader_of(finer) for pose, (_, finer) in solids.items()}, chords)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System."""
         own = [measure for measure in measures if isinstance(measure, GearMeasure)]
-        return (self.gears.cost(own) if own else 0) + len(measures) - len(own)
+        read = {name: reading for measure in measures for name, reading in self._readings(measure).items()}
+        gears = [*own, *read.values()]
+        placed = sum(
+            len(measure.sizes) * (2 ** len(self.drives) if measure.any_flank else 1)
+            for measure in measures
+            if isinstance(measure, WorstMeasure)
+        )
+        return (self.gears.cost(gears) if gears else 0) + placed + len(measures) - len(own)
+
+    def _readings(self, measure: Measure) -> Mapping[str, GearMeasure]:
+        """The lost motions of trains that a measure of the assembly hangs on, by name."""
+        return {drive.readings[pose].name: drive.readings[pose] for drive, pose in self._turning(measure)}
+
+    def _turning(self, measure: Measure) -> Sequence[tuple[JointDrive, str]]:
+        """The drives that a measure hangs on, each in a pose in which it is read."""
+        if isinstance(measure, GearMeasure):
+            return ()
+        names = [name for _, name in measure.sizes] if isinstance(measure, WorstMeasure) else [measure.name]
+        return [(drive, self.pose_of[name]) for name in names for drive in self.joints_of(name)]
 
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
         """See System."""
-        return self._owner(measure).chord_bound(measure, chord_error)
+        return 0.0 if isinstance(measure, WorstMeasure) else self._owner(measure).chord_bound(measure, chord_error)
 
     # what acts on a measure -------------------------------------------------------------------------
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """See System: of a backlash also what moves the bores of its shafts."""
-        if not isinstance(measure, GearMeasure):
-            names = {own.name for own in self.assembly.acting(measure)}
+        """See System: of a backlash also what moves the bores of its shafts; of a part what turns its joints too."""
+        if isinstance(measure, WorstMeasure):
+            names = {own.name for size in self._sizes(measure) for own in self.acting(size)}
+        elif not isinstance(measure, GearMeasure):
+            names = {own.name for own in self._owner(measure).acting(measure)} | set(self._behind_joints(measure))
         else:
             own = {each.name for each in self.gears.acting(measure)}
             rows = self.reading(measure)
@@ -156,23 +194,64 @@ class MachineSystem(Joined):
             names = own | {each.name for each in self.drawn.contributors if np.any(acts[slices[each.name]])}
         return [each for each in self.contributors if each.name in names]
 
+    def _sizes(self, measure: WorstMeasure) -> Sequence[Measure]:
+        """The measures of the assembly of which it is the largest."""
+        return [next(own for own in self.poses[pose].measures if own.name == name) for pose, name in measure.sizes]
+
+    def _behind_joints(self, measure: Measure) -> Mapping[str, GearMeasure | None]:
+        """Contributors of trains that turn a part, each with the lost motion by which it does, and flanks with none."""
+        slopes = self._owner_of_part(measure).slopes_of(measure.name)
+        slices, found = component_slices(self.drawn), dict[str, GearMeasure | None]()
+        for drive, pose in self._turning(measure):
+            column = slices[drive.turn].start
+            if not slopes.coefficients[column] and column not in slopes.bent:
+                continue
+            if not drive.sides[pose]:
+                found.setdefault(drive.flank, None)
+            for own in self.acting(drive.readings[pose]):
+                found.setdefault(own.name, drive.readings[pose])
+        return found
+
+    def _owner_of_part(self, measure: Measure) -> AssemblySystem:
+        return self.poses[self.pose_of[measure.name]]
+
     def regressor_key(self, measure: Measure) -> Hashable:
         """See System."""
-        return self._owner(measure).regressor_key(measure)
+        if isinstance(measure, WorstMeasure):
+            return measure.name
+        own = self._owner(measure).regressor_key(measure)
+        return (own, self.pose_of[measure.name]) if self._turning(measure) else own
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """See System."""
+        if isinstance(measure, WorstMeasure):
+            waiting = {own.name: own for own in contributors}
+            for size in self._sizes(measure):  # as in the first pose in which they act
+                its = [waiting.pop(own.name) for own in self.acting(size) if own.name in waiting]
+                self._regress_part(size, its, columns, rows)
+            return
         if not isinstance(measure, GearMeasure):
-            known = {own.name: own for own in self.drawn.contributors}
-            self.assembly.regress(measure, [known[own.name] for own in contributors], columns, rows)
+            self._regress_part(measure, contributors, columns, rows)
             return
         self.gears.regress(measure, [own for own in contributors if own.name in self._of_gears], columns, rows)
         others = [own for own in contributors if own.name not in self._of_gears]
         slices = component_slices(self.drawn)
         squared = {own.name: self.squared[slices[own.name]] for own in others}
         regress_bores(others, columns, rows, squared, lambda: self._bore_slopes(measure, others))
+
+    def _regress_part(
+        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+    ) -> None:
+        """What trains do to a part is regressed as it is for the lost motion by which they do."""
+        known = {own.name: own for own in self.drawn.contributors if not is_hidden(own)}
+        behind = {name: by for name, by in self._behind_joints(measure).items() if by is not None}
+        its = [known[own.name] for own in contributors if own.name in known and own.name not in behind]
+        self._owner_of_part(measure).regress(measure, its, columns, rows)
+        for reading in {by.name: by for by in behind.values()}.values():
+            own = [each for each in contributors if (by := behind.get(each.name)) and by.name == reading.name]
+            self.regress(reading, own, columns, rows)
 
     def _bore_slopes(self, measure: GearMeasure, contributors: Sequence[Contributor]) -> Mapping[str, Array]:
         """Change of a backlash by each component of contributors that move bores."""
@@ -183,8 +262,27 @@ class MachineSystem(Joined):
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""
         if not isinstance(measure, GearMeasure):
-            return self.assembly.closed_form(measure)
+            return self._form_of_part(measure)
         return self._form(measure, at_one_position=False)
+
+    def _form_of_part(self, measure: Measure) -> ClosedForm | None:
+        """None of a largest one, and where the play of a train has none itself, or lies on either side."""
+        if isinstance(measure, WorstMeasure):
+            return None
+        own = self._owner_of_part(measure)
+        form = own.closed_form(measure)
+        turning = self._turning(measure)
+        if form is None or not turning:
+            return form
+        slopes, slices = own.slopes_of(measure.name).coefficients, component_slices(self.drawn)
+        forms = []
+        for drive, pose in turning:
+            its = self.closed_form(drive.readings[pose])
+            factor = HALF * drive.sides[pose] * float(slopes[slices[drive.turn].start])
+            if its is None or not drive.sides[pose]:
+                return None
+            forms.append((factor, its))
+        return with_joints(form, forms, [each.name for each in self.contributors])
 
     def _form(self, measure: GearMeasure, *, at_one_position: bool) -> ClosedForm | None:
         key = measure, at_one_position
@@ -200,17 +298,17 @@ class MachineSystem(Joined):
     def reference_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""
         if not isinstance(measure, GearMeasure):
-            return self.assembly.reference_form(measure)
+            return self._form_of_part(measure)
         return self._form(measure, at_one_position=True)
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
         """See System."""
+        if isinstance(measure, WorstMeasure):
+            return {}
         if not isinstance(measure, GearMeasure):
-            return self.assembly.neglected(measure, replace(trials, deviations=self._of_assembly(trials)))
+            own = replace(trials, deviations=self.of_assembly(trials.deviations))
+            return self._owner(measure).neglected(measure, own)
         return self.gears.neglected(measure, self.linear_gear_trials(trials))
-
-    def _of_assembly(self, trials: Trials) -> Array:
-        return np.asarray(trials.deviations[:, self.assembly_places])
 
     # what it shows ----------------------------------------------------------------------------------
 

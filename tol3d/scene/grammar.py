@@ -203,11 +203,10 @@ class Grammar:
     def _joining(self, names: Set[str]) -> str:
         """The kinds of a vocabulary that understands some others and whose own are not there; or nothing."""
         joining = next((each for each in self.vocabularies if names <= self._understood(each)), None)
-        kinds = (
-            [(section[:-1], kind_of(spec)) for section in SECTIONS for spec in joining.specs(section)]
-            if joining
-            else []
-        )
+        kinds: list[tuple[str, object]] = []
+        if joining is not None:
+            sections = ("moves",) if joining.moves else SECTIONS
+            kinds = [(section[:-1], kind_of(spec)) for section in sections for spec in joining.specs(section)]
         return "join them by " + " or ".join(f"a {section} of kind {kind}" for section, kind in kinds) if kinds else ""
 
     def vocabularies_of(self, scene: Scene) -> tuple[Vocabulary, ...]:

@@ -10,10 +10,11 @@ from tol3d.assembly.from_scene.boundaries import shift_frames
 from tol3d.assembly.from_scene.contributors import Effects, effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of
-from tol3d.assembly.from_scene.measures import add_projected, measured_of, named_by, shown_measures
+from tol3d.assembly.from_scene.measures import add_projected, add_twins, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import warmed
 from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
 from tol3d.assembly.picking.shapes import shapes_of
@@ -58,10 +59,17 @@ class Understood:
     features: Mapping[str, Feature]
     measured: Mapping[str, Measured]
 
-    def at(self, poses: Mapping[str, Array]) -> Meant:
-        """The assembly whose parts lie nominally at some poses in the world (4, 4)."""
+    def at(self, poses: Mapping[str, Array], pose: str = "") -> Meant:
+        """The assembly whose parts lie nominally at some poses in the world (4, 4).
+
+        Args:
+            poses: by part.
+            pose: in which moves that have poses lay their parts; those measures are meant that are read there, all
+                where no move has poses.
+        """
         features, frames = dict(self.features), self.frames
-        moves = moves_of(self.scene, self.effects, TouchedPoints(features, poses))
+        add_twins(self.scene, features, poses)
+        moves = moves_of(self, TouchedPoints(features, poses), pose)
         parents = {name: feature.parent for name, feature in features.items()}
         feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked
         its_features: dict[str, list[Feature]] = {name: [] for name in poses}
@@ -75,9 +83,22 @@ class Understood:
             Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
             for name in self.scene.of(SolidSpec)
         )
-        assembly = Assembly(parts, moves, self.measured, self.effects.width)
-        shown = shown_measures(self.scene, self.measured)
+        measured = {name: own for name, own in self.measured.items() if self._is_read(name, pose)}
+        assembly = Assembly(parts, moves, measured, self.effects.width)
+        shown = tuple(own for own in shown_measures(self.scene, self.measured) if own.name in measured)
         return Meant(assembly, tuple(self.effects.contributors), shown, named_by(self.scene))
+
+    def _is_read(self, measure: str, pose: str) -> bool:
+        """Whether a measure is read in a pose: in the one that it names, or in the first."""
+        poses = pose_names(self.scene)
+        named = getattr(self.scene.measures[measure], "at", None)
+        return not poses or pose == (named or poses[0])
+
+
+def pose_names(scene: Scene) -> tuple[str, ...]:
+    """The poses of a scene's moves, in order."""
+    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
+    return tuple(dict.fromkeys(pose for move in moves for pose in move.pose_names))
 
 
 def understood(scene: Scene) -> Understood:

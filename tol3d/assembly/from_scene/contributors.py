@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
-from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec
+from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
 from tol3d.assembly.grammar.tolerances import (
@@ -61,6 +61,8 @@ class Effects:
     """Of moves with play, the columns of what is drawn of where in its room the part lies."""
     bolts: dict[tuple[str, int], Contribution] = field(default_factory=dict)
     """Of a move's pairs, what a bolt that is of no part deviates by."""
+    stated: dict[str, Mapping[str, slice]] = field(default_factory=dict)
+    """Of moves of other mechanisms, the columns of what they draw, by name."""
     width: int = 0
 
     def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
@@ -225,6 +227,9 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
         if isinstance(move, PlaySpec):
             effects.add_bolts(name, move)
             effects.add_float(name, move)
+        elif isinstance(move, StatedMoveSpec):
+            drawn = move.contributors(name, scene)
+            effects.stated[name] = {own.name: effects.added(own) for own in drawn}
     return effects
 
 

@@ -3,6 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
@@ -17,17 +20,21 @@ from tol3d.assembly.grammar.measures import (
     DifferenceSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
+    OrientationErrorSpec,
+    PoseErrorSpec,
     SlackSpec,
 )
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec, TimedSpec
-from tol3d.assembly.model import Feature, Measured
+from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene import Scene
 from tol3d.system.measure import Worse
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
-WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness", "pattern"))
+Array = NDArray[np.float64]
+
+WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness", "pattern", "turn"))
 
 
 def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:
@@ -45,6 +52,12 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, drawing: Drawing, frames:
     if isinstance(spec, ClearanceSpec):
         parts = (spec.from_, spec.to)
         return Measured("clearance", (), after=after, rocking=spec.rocking, parts=parts, chord_error=spec.error)
+    if isinstance(spec, PoseErrorSpec):
+        along = {"x": 0, "y": 1, "z": 2}
+        direction = np.eye(3)[along[spec.component]] if spec.component != "size" else None
+        length: MeasureKind = "distance" if direction is None else "gap"
+        kind: MeasureKind = "turn" if isinstance(spec, OrientationErrorSpec) else length
+        return Measured(kind, (twin_name(spec), spec.of), direction, after=after, rocking=spec.rocking)
     assert isinstance(spec, FeatureMeasureSpec)
     features = tuple(name for _, name, _ in spec.named())
     bonuses = _bonuses(scene, drawing, spec, features)
@@ -64,6 +77,20 @@ def _after(scene: Scene, spec: AssemblyMeasureSpec) -> int:
     """Index of the move after which a measure is read; -1 for the end."""
     named = spec.after if isinstance(spec, TimedSpec) else None
     return -1 if named is None else list(scene.moves).index(named)
+
+
+def twin_name(spec: PoseErrorSpec) -> str:
+    """The feature that lies nominally where another one does, on the part that sees it."""
+    return f"{spec.of} nominal in {spec.from_}"
+
+
+def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Array]) -> None:
+    """Add to parts features that lie where others do, whose errors they see, where parts lie at some poses (4, 4)."""
+    for spec in scene.measures.values():
+        if isinstance(spec, PoseErrorSpec) and (name := twin_name(spec)) not in features:
+            own = features[spec.of]
+            frame = np.linalg.inv(poses[spec.from_]) @ poses[own.part] @ own.frame
+            features[name] = Feature(name, spec.from_, Point(), frame, is_named=False)
 
 
 def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
@@ -110,6 +137,8 @@ def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:
             found[name] = (spec.of, spec.minus)
         elif isinstance(spec, SlackSpec):
             found[name] = (spec.of,)
+        elif isinstance(spec, PoseErrorSpec):
+            found[name] = (spec.of, spec.from_)
         elif isinstance(spec, ClearanceSpec):
             found[name] = (spec.from_, spec.to)
         elif isinstance(spec, FeatureMeasureSpec):

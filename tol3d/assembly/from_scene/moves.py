@@ -1,6 +1,7 @@
 """Moves of a scene: pairs, normals, locators."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from tol3d.assembly.grammar.moves import (
     PlacingSpec,
     PlaySpec,
     RestSpec,
+    StatedMoveSpec,
     TouchSpec,
     WeldSpec,
 )
@@ -26,23 +28,35 @@ from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
 from tol3d.scene import Scene
 
+if TYPE_CHECKING:
+    from tol3d.assembly.from_scene.assembly import Understood
+
 Array = NDArray[np.float64]
 
 FLAT = 1e-6
 """Sine of the angle between directions that are the same."""
 
 
-def moves_of(scene: Scene, effects: Effects, touched: TouchedPoints) -> tuple[Move, ...]:
+def moves_of(understood: "Understood", touched: TouchedPoints, pose: str) -> tuple[Move, ...]:
     """All moves of a scene, in order; the points of planes that they touch are added to the features.
+
+    Args:
+        understood: the scene's drawings.
+        touched: features, and where parts are nominally.
+        pose: in which moves that have poses lay their parts.
 
     Raises:
         SceneError: directions that do not fit what they are of.
     """
-    return tuple(
-        _move(scene, name, spec, effects, touched)
-        for name, spec in scene.moves.items()
-        if isinstance(spec, PlacingSpec | WeldSpec)
-    )
+    scene, effects = understood.scene, understood.effects
+    found: list[Move] = []
+    for name, spec in scene.moves.items():
+        if isinstance(spec, StatedMoveSpec):
+            at = pose if pose in spec.pose_names else next(iter(spec.pose_names), "")
+            found.append(spec.stated(name, understood, touched, effects.stated[name], at))
+        elif isinstance(spec, PlacingSpec | WeldSpec):
+            found.append(_move(scene, name, spec, effects, touched))
+    return tuple(found)
 
 
 def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effects, touched: TouchedPoints) -> Move:

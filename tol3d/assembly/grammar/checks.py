@@ -7,7 +7,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
-from tol3d.assembly.grammar.moves import PlacingSpec, WeldSpec
+from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec, WeldSpec
 from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.tolerances import FeatureTolerance
@@ -72,12 +72,16 @@ class Bodies:
         """What does not hold, move by move; then parts that no move places."""
         self.body = {name: name for name in self.scene.of(SolidSpec)}
         moving = {move.part for move in self.scene.moves.values() if isinstance(move, PlacingSpec)}
+        stated = (move for move in self.scene.moves.values() if isinstance(move, StatedMoveSpec))
+        moving |= {part for move in stated for _, part in move.parts_placed}
         for name, move in self.scene.moves.items():
             here: KeyPath = ("moves", name)
             if isinstance(move, WeldSpec):
                 yield from self._welded(here, move, moving)
             elif isinstance(move, PlacingSpec):
                 yield from self._placed(here, move, moving)
+            elif isinstance(move, StatedMoveSpec):
+                yield from self._placed_together(here, move, moving)
             self.by[name] = {part for part, own in self.body.items() if own in self.placed}
         for part, own in self.body.items():
             if own not in self.placed:
@@ -117,6 +121,34 @@ class Bodies:
                 words = f"expected a feature of a part that is placed already, got {pair.to!r}"
                 yield (*here, *path, "to"), f"{words}; put the move that places {target!r} before this one"
         self.placed[own] = str(here[1])
+
+    def _placed_together(self, here: KeyPath, move: StatedMoveSpec, moving: set[str]) -> Iterator[Problem]:
+        its: set[str] = set()
+        for path, part in move.parts_placed:
+            if (own := self.body[part]) in its:
+                yield (*here, *path), f"expected a part of another body, got {part!r}, which this move places already"
+            elif before := self.placed.get(own):
+                words = f"expected a part that is not placed yet, got {part!r}, which {before!r} places"
+                yield (*here, *path), words
+            its.add(own)
+        for path, feature in move.targets():
+            body = self.body[part_of(feature)]
+            if body not in its and body not in self.placed and part_of(feature) in moving:
+                words = f"expected a feature of a part that is placed already, got {feature!r}"
+                yield (*here, *path), f"{words}; put the move that places {part_of(feature)!r} before this one"
+        self.placed |= dict.fromkeys(its, str(here[1]))
+
+
+def unknown_poses(scene: Scene) -> Iterator[Problem]:
+    """Poses that no move has, named by measures."""
+    poses = [pose for move in scene.moves.values() if isinstance(move, StatedMoveSpec) for pose in move.pose_names]
+    for name, measure in scene.measures.items():
+        if isinstance(measure, TimedSpec) and measure.at is not None and measure.at not in poses:
+            if not poses:
+                yield ("measures", name, "at"), f"expected none, for no move has poses, got {measure.at!r}"
+            else:
+                words = f"expected one of the poses {', '.join(poses)}, got {measure.at!r}"
+                yield ("measures", name, "at"), f"{words}{hint(measure.at, poses)}"
 
 
 def _read_too_early(scene: Scene, bodies: Bodies) -> Iterator[Problem]:

@@ -24,6 +24,7 @@ from tol3d.assembly.model.moves import (
     Weld,
 )
 from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model.stated_move import StatedMove
 from tol3d.assembly.model.touch import Contact, Touch
 
 __all__ = [
@@ -55,6 +56,7 @@ __all__ = [
     "RoundPlane",
     "Shape",
     "Slot",
+    "StatedMove",
     "Touch",
     "Weld",
 ]

@@ -26,6 +26,7 @@ MeasureKind = Literal[
     "surface_gap",
     "slack",
     "clearance",
+    "turn",
 ]
 """What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
 
@@ -53,6 +54,8 @@ MeasureKind = Literal[
 - contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
   second's, and the z of a third feature or a direction that is fixed as for gap [rad], 0 to pi.
 - slack: of the move `of_move`, an Engage; no features.
+- turn: of the rotation vector that turns the first feature's frame into the second's, the component along a direction,
+  which is fixed in the part of the first, or its length without one [rad].
 - clearance: least distance of the solids of two parts as they stand, within a chord error; no features.
 """
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.feature import Contribution
+from tol3d.assembly.model.stated_move import StatedMove
 from tol3d.assembly.model.touch import Touch
 
 Array = NDArray[np.float64]
@@ -260,4 +261,4 @@ class Engage:
     floating: Floating
 
 
-Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch
+Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch | StatedMove

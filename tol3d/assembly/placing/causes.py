@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Locate, Mate, Measured, Move, Rest, Touch, Weld
+from tol3d.assembly.model import Assembly, BestFit, Engage, Locate, Mate, Measured, Move, Rest, StatedMove, Touch, Weld
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -53,11 +53,18 @@ class Causes:
             body = frozenset[str]().union(*(self.bodies[part] for part in (move.part, *move.others)))
             return Causes(self.assembly, self.placed, {**self.bodies, **dict.fromkeys(body, body)})
         causes = frozenset([index]).union(*self._of_move(move))
+        if isinstance(move, StatedMove):
+            bodies = {other: causes for part in move.parts for other in self.bodies[part]}
+            return Causes(self.assembly, {**self.placed, **bodies}, self.bodies)
         held = self.placed.get(move.part, frozenset())
         placed = {part: causes | held | self.placed[part] for part in self.bodies[move.part] - {move.part}}
         return Causes(self.assembly, {**self.placed, **placed, move.part: causes}, self.bodies)
 
     def _of_move(self, move: Move) -> Iterable[frozenset[Cause]]:
+        if isinstance(move, StatedMove):
+            yield from map(self.of_frame, move.frames)
+            yield from self._of_stated(move)
+            return
         if isinstance(move, Locate):
             pairs = [(pair.moving, pair.target) for pair in move.pairs]
         elif isinstance(move, Rest):
@@ -78,6 +85,13 @@ class Causes:
             own = self.assembly.features[moving].part
             if own != move.part:
                 yield self.of_part(own, f"moves.{move.name}") | self.of_part(move.part, f"moves.{move.name}")
+
+    def _of_stated(self, move: StatedMove) -> Iterable[frozenset[Cause]]:
+        its = frozenset[str]().union(*(self.bodies[part] for part in move.parts))
+        for moving, target in move.pairs:
+            yield self.of_feature(moving) | self.of_feature(target)
+            if (part := self.assembly.features[target].part) not in its:
+                yield self.of_part(part, f"moves.{move.name}")
 
     def _engaged(self, move: Mate | Engage) -> Sequence[tuple[str, str]]:
         """Of what engages, the feature of the body that is placed and the other one."""

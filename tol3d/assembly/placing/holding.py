@@ -13,16 +13,16 @@ from tol3d.assembly.model import (
     Datum,
     DatumFrame,
     Engage,
-    Fix,
     Locate,
     Mate,
+    Move,
     Pair,
     Plane,
     Relation,
     Rest,
     RoundPlane,
+    StatedMove,
     Touch,
-    Weld,
 )
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.engaging import Engaging
@@ -69,7 +69,10 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
 
 def held_by(assembly: Assembly, plan: Placing) -> Freedoms:
     """What a move takes, step by step, along the axes of the world; of what lays a part against nothing: nothing."""
-    part = plan.part if isinstance(plan, Fix | Weld) else plan.move.part
+    move: Move = getattr(plan, "move", None) or plan  # type: ignore[assignment]  # a move that is its own plan
+    if isinstance(move, StatedMove):
+        raise TypeError(f"{move.name}: expected a move of one body")
+    part = move.part
     middle = assembly.part[part].pose[:3, 3]
     asked = list(_asked(assembly, plan, middle))
     places = [_pose(assembly, own.name)[:3, 3] for own in assembly.part[part].features]

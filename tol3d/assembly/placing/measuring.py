@@ -15,7 +15,7 @@ from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.gauged_positions import position_on_gauges
 from tol3d.assembly.placing.patterns import bonuses, pattern
-from tol3d.assembly.placing.poses import Codes, column, cross, dot, rotated
+from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
 from tol3d.assembly.placing.virtual_clearance import virtual_clearance
 from tol3d.assembly.placing.world import World
@@ -196,6 +196,12 @@ def _parallel(measured: Measured, assembly: Assembly) -> bool:
     return bool(np.linalg.norm(np.cross(start, end)) < PARALLEL)
 
 
+def _turn(measured: Measured, world: World) -> Array:
+    start, end = (world.placed(name).pose.turn for name in measured.features)
+    vector = rotation_vector(product(end, np.swapaxes(start, 0, 1)))
+    return _length(vector) if measured.direction is None else dot(vector, _direction(measured, world))
+
+
 def _slack(measured: Measured, world: World) -> Array:
     return np.asarray(world.slacks[world.assembly.moves[measured.of_move].name])
 
@@ -214,4 +220,5 @@ READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
     "slack": _slack,
+    "turn": _turn,
 }

@@ -4,11 +4,12 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
@@ -26,7 +27,16 @@ from tol3d.assembly.placing.world import SolidReader, World
 
 Array = NDArray[np.float64]
 
-Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging
+
+class Placer(Protocol):
+    """A move as its nominal geometry decides it, of another mechanism; frozen, and it has no equals."""
+
+    def placed(self, world: World) -> tuple[World, Codes]:
+        """The world after it, and what became of it: codes (n,) or (1,) of tol3d.assembly.model.statuses."""
+        ...
+
+
+Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging | Placer
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
@@ -97,6 +107,8 @@ def _planned(move: Move, nominal: World) -> Placing:
             return touching(move, nominal)
         case Engage():
             return engaging(move, nominal)
+        case StatedMove():
+            return move.placing(nominal)
         case _:
             return move
 

@@ -93,6 +93,14 @@ def _rotation(
     )
 
 
+def rotation_vector(turn: Array) -> Array:
+    """Vectors (3, n) of rotations (3, 3, n): along their axes, as long as their angles [rad], below half a turn."""
+    double = np.stack([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+    sine, cosine = 0.5 * np.sqrt(dot(double, double)), 0.5 * (turn[0, 0] + turn[1, 1] + turn[2, 2] - 1.0)
+    angle = np.arctan2(sine, cosine)
+    return 0.5 * double * np.where(sine > NO_LENGTH, angle / np.where(sine > NO_LENGTH, sine, 1.0), 1.0)
+
+
 @dataclass(frozen=True, eq=False)
 class Pose:
     """From one frame to another: x = turn p + shift.

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Final
 
-from tol3d.assembly.model import Assembly, Fix, Weld
+from tol3d.assembly.model import Assembly, Fix, StatedMove, Weld
 from tol3d.assembly.placing.holding import held_by, held_by_datums
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.taken_freedoms import Freedoms, Taken, in_words
@@ -32,6 +32,8 @@ def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
                 rows.append(Row(move.name, ("all six", "as drawn")))
             case Weld():
                 rows.append(Row(move.name, ("all six", f"{', '.join(move.others)} with {move.part}")))
+            case StatedMove():
+                rows += [Row(move.name, (f"all six of {part}", move.words)) for part in move.parts]
             case _:
                 found = held_by(assembly, plan)
                 rows += [Row(move.name, (in_words(own), _by(own))) for own in found.taken]

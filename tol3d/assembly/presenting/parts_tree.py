@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Final, assert_never
 
-from tol3d.assembly.model import Assembly, Engage, Fix, Locate, Move, Touch
+from tol3d.assembly.model import Assembly, Engage, Fix, Locate, Move, StatedMove, Touch
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.report.page import Branch
 
@@ -24,6 +24,7 @@ KINDS: Final[Mapping[type[Move], str]] = {
     Rest: "rest on",
     Touch: "touch on",
     Weld: "welded to",
+    StatedMove: "carried by",
 }
 
 
@@ -86,6 +87,10 @@ def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str
         if isinstance(move, Weld):
             welded |= dict.fromkeys(move.others, (move.part, move.name))
             continue
+        if isinstance(move, StatedMove):
+            for k, part in enumerate(move.parts):
+                yield part, StatedMove, move.name, (move.carriers[k],)
+            continue
         body = [move.part]
         for part in body:  # it grows by what is welded to what was
             body += [other for other, (leader, _) in welded.items() if leader == part and other not in body]
@@ -111,6 +116,8 @@ def _features(move: Move) -> list[str]:
         case Rest():
             pairs = [(own.moving, own.target) for own in move.relations]
             pairs += [(own.moving, own.target) for own in move.pairs]
+        case StatedMove():
+            pairs = list(move.pairs)
         case Touch():
             pairs = [(own.moving, own.target) for own in move.contacts]
         case _:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, Touch
+from tol3d.assembly.model import Axis, Engage, Feature, Locate, Move, Plane, Point, RoundPlane, Slot, StatedMove, Touch
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
 from tol3d.assembly.placing.engaging import Engaging
@@ -203,6 +203,8 @@ def _move(move: Move, plan: Placing) -> tuple[str, str, str]:
             return "touch", move.part, f"{len(move.contacts)} contacts"
         case Weld():
             return "weld", move.part, ", ".join(move.others)
+        case StatedMove():
+            return "together", ", ".join(move.parts), move.words
     return "fixed", move.part, ""
 
 

@@ -21,7 +21,7 @@ from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
-LINEAR: frozenset[MeasureKind] = frozenset(("gap", "point_plane", "size", "slack"))
+LINEAR: frozenset[MeasureKind] = frozenset(("gap", "point_plane", "size", "slack", "turn"))
 """Measures whose reading makes no term."""
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""

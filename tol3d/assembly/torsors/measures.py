@@ -305,6 +305,12 @@ def _pattern(measured: Measured, world: World) -> Array:
     return row
 
 
+def _turn(measured: Measured, world: World) -> Array:
+    start, end = measured.features
+    turned = (world.placed(end) - world.placed(start))[3:]  # nominally both frames are one
+    return _length(np.zeros(3), turned, world) if measured.direction is None else _fixed_in(measured, world)[0] @ turned
+
+
 def _slack(measured: Measured, world: World) -> Array:
     return world.slacks[world.assembly.moves[measured.of_move].name]
 
@@ -323,5 +329,6 @@ _READINGS = {
     "surface_gap": _surface_gap,
     "contact_angle": _contact_angle,
     "slack": _slack,
+    "turn": _turn,
     "clearance": clearance,
 }

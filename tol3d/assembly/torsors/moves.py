@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import BestFit, Engage, Fix, Locate, Mate, Move, Rest, Touch, Weld
+from tol3d.assembly.model import BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.assembly.torsors.best_fit import fitted
 from tol3d.assembly.torsors.engaging import engaged
 from tol3d.assembly.torsors.locators import located
@@ -42,5 +42,7 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
             return world.with_part_at(move.part, touched(move, world))
         case Engage():
             return engaged(move, world, leaning)
+        case StatedMove():
+            return move.displaced(world)
         case Weld():
             return world.with_welded((move.part, *move.others))

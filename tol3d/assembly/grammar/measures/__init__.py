@@ -13,6 +13,7 @@ from tol3d.assembly.grammar.measures.inspected import (
 )
 from tol3d.assembly.grammar.measures.inspected_pattern import InspectedPatternSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
+from tol3d.assembly.grammar.measures.pose_errors import OrientationErrorSpec, PoseErrorSpec, PositionErrorSpec
 from tol3d.assembly.grammar.measures.slack import SlackSpec
 from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSpec
 
@@ -30,7 +31,10 @@ __all__ = [
     "InspectedPatternSpec",
     "InspectedPositionSpec",
     "InspectedSizeSpec",
+    "OrientationErrorSpec",
     "PointPlaneSpec",
+    "PoseErrorSpec",
+    "PositionErrorSpec",
     "SlackSpec",
     "SurfaceGapSpec",
     "VirtualClearanceSpec",

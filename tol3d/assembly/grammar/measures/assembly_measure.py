@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves.forgotten import MoveReference
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import MeasureKind, OverPlay, Rocking
@@ -41,6 +42,9 @@ class TimedSpec(AssemblyMeasureSpec):
     """A measure of placed parts."""
 
     after: Name | None = Field(default=None, description="the move after which it is read; the end if not given")
+    at: Name | None = Field(
+        default=None, description="the pose in which it is read, of a move that has poses; its first one if not given"
+    )
 
     @property
     @abstractmethod
@@ -50,7 +54,9 @@ class TimedSpec(AssemblyMeasureSpec):
     @property
     def timing(self) -> tuple[Reference, ...]:
         """The move after which it is read."""
-        return () if self.after is None else (MoveReference(("after",), self.after, (PlacingSpec, WeldSpec)),)
+        if self.after is None:
+            return ()
+        return (MoveReference(("after",), self.after, (PlacingSpec, StatedMoveSpec, WeldSpec)),)
 
 
 class FeatureMeasureSpec(TimedSpec):

@@ -7,6 +7,7 @@ from tol3d.assembly.grammar.moves.mate import MateSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.play import PatternSpec, PinAndHoleSpec, PlaySpec
 from tol3d.assembly.grammar.moves.rest import RestSpec
+from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.moves.touch import TouchSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 
@@ -21,6 +22,7 @@ __all__ = [
     "PlaySpec",
     "RestSpec",
     "SixPlaneSpec",
+    "StatedMoveSpec",
     "ThreeTwoOneSpec",
     "TouchSpec",
     "WeldSpec",

@@ -5,6 +5,7 @@ from typing import Any
 
 from tol3d.assembly.grammar.moves.fix import FixSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
+from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene.reference import Reference
@@ -17,6 +18,7 @@ class MoveReference(Reference):
         """See Reference: parts that no move places, for one of their moves may have been forgotten."""
         placed = {move.part for move in moves.values() if isinstance(move, PlacingSpec | WeldSpec)}
         placed |= {part for move in moves.values() if isinstance(move, WeldSpec) for part in move.to}
+        placed |= {part for move in moves.values() if isinstance(move, StatedMoveSpec) for _, part in move.parts_placed}
         lacking = [name for name, part in parts.items() if isinstance(part, SolidSpec) and name not in placed]
         if not lacking:
             return ""

@@ -1,0 +1,175 @@
+"""Links that turn about each other, one after the other, from a part that is placed to the last one: a robot's arm."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.assembly.grammar.datums import Datums
+from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.moves import StatedMoveSpec
+from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.distributions.constant import Constant
+from tol3d.gearing.grammar.moves import TrainSpec
+from tol3d.machine.either_side import EitherSide
+from tol3d.scene.listed import listed
+from tol3d.scene.name import Name
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
+from tol3d.scene.vector import Direction, Vector
+from tol3d.strict import Strict, refused
+from tol3d.system.draw import Scalar
+from tol3d.system.mechanism import named
+from tol3d.system.plain import UNITS, PlainContributor
+from tol3d.units import Of, Quantity
+
+if TYPE_CHECKING:
+    from tol3d.assembly.from_scene.assembly import Understood
+    from tol3d.assembly.from_scene.features import TouchedPoints
+    from tol3d.assembly.model import StatedMove
+    from tol3d.scene import Scene
+
+AXES: Final = ("axis", "cylinder")
+READ_BY: Final = "tol3d.machine.open_chains"
+Angle = Annotated[Quantity, Of("angle")]
+
+
+def turn_name(move: str, joint: str) -> str:
+    """The hidden contributor of how far a joint turns beyond its input; scenes cannot name one so."""
+    return f".{move}.{joint} turn"
+
+
+def flank_name(joint: str) -> str:
+    """The contributor of the side of its play on which a joint lies that nothing loads."""
+    return f"flank of {joint}"
+
+
+class RevoluteSpec(Strict):
+    """Two links on one axis, which turn about it as a train does."""
+
+    words: ClassVar[str] = "a joint"
+
+    kind: Literal["revolute"] = "revolute"
+    between: Annotated[tuple[FeatureName, ...], listed("axes", 2, 2)] = Field(
+        description="the axis of the link before, such as base.bore, and that of the link after, such as link 1.pilot; "
+        "as the parts are `placed` they are one line, and the input is 0"
+    )
+    seat: Datums | None = Field(
+        default=None,
+        description="datums of the link after by which it lies on the joint, such as [flange, pilot]; by the axis if "
+        "not given",
+    )
+    train: Name | None = Field(
+        default=None, description="the train whose output turns the link after; none: it has no play"
+    )
+
+
+class MassSpec(Strict):
+    """A mass on a link."""
+
+    words: ClassVar[str] = "a mass"
+
+    on: Name = Field(description="the link")
+    mass: Annotated[Quantity, Of("mass")] = Field(description="such as 30 kg")
+    at: Vector = Field(description="where it is, in the frame of that part")
+
+
+class OpenChainSpec(StatedMoveSpec):
+    """Links in series, each turned against the one before by its input and, in its play, by what loads it.
+
+    A joint that gravity loads lies at that end of its play to which its torque turns it; one that nothing loads lies at
+    either end, by a draw of its own. The middle of the play is where the input says.
+    """
+
+    words: ClassVar[str] = "a chain of links"
+
+    kind: Literal["open_chain"]
+    joints: Mapping[Name, RevoluteSpec] = Field(min_length=1, description="from the placed part on, in order")
+    poses: Mapping[Name, Mapping[Name, Angle]] = Field(
+        min_length=1, description="by name, the input of every joint; measures are read `at` one of them"
+    )
+    gravity: Direction | None = Field(default=None, description="its direction in the world; none loads no joint")
+    masses: Annotated[tuple[MassSpec, ...], listed("masses", 0, 100)] = Field(
+        default=(), description="what it pulls at; a payload counts to the last link"
+    )
+
+    @property
+    def links(self) -> Sequence[str]:
+        """The parts that are placed, in order."""
+        return [part_of(joint.between[1]) for joint in self.joints.values()]
+
+    @property
+    def parts_placed(self) -> Sequence[tuple[KeyPath, str]]:
+        """See StatedMoveSpec."""
+        return [(("joints", name, "between", 1), part_of(own.between[1])) for name, own in self.joints.items()]
+
+    def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
+        """See StatedMoveSpec."""
+        return ((("joints", name, "between", 0), own.between[0]) for name, own in self.joints.items())
+
+    @property
+    def pose_names(self) -> Sequence[str]:
+        """See StatedMoveSpec."""
+        return tuple(self.poses)
+
+    def references(self) -> tuple[Reference, ...]:
+        """Links, trains, and what masses are on."""
+        found = []
+        for name, joint in self.joints.items():
+            for k, feature in enumerate(joint.between):
+                found.append(Reference(("joints", name, "between", k), part_of(feature), (SolidSpec,)))
+            if joint.train is not None:
+                found.append(Reference(("joints", name, "train"), joint.train, (TrainSpec,)))
+        found += [Reference(("masses", k, "on"), own.on, (SolidSpec,)) for k, own in enumerate(self.masses)]
+        return tuple(found)
+
+    def uses(self) -> Iterator[Use]:
+        """The axes, and the datums of seats."""
+        for name, joint in self.joints.items():
+            for k, feature in enumerate(joint.between):
+                yield Use(("joints", name, "between", k), feature, AXES)
+            for k, datum in enumerate(joint.seat or ()):
+                for own in datum.features:
+                    path = ("joints", name, "seat", k)
+                    yield Use(path, f"{part_of(joint.between[1])}.{own}", datum.kinds)
+
+    def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
+        """Turns of the joints, which nobody draws; then flanks of those that nothing loads in some pose."""
+        hidden = Scalar(Constant(0.0))
+        turns = (PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"]) for joint in self.joints)
+        words = "the end of its play at which {} lies, for nothing loads it"
+        free = (
+            PlainContributor(flank_name(joint), "flank", Scalar(EitherSide()), "1", 1.0, words.format(joint))
+            for joint in named(f"{READ_BY}:free_joints")(scene, self)
+        )
+        return (*turns, *free)
+
+    def stated(
+        self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
+    ) -> "StatedMove":
+        """See StatedMoveSpec."""
+        found: StatedMove = named(f"{READ_BY}:chain_of")(self, name, understood, drawn, pose)
+        return found
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if len(set(self.links)) < len(self.links):
+            twice = next(link for k, link in enumerate(self.links) if link in self.links[:k])
+            raise refused("joints", "another link after each joint", f"{twice!r} after two")
+        for pose, inputs in self.poses.items():
+            lacking = [joint for joint in self.joints if joint not in inputs]
+            if lacking:
+                raise refused(
+                    f"poses.{pose}",
+                    f"an input of each of the {len(self.joints)} joints",
+                    f"none of {', '.join(map(repr, lacking))}",
+                )
+            for joint in inputs:
+                if joint not in self.joints:
+                    raise refused(f"poses.{pose}.{joint}", f"a joint of {', '.join(self.joints)}", repr(joint))
+        for k, mass in enumerate(self.masses):
+            if mass.on not in self.links:
+                raise refused(f"masses.{k}.on", f"a link of the chain: {', '.join(self.links)}", repr(mass.on))
+        if self.masses and self.gravity is None:
+            raise refused("gravity", "its direction beside masses, such as [0, 0, -1]", "none")
+        return self
