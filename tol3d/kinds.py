@@ -5,10 +5,13 @@ A mechanism that tol3d brings along is a line of SHIPPED. Others come with packa
 
     tol3d.register(mechanism)
 
-All are named by import paths and loaded when the first scene is opened.
+All are named by import paths. A scene loads the shipped ones whose kinds it names, which `kind: Literal["…"]` in the
+files of a mechanism's `grammar/` tells without importing them; whatever is wrong in it is said by all of them.
 """
 
+import re
 import warnings
+from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache, lru_cache, reduce
 from importlib.metadata import EntryPoint, entry_points
 from operator import or_
@@ -17,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.errors import InputError
 from tol3d.files import Files
-from tol3d.scene import Grammar, Scene, Vocabulary, read_scene
+from tol3d.scene import Grammar, Kinds, Scene, Vocabulary, read_scene
 from tol3d.scene.entry import kind_of
 from tol3d.system.mechanism import Mechanism, named
 
@@ -33,6 +36,8 @@ SHIPPED: Final = (
 )
 
 GROUP: Final = "tol3d.mechanisms"
+
+DECLARED: Final = re.compile(r'^    kind: Literal\["(\w+)"\]', re.MULTILINE)
 
 _registered: dict[str, Mechanism] = {}
 
@@ -57,9 +62,29 @@ def all_kinds() -> Grammar:
     return _grammar((*_brought(), *_registered.values()))
 
 
-def summary_kinds() -> "SummaryKinds":
-    """What summaries of runs hold of every mechanism, besides what every one holds."""
-    return _summary_kinds(all_kinds())
+class _EveryKind:
+    """See NEEDED_KINDS."""
+
+    def whole(self) -> Grammar:
+        """See Kinds."""
+        return all_kinds()
+
+    def saying(self, words: Set[str]) -> Grammar:
+        """See Kinds."""
+        return _grammar_of(path for path in SHIPPED if words & _declared(path))
+
+
+NEEDED_KINDS: Final[Kinds] = _EveryKind()
+"""The kinds of every mechanism, of which those are loaded that a scene names."""
+
+
+def summary_kinds(summary: Mapping[str, Any] | None = None) -> "SummaryKinds":
+    """What summaries of runs hold of every mechanism, besides what every one holds.
+
+    Args:
+        summary: one, as JSON; only what it may hold by its mechanism and the kinds of its measures.
+    """
+    return _summary_kinds(all_kinds() if summary is None else _grammar_of(_needed_by(summary)))
 
 
 def load_scene(
@@ -87,6 +112,35 @@ def load_scene(
     """
     grammar = all_kinds() if kinds is None else kinds
     return read_scene(path, grammar, trust_parts=trust_parts, run_builders=run_builders, files=files)
+
+
+def _grammar_of(shipped: Iterable[str]) -> Grammar:
+    """The kinds of some shipped mechanisms; all kinds where there are none, or where others are there too."""
+    paths = tuple(shipped)
+    if not paths or _registered or _offered():
+        return all_kinds()
+    return _grammar(tuple(_mechanism(named(path), path) for path in paths))
+
+
+@cache
+def _declared(path: str) -> frozenset[str]:
+    """Words that a shipped mechanism's grammar declares, by its sources: some may be of other things than entries."""
+    folder = Path(__file__).parent / _room(path) / "grammar"
+    return frozenset(word for file in folder.rglob("*.py") for word in DECLARED.findall(file.read_text("utf-8")))
+
+
+def _room(path: str) -> str:
+    """The folder of a shipped mechanism, which is its name too."""
+    return path.split(".")[1]
+
+
+def _needed_by(summary: Mapping[str, Any]) -> Iterator[str]:
+    maker, measures = summary.get("mechanism"), summary.get("measures")
+    name = maker.get("name") if isinstance(maker, Mapping) else None
+    entries = measures.values() if isinstance(measures, Mapping) else ()
+    kinds = (entry.get("kind") for entry in entries if isinstance(entry, Mapping))
+    words = {kind for kind in kinds if isinstance(kind, str)}
+    return (path for path in SHIPPED if _room(path) == name or words & _declared(path))
 
 
 @lru_cache
@@ -119,9 +173,15 @@ def _added(vocabulary: Vocabulary) -> "SummaryKinds":
 def _brought() -> tuple[Mechanism, ...]:
     """What tol3d ships, then what installed packages offer."""
     brought = tuple(_mechanism(named(path), path) for path in SHIPPED)
-    for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
+    for point in _offered():
         brought = _with_installed(brought, point)
     return brought
+
+
+@cache
+def _offered() -> tuple[EntryPoint, ...]:
+    """What installed packages offer."""
+    return tuple(sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)))
 
 
 def _with_installed(brought: tuple[Mechanism, ...], point: EntryPoint) -> tuple[Mechanism, ...]:

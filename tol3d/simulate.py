@@ -77,7 +77,7 @@ from tol3d.execution.folding import Plan, StudyOutcome, run_blocks
 from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
-from tol3d.kinds import all_kinds
+from tol3d.kinds import NEEDED_KINDS
 from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.full_disk import refusals_explained
 from tol3d.runs.occupant import free_folder, refuse_changed
@@ -274,7 +274,7 @@ def load(
     def examine(found: Scene) -> None:
         refuse_changed(resumed, text_of(found).sha256, {name: file.sha256 for name, file in found.files.items()})
 
-    grammar = kinds or all_kinds()
+    grammar = kinds or NEEDED_KINDS
     before_programs = examine if run_builders else None
     return read_scene(scene, grammar, trust_parts=trust_parts, run_builders=run_builders, examine=before_programs)
 
@@ -285,7 +285,7 @@ def replay(run: Run | Path | str, trial: int, kinds: Grammar | None = None) -> R
     Raises:
         RunError: the run has no such trial.
     """
-    return replaying.replay(run, trial, kinds or all_kinds())
+    return replaying.replay(run, trial, kinds or NEEDED_KINDS)
 
 
 def simulation_again(run: Run, kinds: Grammar | None = None) -> Simulation:
@@ -294,7 +294,7 @@ def simulation_again(run: Run, kinds: Grammar | None = None) -> Simulation:
     Raises:
         RunError: a kept file was changed since.
     """
-    return replaying.simulation_again(run, kinds or all_kinds())
+    return replaying.simulation_again(run, kinds or NEEDED_KINDS)
 
 
 def folder_for(scene: Scene, simulation: Simulation, execution: Execution, runs: Path) -> tuple[Path, str]:

@@ -30,7 +30,7 @@ from tol3d.runs.block_files import CHECKSUMS
 from tol3d.runs.manifest import MANIFEST
 from tol3d.runs.run import SUMMARY
 from tol3d.runs.summary.kinds import default_kinds
-from tol3d.runs.summary.text import SchemaWarning, written
+from tol3d.runs.summary.text import SchemaWarning, typed, written
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import simulation_again
 
@@ -295,6 +295,17 @@ def test_a_missing_or_unknown_key_is_named(run: Path) -> None:
 
 
 # the schema -----------------------------------------------------------------------------------------
+
+
+def test_a_measure_of_no_kind_is_refused_by_the_kinds_of_all_mechanisms(run: Path) -> None:
+    summary = summary_in(run)
+    next(iter(summary["measures"].values()))["kind"] = "backlush"
+    said = []
+    for kinds in (None, default_kinds()):
+        with pytest.raises(RunError, match="backlush") as refused:
+            typed(summary, lambda place, words: RunError(f"{place}: {words}"), kinds)
+        said.append(str(refused.value))
+    assert said[0] == said[1]
 
 
 def test_the_schema_that_is_printed_is_valid_and_accepts_runs(tol3d: Command, whole: Path, train: Path) -> None:

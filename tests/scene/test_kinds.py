@@ -19,7 +19,10 @@ import tol3d
 from tol3d import kinds
 from tol3d.errors import InputError, SceneError
 from tol3d.scene import Grammar, read_scene
+from tol3d.scene.bundled import scene_path
+from tol3d.scene.entry import kind_of
 from tol3d.scene.part import PartSpec
+from tol3d.scene.schema import SECTIONS
 from tol3d.system.mechanism import Mechanism, mechanism_of
 
 TEXT = """\
@@ -254,6 +257,77 @@ def test_a_broken_mechanism_is_told_of_and_shipped_scenes_open(target: str, why:
     assert "springs 1.2: its mechanism springs" in done.stderr
     assert why in done.stderr
     assert done.stdout.strip() == tol3d.load_scene("spur_pair").scene
+
+
+# what a scene loads -------------------------------------------------------------------------------
+
+
+def test_the_sources_of_shipped_mechanisms_declare_all_their_kinds_but_shared_ones() -> None:
+    for path, mechanism in zip(kinds.SHIPPED, kinds.all_kinds().vocabularies, strict=False):
+        specs = [spec for section in SECTIONS for spec in mechanism.specs(section) if not spec.shared]
+        assert {kind_of(spec) for spec in specs} <= kinds._declared(path)
+        assert kinds._room(path) == mechanism.name
+
+
+@pytest.mark.parametrize(
+    ("scene", "loaded"),
+    [
+        ("spur_pair", {"gearing"}),
+        ("two_plates", {"assembly"}),
+        ("gearbox_in_housing", {"gearing", "assembly", "machine"}),
+        ("every_planetary_field", {"gearing", "planetary"}),
+        ("every_cycloid_field", {"gearing", "cycloid"}),
+    ],
+)
+def test_a_scene_has_the_kinds_of_its_own_mechanisms_and_means_the_same(scene: str, loaded: set[str]) -> None:
+    known, whole = kinds.NEEDED_KINDS, kinds.all_kinds()
+    found, same = (read_scene(scene_path(scene), each, settle=False) for each in (known, whole))
+    assert {each.name for each in found.grammar.vocabularies} == loaded
+    assert same.grammar == whole
+    assert found.model_dump(exclude_unset=True) == same.model_dump(exclude_unset=True)
+    assert found.grammar.vocabulary_of(found) == whole.vocabulary_of(same)
+
+
+def test_a_scene_of_gears_imports_no_other_mechanism(tmp_path: Path) -> None:
+    code = "import sys\nfrom tol3d.simulate import load\nload('spur_pair')\n"
+    code += "print(*{name.split('.')[1] for name in sys.modules if name.startswith('tol3d.')})"
+    rooms = set(in_a_process(tmp_path, code).stdout.split())
+    assert "gearing" in rooms
+    assert not {"assembly", "machine", "planetary", "cycloid"} & rooms
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "message"),
+    [
+        ("kind: mesh", "kind: planetari", 'did you mean "planetary"'),
+        ("tolerances:", "tolerances:\n  flat: {kind: flatnes, of: pinion.face}", 'did you mean "flatness"'),
+        ("seed: 1,", "seed: 1, profile_step: 9,", 'did you mean "profile_steps"'),
+        ("published:", "published:\n  ours: {cycloid_stages: {x: {}}}", "published.ours.cycloid_stages"),
+    ],
+)
+def test_what_is_wrong_in_a_scene_is_said_by_all_kinds(right: str, wrong: str, message: str, tmp_path: Path) -> None:
+    text = scene_path("spur_pair").read_text(encoding="utf-8")
+    assert right in text
+    path = tmp_path / "scene.yaml"
+    path.write_text(text.replace(right, wrong, 1), encoding="utf-8")
+    said = []
+    for known in (kinds.NEEDED_KINDS, kinds.all_kinds()):
+        with pytest.raises(SceneError, match=message) as refused:
+            read_scene(path, known)
+        said.append(str(refused.value))
+    assert said[0] == said[1]
+
+
+@pytest.mark.usefixtures("registered")
+def test_what_a_program_registered_is_known_to_scenes_beside_shipped_kinds(tmp_path: Path) -> None:
+    assert read_scene(written(tmp_path), kinds.NEEDED_KINDS).grammar == kinds.all_kinds()
+    assert read_scene(scene_path("spur_pair"), kinds.NEEDED_KINDS).grammar == kinds.all_kinds()
+
+
+def test_a_summary_is_read_by_the_kinds_of_its_measures() -> None:
+    own = kinds.summary_kinds({"mechanism": {"name": "gearing"}, "measures": {"play": {"kind": "normal_backlash"}}})
+    assert own.words == {kind_of(spec) for spec in kinds.all_kinds().vocabularies[0].measures}
+    assert kinds.summary_kinds({"mechanism": None, "measures": {"play": {"kind": []}}}) == kinds.summary_kinds()
 
 
 # new kinds of gears -------------------------------------------------------------------------------

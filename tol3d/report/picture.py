@@ -74,8 +74,8 @@ def _draw(
     summary: Mapping[str, Any],
     picture: Path,
 ) -> None:
-    order = pickle.dumps(sys.path) + pickle.dumps((picture, presenter, pictures, default_kinds(), json.dumps(summary)))
-    refused, errors = process.communicate(order)
+    order = (picture, presenter, pictures, default_kinds(summary), json.dumps(summary))
+    refused, errors = process.communicate(pickle.dumps(sys.path) + pickle.dumps(order))
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"
         warnings.warn(words, PictureWarning, stacklevel=2)

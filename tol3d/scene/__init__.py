@@ -7,19 +7,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tol3d.scene.grammar import Grammar, Vocabulary
+    from tol3d.scene.grammar import Grammar, Kinds, Vocabulary
     from tol3d.scene.load import read_scene, scene_from_python
     from tol3d.scene.schema import Scene
 
 _HOMES = {
     "Grammar": "tol3d.scene.grammar",
+    "Kinds": "tol3d.scene.grammar",
     "Scene": "tol3d.scene.schema",
     "Vocabulary": "tol3d.scene.grammar",
     "read_scene": "tol3d.scene.load",
     "scene_from_python": "tol3d.scene.load",
 }
 
-__all__ = ["Grammar", "Scene", "Vocabulary", "read_scene", "scene_from_python"]
+__all__ = ["Grammar", "Kinds", "Scene", "Vocabulary", "read_scene", "scene_from_python"]
 
 
 def __getattr__(name: str) -> Any:

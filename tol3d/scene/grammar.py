@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from importlib import import_module
 from types import ModuleType
-from typing import Annotated, Any, Final, Union
+from typing import Annotated, Any, Final, Protocol, Union
 
 from pydantic import Field, ValidationError, create_model
 
@@ -108,6 +108,16 @@ class Vocabulary:
         return specs
 
 
+class Kinds(Protocol):
+    """Kinds that scenes may have, of which those are loaded that a scene needs."""
+
+    def whole(self) -> "Grammar":
+        """All of them."""
+
+    def saying(self, words: Set[str]) -> "Grammar":
+        """Those of the vocabularies that have some words; all of them where that is not known."""
+
+
 @dataclass(frozen=True)
 class Grammar:
     """What scenes may say: the kinds of several vocabularies. Equal where these are; pickles.
@@ -135,6 +145,14 @@ class Grammar:
         published = {each.name: [*each.published.model_fields] for each in self.vocabularies if each.published}
         taken = dict.fromkeys(published_column_class().model_fields, "every run")
         _refuse_ambiguity("a key of its own in published", taken, published)
+
+    def whole(self) -> "Grammar":
+        """See Kinds."""
+        return self
+
+    def saying(self, words: Set[str]) -> "Grammar":
+        """See Kinds: it is loaded already."""
+        return self
 
     def kinds(self, section: str) -> Mapping[str, type[Entry]]:
         """The kinds of a section by their words, in the order of registration."""

@@ -26,7 +26,7 @@ from tol3d.scene.vector import Vector
 from tol3d.units import Quantity, shown, summed
 
 if TYPE_CHECKING:
-    from tol3d.scene.grammar import Grammar
+    from tol3d.scene.grammar import Kinds
 
 MOST_PARTS: Final = 2000  # of a scene; placing one takes 10 ms and 1 MB before any trial, and 300 are what is measured
 DEEPEST: Final = 8  # files that include each other; memory ends none, a reader's patience does
@@ -60,12 +60,12 @@ class Includes:
 
     Args:
         source: the scene's file.
-        grammar: the kinds that scenes may have.
+        kinds: what scenes may have.
         known: the files' contents, where they are known; none is read then.
     """
 
     source: Path
-    grammar: "Grammar"
+    kinds: "Kinds"
     known: Files | None
     files: dict[str, FileContent] = field(default_factory=dict)
     """What was read, by names from the scene's folder."""
@@ -103,7 +103,7 @@ class Includes:
         try:
             return Including.model_validate(data).include
         except ValidationError as error:
-            raise SceneError(*self.grammar.messages(error, data, origin)) from None
+            raise SceneError(*self.kinds.whole().messages(error, data, origin)) from None
 
     def _file(self, file: str, origin: Origin, here: KeyPath, chain: tuple[str, ...]) -> _Read:
         name = posixpath.normpath(posixpath.join(posixpath.dirname(chain[-1]) if chain else "", file))
@@ -141,7 +141,7 @@ class Includes:
         top = self.expanded(top, origin, chain)
         own = replace(origin, places=Places(top))
         data = {key: plain(child) for key, (_, child) in top.children.items() if key not in LEFT_OUT}
-        part: Scene = self.grammar.fragment.model_validate(data, context=own)
+        part: Scene = self.kinds.whole().fragment.model_validate(data, context=own)
         refuse(part, bad_names(part))
         for path, entry in part.entries().items():
             for place, _ in entry.file_names():

@@ -4,14 +4,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+from tol3d.errors import SceneError
 from tol3d.files import Files, read_file
 from tol3d.scene.bundled import scene_path
-from tol3d.scene.grammar import Grammar
+from tol3d.scene.grammar import Grammar, Kinds
 from tol3d.scene.include import Includes
-from tol3d.scene.node import Places, plain
+from tol3d.scene.node import Node, Places, plain
 from tol3d.scene.place import Origin
 from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
-from tol3d.scene.schema import Scene
+from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.settling import is_settled, settled
 from tol3d.scene.text import read_scene_text
 
@@ -20,7 +21,7 @@ Examine = Callable[[Scene], None]
 
 def read_scene(
     path: Path | str,
-    grammar: Grammar,
+    kinds: Kinds,
     *,
     trust_parts: bool = False,
     run_builders: bool = False,
@@ -35,7 +36,7 @@ def read_scene(
 
     Args:
         path: the YAML file, or the name of a scene that tol3d brings along.
-        grammar: the kinds of entry that it may have.
+        kinds: what it may have; a Grammar, or kinds of which those are loaded that it names.
         trust_parts: whether the scene may name files outside its own folder.
         run_builders: whether programs that it names as builders of its parts may be run.
         files: the contents of the files that it names, where they are known; none is read then, and nothing built.
@@ -47,14 +48,30 @@ def read_scene(
     """
     source = scene_path(path)
     top, origin = read_scene_text(source)
-    includes = Includes(source, grammar, files)
+    includes = Includes(source, kinds, files)
     top = includes.expanded(top, origin)
     origin = replace(origin, places=Places(top), files=includes.files, included=tuple(includes.files))
-    scene = grammar.scene.model_validate(plain(top), context=origin)
-    scene = _with_files(scene, origin, files, trust_parts=trust_parts)
+
+    def checked(grammar: Grammar) -> Scene:
+        found = grammar.scene.model_validate(plain(top), context=origin)
+        return _with_files(found, origin, files, trust_parts=trust_parts)
+
+    grammar = kinds.saying(_words(top))
+    try:
+        scene = checked(grammar)
+    except SceneError:
+        if grammar is kinds.whole():
+            raise
+        scene = checked(kinds.whole())  # its message names the nearest of all kinds
     if examine is not None:
         examine(scene)
     return _settled(scene, files, run_builders=run_builders) if settle else scene
+
+
+def _words(top: Node) -> frozenset[str]:
+    """The kinds of its entries, as far as they are words."""
+    kinds = (entry.held_value("kind") for section in SECTIONS for _, entry in top.held(section).values())
+    return frozenset(kind for kind in kinds if isinstance(kind, str))
 
 
 def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: bool = False) -> Scene:

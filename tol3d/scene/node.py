@@ -31,6 +31,10 @@ class Node(NamedTuple):
         """What the value of a key holds; nothing where there is no such key."""
         return self.children[key][1].children if key in self.children else {}
 
+    def held_value(self, key: str) -> Any:
+        """The value of a key without what it holds; None where there is no such key."""
+        return self.children[key][1].value if key in self.children else None
+
 
 def branch(value: dict[Any, Any] | list[Any], place: Place, children: Children) -> Node:
     """A mapping or a list.

@@ -9,7 +9,7 @@ from typing import Any
 from tol3d.errors import InputError
 from tol3d.runs.fingerprint import differences
 from tol3d.runs.run import Run, open_run
-from tol3d.scene import Grammar, read_scene
+from tol3d.scene import Kinds, read_scene
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
@@ -47,7 +47,7 @@ class Replay:
     status: str
 
 
-def simulation_again(run: Run, kinds: Grammar) -> Simulation:
+def simulation_again(run: Run, kinds: Kinds) -> Simulation:
     """The simulation of a run, from the files that it kept, with the study it was run with.
 
     Raises:
@@ -60,7 +60,7 @@ def simulation_again(run: Run, kinds: Grammar) -> Simulation:
     return replace(again, study=Study(**study, until=until))
 
 
-def replay(run: Run | Path | str, trial: int, kinds: Grammar) -> Replay:
+def replay(run: Run | Path | str, trial: int, kinds: Kinds) -> Replay:
     """Trial k of a run again: its deviations, build, contacts and values.
 
     Bit for bit with the packages and on the kind of processor that made the run, elsewhere to rounding.

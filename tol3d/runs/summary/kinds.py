@@ -140,8 +140,8 @@ def _of_kinds(measure: type[MeasureSummary], words: tuple[str, ...]) -> type[Mea
     return create_model(measure.__name__, __base__=measure, __doc__=measure.__doc__, kind=kind)
 
 
-def default_kinds() -> SummaryKinds:
-    """What all mechanisms add; loaded when it is first asked for, since runs/ imports no mechanism."""
+def default_kinds(summary: Mapping[str, Any] | None = None) -> SummaryKinds:
+    """What all mechanisms add, or those of a summary; loaded when it is asked for, since runs/ imports no mechanism."""
     module, name = HOME
-    found: SummaryKinds = getattr(import_module(module), name)()
+    found: SummaryKinds = getattr(import_module(module), name)(summary)
     return found

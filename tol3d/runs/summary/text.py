@@ -61,21 +61,24 @@ def typed(
         fault: makes the error of a place and what is wrong there, which is raised.
         kinds: what it may hold; by default what this package's mechanisms add.
     """
-    kinds = kinds or default_kinds()
+    tried = kinds or default_kinds(summary)
     try:
-        return kinds.run.model_validate(summary)
+        return tried.run.model_validate(summary)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
+    whole = kinds or default_kinds()
+    if tried is not whole:
+        return typed(summary, fault, whole)  # its message knows all kinds
     context = first.get("ctx", {})
     extra = context.get("key") if first["type"] == "unknown_key" else context.get("field")
-    place = ".".join(map(str, (*_without_tag(first["loc"], kinds), *([extra] if extra else []))))
+    place = ".".join(map(str, (*_without_tag(first["loc"], tried), *([extra] if extra else []))))
     got = "" if first["type"] == "value_refused" else f", got {shown(first['input'])}"
     raise fault(_printable(place or "the whole"), _printable(f"{first['msg']}{got}"))
 
 
 def missing_mechanism(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
     """The message for a summary with kinds of measures that no mechanism here has; "" where it has none such."""
-    unknown = (kinds or default_kinds()).unknown_in(summary)
+    unknown = (kinds or default_kinds(summary)).unknown_in(summary)
     maker = summary.get("mechanism")
     name, module = (maker.get("name"), maker.get("module")) if isinstance(maker, Mapping) else (None, None)
     if not unknown or str(module).partition(".")[0] == OWN_PACKAGE:  # its own are always there: damaged, or another's
