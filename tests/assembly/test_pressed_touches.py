@@ -47,7 +47,9 @@ def test_a_force_holds_where_it_is_balanced_by_contacts_that_push(socket: bool) 
     for direction in rng.normal(size=(300, 3)):
         direction /= np.linalg.norm(direction)
         pushes, left = nnls(normals.T, -direction)
-        pressed = replace(assembly.moves[1], pressed=direction)
+        touch = assembly.moves[1]
+        assert isinstance(touch, Touch)
+        pressed = replace(touch, pressed=direction)
         own = replace(assembly, moves=(assembly.moves[0], pressed))
         if left < 1e-9 and pushes.min() > 1e-6:
             _, codes = placing.values(own, np.zeros((1, own.width)), ["x"])["x"]

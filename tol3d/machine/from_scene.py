@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from tol3d.assembly.from_scene.assembly import pose_names
 from tol3d.assembly.grammar.measures import PositionErrorSpec
 from tol3d.assembly.grammar.moves import StatedMoveSpec
@@ -21,6 +23,7 @@ from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.machine.bores import Bores, bores_of
 from tol3d.machine.counted import refuse_counted_twice
 from tol3d.machine.drives import drives_of
+from tol3d.machine.grammar.open_chain import FLANK, OpenChainSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.machine.joined import HIDDEN, is_hidden
 from tol3d.machine.measure import WorstMeasure
@@ -64,10 +67,20 @@ def machine_system(scene: Scene) -> MachineSystem:
         worlds=place.worlds,
         off_shafts=tuple(_off_shafts(scene, bores)),
         drives=tuple(drives_of(scene, model)),
+        up=_up(scene),
     )
     refuse_counted_twice(scene, made)
     _refuse_turned_bores(scene, made)
     return made
+
+
+def _up(scene: Scene) -> tuple[float, float, float]:
+    """Against the gravity of a chain; along y where none is said."""
+    for spec in scene.of(OpenChainSpec).values():
+        if spec.gravity is not None:
+            x, y, z = (-np.array(spec.gravity) / np.linalg.norm(spec.gravity) + 0.0).tolist()
+            return x, y, z
+    return 0.0, 1.0, 0.0
 
 
 def _parts_of(scene: Scene) -> Scene:
@@ -170,7 +183,7 @@ def _effect(model: Model, shaft: HousedShaft, moved: float, fixed: float) -> Any
 
 
 def _in_order(scene: Scene, gears: GearSystem, drawn: AssemblySystem) -> tuple[Any, ...]:
-    """All contributors in the scene's order; a copy's after its original's; one of both is that of the gears."""
+    """All contributors in the scene's order, flanks last; a copy's after its original's; one of both is the gears'."""
     by_parts = [own for own in drawn.contributors if not is_hidden(own)]
     every: tuple[Any, ...] = (*by_parts, *gears.contributors)
     by_name = {str(own.name): own for own in every}
@@ -178,5 +191,5 @@ def _in_order(scene: Scene, gears: GearSystem, drawn: AssemblySystem) -> tuple[A
     before: dict[str, int] = {own.name: places[own.name] for own in gears.contributors}
     last = 0
     for each in by_parts:
-        last = before[each.name] = places.get(each.name, last)
+        last = before[each.name] = len(places) if each.kind == FLANK else places.get(each.name, last)
     return tuple(by_name[name] for name in sorted(by_name, key=lambda name: before[name]))

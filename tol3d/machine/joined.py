@@ -63,6 +63,7 @@ class Joined:
         worlds: by the first shaft of each train in bores, where its world lies in that of the parts (4, 4).
         off_shafts: warnings of bores beyond the ends of their shafts.
         drives: joints that trains turn.
+        up: unit vector to the top of a picture, against gravity if there is some.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Joined:
     worlds: Mapping[str, Array]
     off_shafts: tuple[str, ...] = ()
     drives: tuple[JointDrive, ...] = ()
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     @property
     def drawn(self) -> AssemblySystem:

@@ -119,6 +119,15 @@ class MachineRoad:
         values, codes, _ = self._read(trials, self.system.bores.names)
         return self._seen(trials, values, codes)
 
+    def in_pose(self, trials: Trials, pose: str) -> Array:
+        """Deviations (trials, columns) of the assembly in a pose, every joint turned as its train lets it."""
+        readings = {drive.readings[pose].name: drive.readings[pose] for drive in self.system.drives}
+        if not readings:
+            return self.system.of_assembly(trials.deviations)
+        seen, _ = self.gear_trials(trials)
+        gears = self.gears.answers(seen, list(readings.values()))
+        return self._turned(trials, pose, _turned_by(gears, readings))
+
     # joints -----------------------------------------------------------------------------------------
 
     def _turning(self, names: Iterable[str], worst: Sequence[WorstMeasure]) -> list[tuple[JointDrive, str]]:
@@ -150,7 +159,7 @@ class MachineRoad:
             reason = np.asarray(details.get(reason_column(name), np.full(len(trials), "")))
             for drive in drives:
                 failed = turned.failed[drive.readings[pose].name] & (before == 0)
-                reason = np.where(failed, f"joint {drive.joint}", reason)
+                reason = np.where(failed, f"train of {drive.joint}", reason)
                 before = np.where(failed, np.int8(NOT_TURNED), before).astype(np.int8)
             status[name], reasons[reason_column(name)] = before, reason
             found[name] = np.where((before != 0)[:, None], np.nan, found[name])
@@ -194,7 +203,7 @@ class MachineRoad:
                 largest, place = np.where(larger, highest, largest), np.where(larger, pose, place)
             for drive in drives:
                 failed = turned.failed[drive.readings[pose].name] & (status == 0)
-                reason = np.where(failed, f"joint {drive.joint}", reason)
+                reason = np.where(failed, f"train of {drive.joint}", reason)
                 status = np.where(failed, np.int8(NOT_TURNED), status).astype(np.int8)
         lost = status != 0
         details = {f"worst pose:{measure.name}": np.where(lost, "", place), reason_column(measure.name): reason}

@@ -122,6 +122,10 @@ class MachineSystem(Joined):
         """Trials as the gears see them, on the axes that placed bores give; and what became of these (trials,)."""
         return MachineRoad(self, self.gears.road(ANALYTIC_ROAD, {}), exact=True).gear_trials(trials)
 
+    def in_pose(self, trials: Trials, pose: str) -> Array:
+        """Deviations (trials, columns) of the assembly as the exact road has them in a pose, its joints turned."""
+        return MachineRoad(self, self.gears.road(EXACT, {}), exact=True).in_pose(trials, pose)
+
     # its roads --------------------------------------------------------------------------------------
 
     def is_compiled(self, road: str) -> bool:
@@ -277,10 +281,13 @@ class MachineSystem(Joined):
         slopes, slices = own.slopes_of(measure.name).coefficients, component_slices(self.drawn)
         forms = []
         for drive, pose in turning:
-            its = self.closed_form(drive.readings[pose])
-            factor = HALF * drive.sides[pose] * float(slopes[slices[drive.turn].start])
-            if its is None or not drive.sides[pose]:
+            slope = float(slopes[slices[drive.turn].start])
+            if not slope:
+                continue  # it acts to second order alone
+            its = self.closed_form(drive.readings[pose]) if drive.sides[pose] else None
+            if its is None:
                 return None
+            factor = HALF * drive.sides[pose] * slope
             forms.append((factor, its))
         return with_joints(form, forms, [each.name for each in self.contributors])
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from tol3d.scene import Scene
 
 AXES: Final = ("axis", "cylinder")
+FLANK: Final = "flank"
+"""The kind of such a contributor."""
 READ_BY: Final = "tol3d.machine.open_chains"
 Angle = Annotated[Quantity, Of("angle")]
 
@@ -139,7 +141,7 @@ class OpenChainSpec(StatedMoveSpec):
         turns = (PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"]) for joint in self.joints)
         words = "the end of its play at which {} lies, for nothing loads it"
         free = (
-            PlainContributor(flank_name(joint), "flank", Scalar(EitherSide()), "1", 1.0, words.format(joint))
+            PlainContributor(flank_name(joint), FLANK, Scalar(EitherSide()), "1", 1.0, words.format(joint))
             for joint in named(f"{READ_BY}:free_joints")(scene, self)
         )
         return (*turns, *free)

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from tol3d.study.simulation import Simulation
 
 
-class GearboxPresenter(GearPresenter):
-    """The presenter of gears in a housing; see `tol3d.report.presenter.Presenter`."""
+class MachinePresenter(GearPresenter):
+    """The presenter of machines; see `tol3d.report.presenter.Presenter`."""
 
     def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
         """Tables of every train, and the laws of the zones of bores and other features."""
@@ -45,4 +45,4 @@ def _lazily(module: str) -> Any:
     return import_module(f"{__name__}.{module}")
 
 
-PRESENTER: Final = GearboxPresenter()
+PRESENTER: Final = MachinePresenter()

@@ -1,6 +1,7 @@
 """Builds of gears in a housing as they are shown: seated gears, and the features of the parts around them."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -33,12 +34,14 @@ class ShownMachine:
     Args:
         gears: at rest on the axes that the bores of the build give.
         system: whose build it is.
-        placed: the parts around them, in their own world.
+        placed: the parts around them in the first pose, in their own world.
+        poses: the parts in every pose, where there are some.
     """
 
     gears: GearDisplay
     system: MachineSystem
     placed: Placed
+    poses: Mapping[str, Placed] = field(default_factory=dict)
 
     @property
     def label(self) -> str:
@@ -52,8 +55,10 @@ class ShownMachine:
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
-        """The worlds of the gears, each with the parts around them."""
-        return tuple(self._with_parts(world) for world in self.gears.worlds)
+        """The parts in every pose; then the worlds of the gears, each with the parts around them."""
+        up = self.system.up
+        posed = (World(pose, bodies(own, COLOURS), points=own.points, up=up) for pose, own in self.poses.items())
+        return (*posed, *(self._with_parts(world) for world in self.gears.worlds))
 
     def _with_parts(self, world: World) -> World:
         into = self._world_from_parts(world.name)
@@ -114,8 +119,10 @@ def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> Show
     system = seen.simulation.system
     assert isinstance(system, MachineSystem)
     trials = seen.trials if magnify == 1.0 else magnified(system, seen.trials, magnify)
-    deviations = trials.deviations[:1, system.assembly_places]
-    placed = placed_in(system.drawn.assembly, deviations)
-    if placed is None:
-        raise RunError(f"{label}: cannot be shown: {seen.status}")
-    return ShownMachine(gears, system, placed)
+    poses = {}
+    for pose, own in system.poses.items():
+        placed = placed_in(own.assembly, system.in_pose(trials.part(0, 1), pose))
+        if placed is None:
+            raise RunError(f"{label}: cannot be shown: {seen.status}")
+        poses[pose] = placed
+    return ShownMachine(gears, system, next(iter(poses.values())), poses if system.drives else {})

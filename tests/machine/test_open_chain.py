@@ -1,0 +1,252 @@
+"""Arms whose links trains turn, against homogeneous matrices and sums worked out here."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from machine.arm_by_hand import (
+    AXES,
+    MASSES,
+    POSES,
+    TOOL,
+    arm_scene,
+    columns_of,
+    errors,
+    plays,
+    system_of,
+    tool_by_hand,
+)
+from machine.housed import Array
+
+from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d.machine.chain import Chain
+from tol3d.machine.system import MachineSystem
+from tol3d.study.draws import drawn
+from tol3d.study.overrides import simulation_of
+from tol3d.system.trials import Trials
+
+WORST = """
+  worst: {kind: worst_position_error, of: link 3.tool, from: base}
+  worst of any: {kind: worst_position_error, of: link 3.tool, from: base, flanks: any}
+  size home: {kind: position_error, of: link 3.tool, from: base, at: home}
+  size up: {kind: position_error, of: link 3.tool, from: base, at: up}"""
+SMALL = 24
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> MachineSystem:
+    return system_of(arm_scene(measures=errors() + WORST), tmp_path_factory.mktemp("arm"))
+
+
+@pytest.fixture(scope="module")
+def trials(arm: MachineSystem, tmp_path_factory: pytest.TempPathFactory) -> Trials:
+    place = tmp_path_factory.mktemp("arm") / "arm.yaml"
+    place.write_text(arm_scene(measures=errors() + WORST), "utf-8")
+    simulation = simulation_of(load_scene(place), Overrides())
+    return drawn(simulation, 0, SMALL)
+
+
+def answers(system: MachineSystem, trials: Trials, road: str) -> dict[str, Array]:
+    found = system.road(road, system.materials(road)).answers(trials, system.measures)
+    return {name: values[:, 0] for name, values in found.values.items()}
+
+
+def turns(system: MachineSystem, trials: Trials, pose: str, sides: Array) -> Array:
+    return np.radians(POSES[pose]) + sides / 2 * plays(system, trials, pose)
+
+
+def sides_of(system: MachineSystem, trials: Trials) -> Array:
+    """Joint 1 is vertical: its flank is drawn. Gravity lowers links 2 and 3: about axes that look to -y, below 0."""
+    flank = columns_of(system, trials, "flank of joint 1")[:, 0]
+    return np.stack([flank, np.full(len(trials), -1.0), np.full(len(trials), -1.0)], axis=1)
+
+
+def bores(system: MachineSystem, trials: Trials, k: int) -> list[list[tuple[Array, Array]]]:
+    """How far both ends of every bore are displaced, by trial and joint, along the bore's x and y in the world."""
+    found = []
+    for row in range(len(trials)):
+        its = []
+        for joint, (_, z) in enumerate(AXES):
+            own = columns_of(system, trials, f"bore {joint + 1}")[row]
+            x = np.eye(3)[0] - np.array(z) * z[0]
+            x /= np.linalg.norm(x)
+            y = np.cross(z, x)
+            its.append((own[0] * x + own[1] * y, own[2] * x + own[3] * y))
+        found.append(its)
+    return found
+
+
+def loose(rng: np.random.Generator, flanks: int) -> Trials:
+    """Of three stages that all have play: thicknesses and run-outs in turn, then flanks."""
+    found = Trials(rng.normal(0.0, 0.003, (SMALL, 9 + flanks)), {f"stage {k}": np.zeros(SMALL) for k in (1, 2, 3)})
+    found.deviations[:, [0, 3, 6]] -= 0.06
+    found.deviations[:, 9:] = np.where(rng.random((SMALL, flanks)) < 0.5, -1.0, 1.0)
+    return found
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_the_tool_is_where_homogeneous_matrices_have_it(arm: MachineSystem, trials: Trials, pose: str) -> None:
+    found = answers(arm, trials, "exact")
+    turned, ends = turns(arm, trials, pose, sides_of(arm, trials)), bores(arm, trials, 3)
+    nominal = tool_by_hand(AXES, TOOL, np.radians(POSES[pose]).tolist())
+    for row in range(len(trials)):
+        by_hand = tool_by_hand(AXES, TOOL, turned[row].tolist(), ends[row]) - nominal
+        assert [found[f"{c} {pose}"][row] for c in "xyz"] == pytest.approx(by_hand, abs=1e-9)
+
+
+def test_to_first_order_each_joint_moves_the_tool_by_half_its_play_times_its_lever(tmp_path: Path) -> None:
+    system = system_of(arm_scene(bores=False, measures=errors()), tmp_path)
+    rng = np.random.default_rng(5)
+    trials = loose(rng, flanks=1)
+    found, exact = answers(system, trials, "analytic"), answers(system, trials, "exact")
+    for pose, inputs in POSES.items():
+        play = plays(system, trials, pose, "analytic")
+        moved = np.zeros((SMALL, 3))
+        for k, (at, z) in enumerate(AXES):
+            before = [*np.radians(inputs[:k]), *np.zeros(3 - k)]
+            o, tip = tool_by_hand(AXES, at, before), tool_by_hand(AXES, TOOL, np.radians(inputs).tolist())
+            axis = tool_by_hand(AXES, np.array(at) + np.array(z), before) - o
+            moved += np.outer(sides_of(system, trials)[:, k] / 2 * play[:, k], np.cross(axis, tip - o))
+        for k, component in enumerate("xyz"):
+            assert found[f"{component} {pose}"] == pytest.approx(moved[:, k], abs=1e-12)
+            assert exact[f"{component} {pose}"] == pytest.approx(moved[:, k], abs=2e-2)
+
+
+def test_a_chain_of_other_numbers_is_where_matrices_have_it(tmp_path: Path) -> None:
+    rng = np.random.default_rng(8)
+    for _ in range(4):
+        axes = [(rng.uniform(-300.0, 300.0, 3).round(3), rng.normal(size=3).round(4)) for _ in range(3)]
+        axes = [(at, z / np.linalg.norm(z)) for at, z in axes]
+        tool, poses = (
+            rng.uniform(-400.0, 400.0, 3).round(3).tolist(),
+            {pose: rng.uniform(-180, 180, 3).round(2).tolist() for pose in POSES},
+        )
+        text = arm_scene(axes=axes, tool=tool, poses=poses, bores=False, measures=errors(), masses=(), gravity="")
+        system = system_of(text, tmp_path)
+        free = loose(rng, flanks=3)
+        found = answers(system, free, "exact")
+        for pose, inputs in poses.items():
+            turned = np.radians(inputs) + free.deviations[:, -3:] / 2 * plays(system, free, pose)
+            nominal = tool_by_hand(axes, tool, np.radians(inputs).tolist())
+            by_hand = np.array([tool_by_hand(axes, tool, own.tolist()) - nominal for own in turned])
+            for k, component in enumerate("xyz"):
+                assert found[f"{component} {pose}"] == pytest.approx(by_hand[:, k], abs=1e-6)  # as axes are written
+
+
+def test_the_worst_is_the_largest_over_poses_and_flanks(arm: MachineSystem, trials: Trials) -> None:
+    for road in ("exact", "analytic"):
+        found = answers(arm, trials, road)
+        assert (found["worst"] == np.maximum(found["size home"], found["size up"])).all()
+    found, largest, ends = answers(arm, trials, "exact"), np.zeros(SMALL), bores(arm, trials, 3)
+    for pose, inputs in POSES.items():
+        nominal = tool_by_hand(AXES, TOOL, np.radians(inputs).tolist())
+        for sides in np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T:
+            turned = turns(arm, trials, pose, sides[None])
+            sizes = [
+                np.linalg.norm(tool_by_hand(AXES, TOOL, own.tolist(), ends[row]) - nominal)
+                for row, own in enumerate(turned)
+            ]
+            largest = np.maximum(largest, sizes)
+    assert found["worst of any"] == pytest.approx(largest, abs=1e-9)
+
+
+def test_contributors_of_every_joint_and_bore_act(arm: MachineSystem) -> None:
+    by_name = {own.name: own for own in arm.measures}
+    of_worst = {own.name for own in arm.acting(by_name["worst"])}
+    assert of_worst == {own.name for own in arm.contributors}
+    assert "pinion 1 thickness" not in {own.name for own in arm.acting(by_name["z home"])}  # a vertical axis
+    assert {"pinion 2 thickness", "wheel 3 run-out", "bore 1"} <= {own.name for own in arm.acting(by_name["z home"])}
+
+
+def test_a_closed_form_adds_up_what_joints_and_bores_do(tmp_path: Path) -> None:
+    text = arm_scene(measures="\n  z home: {kind: position_error, of: link 3.tool, from: base, component: z, at: home}")
+    place = tmp_path / "arm.yaml"
+    place.write_text(text, "utf-8")
+    count = 4000
+    run = run_scene(place, overrides=Overrides(trials=count), out=tmp_path / "run").summary["measures"]["z home"]
+    form, analytic = run["analytic_closed_form"], run["analytic"]
+    assert form["mean"] == pytest.approx(analytic["mean"], abs=4 * analytic["sigma"] / math.sqrt(count))
+    assert form["sigma"] == pytest.approx(analytic["sigma"], rel=4 / math.sqrt(2 * count))
+    geometric = sum(own["geometric_percent"] for own in run["contributors"])
+    assert geometric == pytest.approx(100.0, abs=3.0)
+
+
+def test_a_joint_that_turns_the_other_way_on_one_road_is_told(tmp_path: Path, monkeypatch: Any) -> None:
+    from tol3d.assembly.torsors.torsor import cross_matrix
+
+    def turned_back(self: Chain, world: Any) -> Any:
+        for joint in self.joints:
+            at, z = world.origin(joint.axis), world.axis(joint.axis)
+            sign = -1.0 if joint.name == "joint 3" else 1.0
+            turned = world.columns.zeros(6)
+            turned[:3, joint.column], turned[3:, joint.column] = sign * cross_matrix(at) @ z, sign * z
+            world = world.with_part_at(
+                joint.part, world.placed(joint.axis) + turned - world.on_body(joint.seat, joint.part)
+            )
+        return world
+
+    monkeypatch.setattr(Chain, "displaced", turned_back)
+    place = tmp_path / "arm.yaml"
+    place.write_text(arm_scene(measures=errors()), "utf-8")
+    run = run_scene(place, overrides=Overrides(trials=400), out=tmp_path / "run").summary
+    assert run["measures"]["z home"]["agreement"]["explanation"]["faults"] != []
+
+
+def test_what_a_jammed_train_carries_is_not_built_and_says_which(tmp_path: Path) -> None:
+    text = arm_scene(measures=errors()).replace("lower: -60 um, upper: -30 um", "lower: -40 um, upper: 20 um", 1)
+    place = tmp_path / "arm.yaml"
+    place.write_text(text, "utf-8")
+    system = system_of(text, tmp_path)
+    trials = drawn(simulation_of(load_scene(place), Overrides()), 0, 400)
+    found = system.road("exact", {}).answers(trials, system.measures)
+    jams = plays(system, trials, "home")[:, 0] < 0.0
+    assert 0 < np.count_nonzero(jams) < 400
+    codes = np.array([system.statuses.texts[code] for code in found.status["y home"]])
+    assert (codes[jams] == "no build").all()
+    assert (codes[~jams] == "ok").all()
+    assert (found.details["reason:y home"][jams] == "train of joint 1").all()
+    assert np.isnan(found.values["y home"][jams, 0]).all()
+
+
+LAST = "joint 3: -45.0 deg"
+PLACED = "link 2:\n    kind: solid\n    placed: {at: ["
+LINKS = "link 1, link 2, link 3"
+WRONG = {
+    "five of six": (LAST, "", "poses.up: expected an input of each of the 3 joints, got none of 'joint 3'"),
+    "another joint": (
+        LAST, "joint 3: 0 deg, joint 4: 0 deg", "expected a joint of joint 1, joint 2, joint 3, got 'joint 4'"
+    ),
+    "axes apart": (f"{PLACED}50 mm", f"{PLACED}51 mm", "got 'link 2.pilot' 1 mm beside 'link 1.bore'"),
+    "no such pose": ("z, at: up", "z, at: upp", "z up.at: expected one of the poses home, up, got 'upp'"),
+    "a train twice": (
+        "train: drive 3", "train: drive 2", "a train that turns one joint, got 'drive 2', which turns 'joint 2' too"
+    ),
+    "placed twice": (
+        "link 3.pilot], train", "link 2.pilot], train", "another link after each joint, got 'link 2' after two"
+    ),
+    "masses without gravity": ("\n    gravity: [0, 0, -1]", "", "gravity: expected its direction beside masses"),
+    "a mass elsewhere": ("- {on: link 2", "- {on: base", f"expected a link of the chain: {LINKS}, got 'base'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_what_is_no_chain_is_refused_in_one_line(wrong: str, tmp_path: Path) -> None:
+    old, new, expected = WRONG[wrong]
+    text = arm_scene(measures=errors())
+    assert old in text
+    with pytest.raises(SceneError) as refused:
+        system_of(text.replace(old, new, 1), tmp_path)
+    assert expected in str(refused.value)
+    assert len(str(refused.value).splitlines()) == 1
+
+
+def test_masses_decide_the_flank(tmp_path: Path) -> None:
+    system = system_of(arm_scene(measures=errors(), masses=[*MASSES, (2, 100.0, (-400.0, 0.0, 0.0))]), tmp_path)
+    sides = {drive.joint: dict(drive.sides) for drive in system.drives}
+    torque = 10.0 * 200.0 + 5.0 * 550.0 + 100.0 * 0.0  # about joint 2 at home: the counterweight hangs above it
+    assert torque > 0.0
+    assert sides["joint 1"] == {"home": 0, "up": 0}
+    assert sides["joint 2"]["home"] == -1
+    assert sides["joint 3"]["home"] == 1
