@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from assembly_trials import Assembled
+from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from places import SCENES
-from plates_with_pins import deviations, made
+from plates_with_pins import deviations, made, plates
 from scipy.optimize import linprog, nnls
 from scipy.stats import norm
 from thinned import thinned
@@ -103,6 +103,17 @@ def test_two_pins_are_not_built_where_their_distances_say_so(tmp_path: Path) -> 
     assert set(codes) == {OK, NO_BUILD}
     share, expected = (codes == NO_BUILD).mean(), 2 * norm.cdf(-0.15 / math.hypot(0.12, 0.01118034))
     assert share == pytest.approx(expected, abs=4 * math.sqrt(expected * (1 - expected) / len(rows)))
+
+
+@pytest.mark.parametrize("road", ["exact", "analytic"])
+def test_holes_that_are_drawn_further_apart_than_their_pins_take_half_of_that_from_each_clearance(
+    tmp_path: Path, road: str
+) -> None:
+    """0.1 mm of 80: of both clearances of 75 um on the radius 50 are gone before anything deviates."""
+    text = plates(TWO, 10.15, 10.0).replace("hole 1: {kind: cylinder, at: [80.0", "hole 1: {kind: cylinder, at: [80.1")
+    own = assembled(text, tmp_path)
+    slack = read(own, np.zeros((1, own.system.assembly.width)), road)["slack"]
+    assert slack[0] == pytest.approx(0.025, abs=1e-9)
 
 
 @pytest.mark.slow

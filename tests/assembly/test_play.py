@@ -69,6 +69,17 @@ def test_a_tongue_leans_in_its_slot_until_its_corners_touch(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("road", ROADS)
+def test_what_is_drawn_aside_of_its_slot_is_centred_in_it(tmp_path: Path, road: str) -> None:
+    """The key stands 0.3 mm aside on the drawing and the plate 0.2 mm; first order sees 120 mm as 0.1 mm longer."""
+    text = key(20.03, "{kind: centred}").replace("float: {kind: random} ", "float: {kind: centred} ")
+    aside = text.replace("  key:\n", "  key:\n    placed: {at: [0 mm, 0.3 mm, 0 mm]}\n", 1)
+    aside = aside.replace("  plate:\n", "  plate:\n    placed: {at: [0.1 mm, -0.2 mm, 0 mm]}\n", 1)
+    for name, values in assembled(text, tmp_path).drawn(3, road).items():
+        within = 0.1 / 120 * 1.5 * np.abs(values).max() if road == "analytic" and "most" in name else 0.0
+        assert assembled(aside, tmp_path).drawn(3, road)[name] == pytest.approx(values, abs=within + 1e-9), name
+
+
+@pytest.mark.parametrize("road", ROADS)
 def test_measures_over_the_whole_play(tmp_path: Path, road: str) -> None:
     """Problem 13 at nominal sizes: |1 - x/L| c1 + x/L c2 along y, sqrt(1 + (y/L)^2) c1 + y/L c2 along x; no float."""
     more = "".join(

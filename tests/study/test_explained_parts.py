@@ -70,7 +70,7 @@ def scaled(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> I
     thinned(
         [
             pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
-            for own in (*shipped("assembly"), *shipped("gearbox"))
+            for own in (*shipped("assembly"), *shipped("machine"))
         ],
         4,
     ),

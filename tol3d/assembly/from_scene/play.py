@@ -161,7 +161,10 @@ def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Ma
         words = f"expected features that share a stretch nominally, got {outer.name!r} outside {inner.name!r}"
         return f"{words}; place the parts, or say whose ends count as `over`"
     back = np.linalg.inv(seen)
-    return Engagement(inner.name, outer.name, places, places @ back[:3, :3].T + back[:3, 3])
+    opposite = places @ back[:3, :3].T + back[:3, 3]
+    # on the pin's axis or in the tab's middle, however far aside it is drawn of its hole or slot
+    opposite[:, [0, 1] if isinstance(outer.shape, Axis) else [2]] = 0.0
+    return Engagement(inner.name, outer.name, places, opposite)
 
 
 def _ends(feature: Feature) -> Array:
