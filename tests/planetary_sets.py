@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh, Spring
+from tol3d.planetary.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.set_mesh import SetGear, SetMesh
 
 Array = NDArray[np.float64]
 ALPHA = math.radians(20)

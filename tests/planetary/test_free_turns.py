@@ -23,7 +23,8 @@ from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
 from tol3d.planetary.contact import Contact
 from tol3d.planetary.deviated import Acts, Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.set_mesh import SetGear, SetMesh
 from tol3d.planetary.stack_up import StackUp
 
 NONE = np.zeros(1)

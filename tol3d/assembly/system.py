@@ -19,6 +19,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.measures import PoseErrorSpec
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
+from tol3d.assembly.moments import moments_of, widely
 from tol3d.assembly.nominal_relations import misses
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
@@ -32,7 +33,6 @@ from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
@@ -52,9 +52,6 @@ WITNESS: Final = "fcl"
 MESHED_WITNESS: Final = RoadKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
 FINER: Final = 0.25
 """Of the chord error that is stated: what meshes of half the step have."""
-
-MOTIONS: Final = 384
-"""At which it is asked where parts may be nearest; half of them twice as wide as trials are."""
 
 FRAME: Final = "datum frame "
 """How messages of the roads begin that are of a datum frame; others begin with a place in the scene."""
@@ -275,17 +272,6 @@ class ClearanceSystem(WitnessedSystem):
         return self.assembly.measures[measure.name].chord_error * measure.per_internal
 
 
-def moments_of(contributor: Contributor) -> tuple[Array, Array]:
-    """Mean (components,) and covariance (components, components) of a contributor [mm, K]."""
-    draw = contributor.draw
-    if isinstance(draw, ZoneDraw):
-        return draw.mean_vector, draw.covariance
-    mean = np.array(draw.mean(turning=False))
-    if isinstance(draw, JointDraw):
-        return mean, draw.covariance
-    return mean, draw.sigma**2 * np.eye(len(mean))
-
-
 def assembly_system(scene: Scene, pose: str = "") -> AssemblySystem:
     """What a scene of an assembly means.
 
@@ -330,19 +316,6 @@ def _faced(placed: Meant) -> Assembly:
         return torsors.displacements(bare, part, after, widely(placed.contributors))
 
     return with_facing(placed.assembly, motions)
-
-
-def widely(contributors: Sequence[Contributor]) -> Array:
-    """Deviations (trials, columns) like those of trials and twice as wide, the same in every process [mm, K]."""
-    rng = np.random.default_rng(0)
-    columns = []
-    for own in contributors:
-        mean, covariance = moments_of(own)
-        sizes, axes = np.linalg.eigh(covariance)
-        normal = rng.normal(size=(MOTIONS, len(mean))) * np.sqrt(np.maximum(sizes, 0.0))
-        normal[::2] *= 2.0
-        columns.append(mean + normal @ axes.T)
-    return np.concatenate([np.zeros((MOTIONS, 0)), *columns], axis=1)
 
 
 def _settled(scene: Scene, pose: str) -> Meant:

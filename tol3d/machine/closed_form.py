@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.system import moments_of
+from tol3d.assembly.moments import moments_of
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model import Measure as GearMeasure
 from tol3d.gearing.model import Model

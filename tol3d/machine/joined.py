@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.moments import widely
 from tol3d.assembly.placing import road as placing
-from tol3d.assembly.system import AssemblySystem, widely
+from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.gearing.model import Contributor as GearContributor

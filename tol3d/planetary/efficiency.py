@@ -8,7 +8,8 @@ from typing import Final
 from tol3d.planetary.design.mesh_loss import Sharing, shared_sliding_factor, sliding_factor
 from tol3d.planetary.design.published_efficiency import MeshEfficiencies, published_efficiencies
 from tol3d.planetary.design.torque_balance import Drive, efficiency
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.set_mesh import SetGear, SetMesh
 from tol3d.planetary.tooth_set import CARRIER, ToothSet
 
 LOCKED: Final = 0.0

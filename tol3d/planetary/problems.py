@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, SetMesh
+from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.set_mesh import SetMesh
 from tol3d.planetary.set_trials import SetTrials
 from tol3d.planetary.stack_up import StackUp
 from tol3d.system.stated import mean_build

@@ -12,7 +12,8 @@ from tol3d.gears.cylindrical_pair import SAME_LENGTH
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
 from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.planetary_set import PlanetarySet, SetGear, SetMesh, Spring
+from tol3d.planetary.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.set_mesh import SetGear, SetMesh
 from tol3d.scene import Scene
 
 

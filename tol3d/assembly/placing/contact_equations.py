@@ -2,7 +2,8 @@
 
 A contact has two sides, each a point, a line or a plane by an origin and a direction: centres of spheres, axes of
 cylinders. Its error is how far the surfaces are apart [mm]; a cylinder that lies along something has a second one, the
-rise of its axis over a stated length. `rows` are their changes with a shift of the part and a turn about its origin.
+rise of its axis over a stated length. `rows` are their changes with a shift of the part and a turn about the middle of
+its features that touch, from which its sides are counted; the others' are from where that lies nominally.
 """
 
 from typing import Any, Final
@@ -50,7 +51,7 @@ def crossed(a: Any, b: Any, out: Any) -> None:
 
 @nested
 def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
-    """Add to a row what a point does along a normal, at an arm from the part's origin."""
+    """Add to a row what a point does along a normal, at an arm from the middle that the part turns about."""
     for k in range(3):
         row[k] += factor * normal[k]
     row[3] += factor * (arm[1] * normal[2] - arm[2] * normal[1])

@@ -91,13 +91,14 @@ def by_newton(pose: Any, contacts: Any, i: int, reach: float, rooms: Any) -> boo
 def contacts_met(
     points: Any, normals: Any, heights: Any, inverse: Any, start: Any, reach: float, turns: Any, shifts: Any, met: Any
 ) -> None:
-    """Poses of contacts.
+    """Poses of contacts: of the middle of the points, from where it lies nominally.
 
     Args:
-        points, normals, heights: p, n (6, 3, n) and h (6, n) of the contacts [mm]; (..., 1) of what does not vary.
+        points, normals, heights: p from the middle, n (6, 3, n) and h (6, n) of the contacts [mm]; (..., 1) of what
+            does not vary.
         inverse: of the contacts' rows as they are nominally: turn by reach, then shift (6, 6).
         start: the nominal pose (3, 4).
-        reach: of the points about the origin of p [mm].
+        reach: of the points about the middle [mm].
         turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where they are not met.
         met: whether they are (n,).
     """

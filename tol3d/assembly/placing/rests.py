@@ -143,7 +143,9 @@ def rests_found(
     carried: Any,
     outcomes: Any,
 ) -> None:
-    """Poses of parts at rest.
+    """Poses of parts at rest: of the middle of the features that touch, from where it lies nominally.
+
+    What is on the part is counted from the middle, along the part's axes; what is in the world from its nominal place.
 
     Args:
         points, normals, heights: of the contacts (contacts, 3, n) and (contacts, n), see gap_of; (..., 1) of what does
@@ -152,15 +154,15 @@ def rests_found(
         kept_vectors, kept_normals: of what stays as it begins, n . (R p + s t), p and n (kept, 3, n).
         kept_shifts: s (kept,).
         kept_steps: turn by reach and shift, that undo a change of it (6, kept).
-        force, at: direction (3,) in the world; a point on its line (3,), in the part's frame [mm].
+        force, at: direction (3,) in the world; a point of the part on its line (3,) [mm].
         all_rows: how nominal gaps change with turn by reach and shift (contacts, 6).
         rows: how nominal gaps change with the motions (contacts, motions) [mm/mm].
         steps: of the motions, turn by reach and shift (6, motions).
         first_basis, first_inverse: contacts that would carry if all were touched, one for each motion; of their rows.
         first_loads: on them, of the force and of the second direction (2, motions).
         start: the pose before contacts count (3, 4, n).
-        reach: of the points about its origin [mm].
-        turns, shifts: found (3, 3, n), (3, n) [mm]; of no meaning where it does not rest.
+        reach: of the points about the middle [mm].
+        turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; of no meaning where it does not rest.
         carried, outcomes: part of the force on each contact (contacts, n); RESTS, CLASHES, or LOST of what the arms of
             the pose decide (n,).
     """

@@ -255,24 +255,25 @@ def touching_poses(
     shifts: Any,
     codes: Any,
 ) -> None:
-    """Poses of contacts.
+    """Poses of contacts: of the middle of the part's features that touch, from where it lies nominally.
 
     Args:
         kinds: of the contacts (contacts,), see contact_equations.
         signs: of the distances of lines that cross (contacts,).
         length: by which the slope of a line counts [mm].
-        moving: origin and direction of the part's sides in its frame (contacts, 6, n), [mm] and 1.
-        targets: the same of the others, in the world.
+        moving: origin and direction of the part's sides (contacts, 6, n), [mm] and 1: from the middle, along the
+            axes of the part.
+        targets: the same of the others: from the nominal place of the middle, along the axes of the world.
         sums: distances at which they touch (contacts, n) [mm]; (..., 1) of what does not vary.
         nominal_moving, nominal_targets, nominal_sums: the same, nominally (contacts, 6), (contacts,).
-        start: the nominal pose (3, 4).
-        basis: steps, shift and turn times reach (6, k).
-        reach: of the contacts about the part's origin [mm].
+        start: the nominal pose (3, 4): the part's turn, no shift.
+        basis: steps, shift and turn about the middle times reach (6, k).
+        reach: of the contacts about the middle [mm].
         lacking: errors at the nominal pose (k,) [mm].
         side: of the folds, on which the nominal pose lies: 1 or -1.
         force: direction in which the part is pressed (3, n) in the world; (3, 0) where that is not asked.
         inner: which contacts have one inside the other (contacts,).
-        turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where they are not.
+        turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; not a number where they are not.
         codes: what became of the trials (n,).
     """
     asked = (kinds, signs, length, moving, targets, sums, (nominal_moving, nominal_targets, nominal_sums))

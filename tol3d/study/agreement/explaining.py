@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.road_fits import RoadFits
-from tol3d.study.agreement.second_look import SecondLook, bends, scalars_of, second_look
+from tol3d.study.agreement.second_look import SecondLook, bends, largest_bends, scalars_of, second_look
 from tol3d.study.evaluation import Evaluation, measures_alike
 from tol3d.study.regressors import MOST_REGRESSED, Regressed, regressor_groups
 from tol3d.study.simulation import Simulation
@@ -43,8 +43,6 @@ SECOND_ORDER = "second order, for the means lie off the nominal build"
 ROUNDING = 1e-9  # of the measure's unit; roads that never differ by more agree
 ROUNDINGS = 32 * 2.0**-52  # of a coordinate; 14 were seen in a difference of the roads and its second look
 REACH = 1e4  # mm; coordinates of a scene, or the measure where it is larger
-NAMED_BENDS = 3  # contributors named for the second order
-NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
 
 
 def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dict[str, Explanation]:
@@ -154,7 +152,7 @@ class _Case:
             neglected={words: _rms(own[first]) for words, own in bounds.items()},
             second_order_rms=_rms(curved[first]) if known else None,
             second_order_mean=float(np.nanmean(curved[first])) if known else None,
-            second_order_of=_largest(bent),
+            second_order_of=largest_bends(bent),
             left_rms=left_rms,
             mean_left=mean.left,
             mean_allowed=mean.allowed,
@@ -346,10 +344,3 @@ class _Mean:
 def _rms(values: Array) -> float:
     known = values[~np.isnan(values)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else 0.0
-
-
-def _largest(bent: Mapping[str, float]) -> tuple[str, ...]:
-    """Names of the largest second differences, the largest first; none where they are not known."""
-    ranked = sorted((name for name, bend in bent.items() if bend), key=lambda name: -abs(bent[name]))
-    most = abs(bent[ranked[0]]) if ranked else 0.0
-    return tuple(name for name in ranked[:NAMED_BENDS] if abs(bent[name]) > NAMED_SHARE * most)

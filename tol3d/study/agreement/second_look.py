@@ -34,6 +34,8 @@ SHORT_STEPS = (0.25, 0.5)  # of the deviations; of what is of third order three 
 LONG_STEPS = (0.5, 1.0)  # for an engine with chord errors, which short steps would magnify
 BEND_SIGMAS = 3.0  # where a contributor's second difference is taken
 BEND_POSITIONS = 4  # drawn ones, over which it is averaged: what turns acts at each by another component
+NAMED_BENDS = 3  # contributors named for the second order
+NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not named
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,3 +127,10 @@ def _bends(system: System, values: Array) -> Mapping[str, float]:
     count = component_count(system)
     half = ((values[:, 1 : count + 1] + values[:, count + 1 :]) / 2 - values[:, :1]).mean(axis=0)
     return {name: float(half[own].sum()) for name, own in component_slices(system).items()}
+
+
+def largest_bends(bent: Mapping[str, float]) -> tuple[str, ...]:
+    """Names of the largest second differences, the largest first; none where they are not known."""
+    ranked = sorted((name for name, bend in bent.items() if bend), key=lambda name: -abs(bent[name]))
+    most = abs(bent[ranked[0]]) if ranked else 0.0
+    return tuple(name for name in ranked[:NAMED_BENDS] if abs(bent[name]) > NAMED_SHARE * most)
