@@ -68,7 +68,7 @@ def pairs_of(move: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 def redrawn(text: str, drawn: Assembled, poses: Mapping[str, Array]) -> str:
     """The scene with each part in coordinates of its own; parts that are alike keep one drawing."""
     yaml = YAML(typ="safe", pure=True)
-    yaml.sort_base_mapping_type_on_output = False  # moves are made in their order
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # moves are made in order
     scene = yaml.load(text)
     rng, changes = np.random.default_rng(11), dict[str, Change]()
     for name, part in scene["parts"].items():

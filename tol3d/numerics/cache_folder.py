@@ -8,10 +8,12 @@ of them while the others wait. The folder may be deleted at any time.
 
 import contextlib
 import hashlib
+import io
 import os
 import stat
 import tempfile
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -130,3 +132,12 @@ def _made_folder() -> Path:
     folder.parent.mkdir(parents=True, exist_ok=True)
     folder.mkdir(mode=PRIVATE, exist_ok=True)
     return folder
+
+
+def packed(files: Sequence[Path]) -> bytes:
+    """Files as an archive, by their names: what an entry of several is."""
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w") as entries:
+        for path in files:
+            entries.write(path, path.name)
+    return archive.getvalue()

@@ -33,7 +33,7 @@ from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import nrt as numba_runtime
 from numba.extending import intrinsic, overload
 
-from tol3d.numerics.cache_folder import read_entry, sole_maker, write_entry
+from tol3d.numerics.cache_folder import packed, read_entry, sole_maker, write_entry
 from tol3d.numerics.processor import target
 from tol3d.numerics.sources import sources_of
 
@@ -262,7 +262,7 @@ class Kernel:
             files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
             if files and self.name:
                 with contextlib.suppress(OSError):
-                    write_entry(self.name, _packed(files))
+                    write_entry(self.name, packed(files))
         return made
 
     def _read(self) -> bytes | None:
@@ -288,15 +288,6 @@ def _made_of(function: Callable[..., None], tuples: Sequence[type]) -> dict[str,
         "versions": [numba.__version__, llvmlite.__version__, np.__version__, platform.python_version()],
         "target": target(),
     }
-
-
-def _packed(files: Sequence[Path]) -> bytes:
-    """Files as an archive, by their names."""
-    archive = io.BytesIO()
-    with zipfile.ZipFile(archive, "w") as entries:
-        for path in files:
-            entries.write(path, path.name)
-    return archive.getvalue()
 
 
 def kernel(
