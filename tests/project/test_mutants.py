@@ -21,7 +21,6 @@ from py_compile import PycInvalidationMode
 
 import pytest
 from places import ROOT
-from scheduling import GROUP
 
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
@@ -109,7 +108,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Tree]:
     """The copy, one in each process of pytest's."""
     made = Tree(tmp_path_factory.mktemp("mutants"))
     with made.forks:
-        made.passes(MUTANTS[:GROUP])  # what passes there passes here, and CI runs them all
+        made.passes(MUTANTS[2:7])  # what passes there passes here, and CI runs them all
         yield made
 
 
