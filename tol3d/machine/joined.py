@@ -117,6 +117,14 @@ class Joined:
         same = (codes == OK) & (codes[0] == OK) & (np.abs(values - values[0]) < NOTHING)
         yield from (drive for drive, kept in zip(self.drives, same[1:], strict=True) if not kept)
 
+    def lever_of(self, name: str, drive: JointDrive) -> float:
+        """How far a measure of the assembly moves per turn of a joint nominally, to first order [mm/rad]."""
+        own = self.poses[self.pose_of[name]].assembly
+        rows = np.zeros((2, own.width))
+        rows[1, component_slices(self.drawn)[drive.turn].start] = TURN
+        start, turned = torsors.values(own, rows, [name])[name]
+        return float(abs(turned - start)) / TURN
+
     @property
     def drawn_by_gears(self) -> tuple[GearContributor, ...]:
         """The contributors of the gears but the displacements of the bores."""

@@ -176,7 +176,7 @@ class MachineRoad:
         deviations, drawn = system.of_assembly(trials.deviations), component_slices(system.drawn)
         for drive in system.drives:
             name = drive.readings[pose].name
-            if name not in turned.play:
+            if name not in turned.play or (sides is not None and drive.joint not in sides):
                 continue
             side: Array | float = drive.sides[pose] if sides is None else sides[drive.joint]
             if not side:

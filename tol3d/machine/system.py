@@ -35,6 +35,10 @@ from tol3d.system.trials import Trials
 Array = NDArray[np.float64]
 
 
+def _joined(every: Sequence[Mapping[str, Array]]) -> Sequence[str]:
+    return list(dict.fromkeys(words for own in every for words in own))
+
+
 @dataclass(frozen=True, eq=False)
 class MachineSystem(Joined):
     """Implements System."""
@@ -311,11 +315,22 @@ class MachineSystem(Joined):
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
         """See System."""
         if isinstance(measure, WorstMeasure):
-            return {}
+            every = [self.neglected(size, trials) for size in self._sizes(measure)]
+            return {words: np.max([own[words] for own in every if words in own], axis=0) for words in _joined(every)}
         if not isinstance(measure, GearMeasure):
             own = replace(trials, deviations=self.of_assembly(trials.deviations))
-            return self._owner(measure).neglected(measure, own)
+            return self._with_joints(measure, self._owner(measure).neglected(measure, own), trials)
         return self.gears.neglected(measure, self.linear_gear_trials(trials))
+
+    def _with_joints(self, measure: Measure, found: Mapping[str, Array], trials: Trials) -> Mapping[str, Array]:
+        """With what is left out of the plays that turn a part, as they move what is read."""
+        added = dict(found)
+        for drive, pose in self._turning(measure):
+            reading = drive.readings[pose]
+            per = HALF * self.lever_of(measure.name, drive) * measure.per_internal / reading.per_internal
+            for words, own in self.neglected(reading, trials).items() if per else ():
+                added[words] = added.get(words, 0.0) + per * own
+        return added
 
     # what it shows ----------------------------------------------------------------------------------
 
