@@ -1,6 +1,7 @@
 """What the pictures of a run show: held by their artists and the data in them, never by their pixels."""
 
 import math
+import os
 from itertools import combinations
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,7 +14,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.patches import Patch, Rectangle, StepPatch
+from matplotlib.patches import Patch, StepPatch
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 from of_kind import known, of_kind
@@ -31,6 +32,7 @@ from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading
 from tol3d.report.heat_map import heat_map_figure
 from tol3d.report.histogram import histogram_figure, overview_figure
+from tol3d.report.histogram_process import _refused
 from tol3d.report.label import legible
 from tol3d.report.picture import measure_files
 from tol3d.runs.summary.run import RunSummary
@@ -298,19 +300,19 @@ def test_bars_of_one_sample_are_told_apart_and_several_samples_each_have_their_o
     """Bars in white edges, as many as counted; of two runs each is one outline in its own colour, and no bar."""
     measure = measure_of(normals(2000), lower_limit=48.0)
     axes = axes_of(draw_distribution, typed_measure(measure))
-    bars = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
+    bars = [each for each in axes.collections if isinstance(each, PolyCollection)]
     drawn = bars_of(typed_measure(measure))["geometric"]
-    assert sorted((bar.get_x(), bar.get_height()) for bar in bars) == [
-        pytest.approx(pair) for pair in zip(drawn.edges[:-1], drawn.density, strict=True)
-    ]
-    assert {to_hex(bar.get_edgecolor()) for bar in bars} == {"#ffffff"}
-    beyond = [bar for bar in bars if to_hex(bar.get_facecolor()) == OUTSIDE.lower()]
-    assert len(beyond) == int((drawn.middles < 48.0).sum())
+    boxes = sorted([*path.get_extents().extents] for own in bars for path in own.get_paths())
+    corners = zip(drawn.edges[:-1], np.zeros(len(drawn.density)), drawn.edges[1:], drawn.density, strict=True)
+    assert boxes == [pytest.approx(box) for box in corners]
+    assert {to_hex(colour) for own in bars for colour in np.asarray(own.get_edgecolor())} == {"#ffffff"}
+    beyond = [own for own in bars if to_hex(np.asarray(own.get_facecolor())[0]) == OUTSIDE.lower()]
+    assert [len(own.get_paths()) for own in beyond] == [int((drawn.middles < 48.0).sum())]
     runs = [run_of(f"/{name}", {"play": measure_of(normals(500, seed))}) for seed, name in enumerate("ab")]
     both = comparison_figure(runs).axes[0]
     outlines = [step for step in both.patches if isinstance(step, StepPatch) and not step.get_fill()]
     assert len({to_hex(step.get_edgecolor()) for step in outlines if step.get_linestyle() == "solid"}) == 2
-    assert not [patch for patch in both.patches if isinstance(patch, Rectangle) and patch.get_width() > 0]
+    assert not both.collections
 
 
 # failed trials ------------------------------------------------------------------------------------
@@ -479,3 +481,36 @@ def test_labels_and_numbers_of_a_large_heat_map_do_not_overlap() -> None:
     assert not [pair for pair in combinations(boxes, 2) if Bbox.intersection(*pair) is not None]
     width, height = figure.canvas.get_width_height()
     assert all(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height for box in boxes)
+
+
+# many pictures ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("processors", [1, 3])
+def test_pictures_that_fail_are_told_and_the_others_drawn_by_any_number_of_processes(
+    processors: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: set(range(processors)))
+
+    def draw(path: Path) -> None:
+        path.write_text(str(os.getpid()), encoding="utf-8")
+        if path.stem in ("4", "9"):
+            raise ValueError(f"no  {path.stem}")
+
+    names = [f"{k}.png" for k in range(15)]
+    assert _refused([(name, draw) for name in names], tmp_path) == {"4.png": "no 4", "9.png": "no 9"}
+    drawn = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
+    assert drawn.keys() == set(names) - {"4.png", "9.png"}
+    assert len(set(drawn.values())) == processors
+
+
+def test_pictures_of_a_process_that_ends_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0, 1})
+    own = os.getpid()
+
+    def draw(path: Path) -> None:
+        if os.getpid() != own:
+            os._exit(1)
+
+    refused = _refused([(f"{k}.png", draw) for k in range(10)], tmp_path)
+    assert refused == {f"{k}.png": "its process ended" for k in range(1, 10, 2)}

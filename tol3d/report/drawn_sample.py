@@ -8,6 +8,7 @@ from typing import Final, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
 from tol3d.report.bars import Bars
@@ -87,19 +88,20 @@ def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -
 
 
 def _draw_bars(axes: Axes, sample: DrawnSample, heights: Array) -> None:
-    beyond, lefts, widths = sample.outside, sample.bars.edges[:-1], np.diff(sample.bars.edges)
+    """Bars as two collections: a hundred rectangles by themselves take five times as long."""
+    beyond, (lefts, rights) = sample.outside, (sample.bars.edges[:-1], sample.bars.edges[1:])
+    none = np.zeros_like(heights)
+    corners = np.array([[lefts, none], [lefts, heights], [rights, heights], [rights, none]]).transpose(2, 0, 1)
     for chosen, colour, opacity in ((~beyond, sample.colour, FILL_OPACITY), (beyond, OUTSIDE, OUTSIDE_OPACITY)):
-        axes.bar(
-            lefts[chosen],
-            heights[chosen],
-            widths[chosen],
-            align="edge",
-            color=colour,
+        bars = PolyCollection(
+            list(corners[chosen]),
+            facecolor=colour,
             alpha=opacity,
             edgecolor="white",
             linewidth=BAR_EDGE,
             label=None if colour == OUTSIDE else sample.label,
         )
+        axes.add_collection(bars)
 
 
 def _draw_area(axes: Axes, sample: DrawnSample, heights: Array) -> None:

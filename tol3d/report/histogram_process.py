@@ -12,13 +12,17 @@ one line on its standard error; of another picture it stands on its standard out
 import gc
 import io
 import json
+import multiprocessing
+import os
 import pickle
 import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from importlib import import_module
+from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Final
 
 from tol3d.report.heat_map import draw_heat_map, of_scalars
 from tol3d.report.histogram import draw_histogram, draw_measure
@@ -26,6 +30,8 @@ from tol3d.report.picture import HEAT_MAP, Pictures, measure_files, named_files
 from tol3d.report.presenter import Draw, presenter_of
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import typed
+
+FEWEST_EACH: Final = 5  # pictures of a process; for fewer a further one does not pay
 
 SUMMARIES = tuple(
     f"tol3d.{path.parent.name}.{path.stem}" for path in sorted(Path(__file__).parents[1].glob("*/summary_types.py"))
@@ -44,11 +50,12 @@ def main() -> None:
     sys.path += [path for path in pickle.load(order) if path and path not in sys.path]  # mechanisms may lie anywhere
     picture, presenter, pictures, kinds, found = pickle.load(order)
     summary = typed(json.loads(found), lambda place, words: ValueError(f"{place}: {words}"), kinds)
-    print(json.dumps(dict(_refused(_further(summary, presenter, pictures), picture.parent))), flush=True)
-    try:
-        draw_histogram(summary, picture, pictures)
-    except Exception as error:
-        sys.exit(_reason(error))
+    whole = (picture.name, partial(draw_histogram, summary, pictures=pictures))
+    refused = _refused([whole, *_further(summary, presenter, pictures)], picture.parent)
+    reason = refused.pop(picture.name, "")
+    print(json.dumps(refused), flush=True)
+    if reason:
+        sys.exit(reason)
 
 
 def _further(summary: RunSummary, presenter: str | None, wanted: Pictures) -> Iterator[tuple[str, Draw]]:
@@ -62,14 +69,41 @@ def _further(summary: RunSummary, presenter: str | None, wanted: Pictures) -> It
             yield HEAT_MAP, partial(draw_heat_map, summary)
 
 
-def _refused(further: Iterable[tuple[str, Draw]], folder: Path) -> Iterator[tuple[str, str]]:
-    """Draw the further pictures; the names of those that failed, and why."""
-    for file, draw in further:
+def _refused(pictures: Sequence[tuple[str, Draw]], folder: Path) -> dict[str, str]:
+    """Draw pictures, many of them by as many processes as there are processors; those that failed, and why."""
+    count = max(1, min(len(pictures) // FEWEST_EACH, len(os.sched_getaffinity(0))))
+    fork = multiprocessing.get_context("fork")  # matplotlib and the summary are loaded already
+    helping: list[tuple[Connection, Sequence[tuple[str, Draw]]]] = []
+    for share in (pictures[k::count] for k in range(1, count)):
+        receiver, sender = fork.Pipe(duplex=False)
+        fork.Process(target=_send_refused, args=(share, folder, sender), daemon=True).start()
+        sender.close()
+        helping.append((receiver, share))
+    refused = _drawn(pictures[::count], folder)
+    for receiver, share in helping:
+        try:
+            refused |= receiver.recv()
+        except EOFError:
+            for file, _ in share:
+                (folder / file).unlink(missing_ok=True)
+                refused[file] = "its process ended"
+    return refused
+
+
+def _send_refused(pictures: Sequence[tuple[str, Draw]], folder: Path, sender: Connection) -> None:
+    sender.send(_drawn(pictures, folder))
+
+
+def _drawn(pictures: Sequence[tuple[str, Draw]], folder: Path) -> dict[str, str]:
+    """Draw pictures one after the other; those that failed, and why."""
+    refused = {}
+    for file, draw in pictures:
         try:
             draw(folder / file)
         except Exception as error:
             (folder / file).unlink(missing_ok=True)
-            yield file, _reason(error)
+            refused[file] = _reason(error)
+    return refused
 
 
 def _reason(error: Exception) -> str:
