@@ -316,6 +316,24 @@ def test_ends_together_are_the_worst_of_all_sizes(grows: bool, law: Distribution
         assert tops[1].max() - 1e-9 <= -low <= tops[1].max() + step
 
 
+def test_ends_are_not_where_a_slope_is_not_nor_of_what_is_read_with_it() -> None:
+    """A build beside the mean that fails leaves no slope: no end of its zone, nor of the size that widens it."""
+    law = Uniform(-0.05, 0.3)
+    zone = catalogue.axis(0.1)
+    contributors = [
+        PlainContributor(
+            "zone", "position", Widened(zone, uniform_in(zone), SizedBy("size", law, Bonus(0.0, 0.2, True)))
+        ),
+        PlainContributor("size", "size", Scalar(law)),
+        PlainContributor("other", "size", Scalar(law)),
+    ]
+    slopes = {"zone": np.array([0.13, np.nan, 0.13, 0.0]), "size": np.ones(1), "other": np.ones(1)}
+    ends = ends_together(contributors, slopes, dict.fromkeys(slopes, False))
+    assert np.isnan(ends["zone"]).all()
+    assert np.isnan(ends["size"]).all()
+    assert ends["other"][:, 0].tolist() == [-0.05, 0.3]
+
+
 # what is refused ---------------------------------------------------------------------------------------------
 
 SIZE = next(line for line in zoned().splitlines(keepends=True) if line.startswith("  bore size"))

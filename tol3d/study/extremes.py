@@ -29,9 +29,11 @@ SWEEPS: Final = 3
 def ends_alone(contributor: Contributor, slopes: Array, *, turning: bool) -> Array:
     """The ends (2, components) of a contributor that lower and that raise what has these slopes.
 
-    Features that are drawn each for itself are all at their own worst ends.
+    Features that are drawn each for itself are all at their own worst ends. Not a number where a slope is none.
     """
     law = contributor.distribution
+    if np.isnan(slopes).any():
+        return np.full((2, len(slopes)), np.nan)
     if isinstance(contributor.draw, Each):
         return np.stack([np.where(slopes > 0.0, law.low, law.high), np.where(slopes > 0.0, law.high, law.low)])
     ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)
@@ -55,6 +57,8 @@ def ends_together(
     if not read:
         return found
     group = [own for own in in_draw_order(contributors) if own.name in read or reads_of(own)]
+    if any(np.isnan(slopes[own.name]).any() for own in group):
+        return found | {own.name: np.full((2, len(slopes[own.name])), np.nan) for own in group}
     sides = [_Side(group, {name: sign * own for name, own in slopes.items()}, found) for sign in (-1.0, 1.0)]
     worst = [side.furthest for side in sides]
     return found | {own.name: np.stack([side[own.name] for side in worst]) for own in group}
