@@ -74,8 +74,8 @@ CYCLOIDS = MechanismPage(
         "tolerances": ["Beside `kind`, each has"],
         "measures": ["The first two are angles of the output, the last"],
     },
-    ("every_cycloid_field", "rv_250aii", "rv_bearing_play"),
-    quotes=4,
+    ("every_cycloid_field", "rv_250aii", "rv_bearing_play", "rv_train"),
+    quotes=6,
     beside=frozenset({"tooth_thickness", "eccentricity"}),
 )
 PLANETARIES = MechanismPage(

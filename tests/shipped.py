@@ -1,4 +1,4 @@
-"""The scenes that tol3d brings along, by the mechanism that understands them."""
+"""The scenes that tol3d brings along, by mechanism; a train with links of another one is that one's."""
 
 from functools import cache
 
@@ -12,13 +12,13 @@ from tol3d.scene import read_scene
 def _mechanisms() -> dict[str, str]:
     """Of each scene."""
     return {
-        path.stem: all_kinds().vocabulary_of(read_scene(path, all_kinds(), settle=False)).name
+        path.stem: all_kinds().vocabularies_of(read_scene(path, all_kinds(), settle=False))[-1].name
         for path in sorted(SCENES.glob("*.yaml"))
     }
 
 
 def shipped(mechanism: str) -> tuple[str, ...]:
-    """Names of the scenes that a mechanism understands.
+    """Names of the scenes that have kinds of a mechanism, and none of one that is registered after it.
 
     Raises:
         LookupError: there are none, so that a test of all of them would test nothing.

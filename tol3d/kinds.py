@@ -136,11 +136,13 @@ def _room(path: str) -> str:
 
 def _needed_by(summary: Mapping[str, Any]) -> Iterator[str]:
     maker, measures = summary.get("mechanism"), summary.get("measures")
-    name = maker.get("name") if isinstance(maker, Mapping) else None
+    known = maker if isinstance(maker, Mapping) else {}
+    beside = known.get("beside")
+    named_there = [known.get("name"), *(beside if isinstance(beside, list) else ())]
     entries = measures.values() if isinstance(measures, Mapping) else ()
     kinds = (entry.get("kind") for entry in entries if isinstance(entry, Mapping))
     words = {kind for kind in kinds if isinstance(kind, str)}
-    return (path for path in SHIPPED if _room(path) == name or words & _declared(path))
+    return (path for path in SHIPPED if _room(path) in named_there or words & _declared(path))
 
 
 @lru_cache

@@ -16,10 +16,9 @@ from places import SCENES
 from planetary_sets import ARCMIN, free_by_highs, pitch_rows, reducer_3k
 
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
+from tol3d.gearing.presenting import PRESENTER
+from tol3d.gearing.system import gear_system
 from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.from_scene import planetary_scene
-from tol3d.planetary.presenting.shown_train import display
-from tol3d.planetary.stage.system import SetTrain
 from tol3d.report.motion import motion_of
 from tol3d.system.trials import Trials
 
@@ -206,8 +205,7 @@ def test_first_order_is_that_of_another_programme_in_a_thousand_trials(run: Run)
 
 def test_both_roads_differ_by_what_is_of_second_order() -> None:
     """All deviations halved, thicknesses too: differences fall to a quarter. Teeth are without clearance nominally."""
-    system = planetary_scene(load_scene(SCENES / "reducer_3k_train.yaml"))
-    assert isinstance(system, SetTrain)
+    system = gear_system(load_scene(SCENES / "reducer_3k_train.yaml"))
     rng = np.random.default_rng(3)
     uniforms = {stream: rng.random(400) for stream in system.streams}
     parts = [own.draw.deviations(*rng.random((own.draw.uniforms, 400))) for own in system.contributors]
@@ -264,8 +262,8 @@ REFUSED = {
     ),
     "the carrier on a shaft": (
         ("carries: {pinion: {at: 0 mm}}", "carries: {pinion: {at: 0 mm}, carrier: {}}"),
-        "parts.motor.carries.carrier: expected 'sun' or 'ring 2', input and output of 'reducer', got 'carrier', which "
-        "no shaft of a train turns with",
+        "parts.motor.carries.carrier: expected 'sun' or 'ring 2' of 'reducer', got 'carrier', which no shaft of a "
+        "train turns with",
     ),
     "a phase": (
         ("sun: {at: 24 mm}", "sun: {at: 24 mm, phase: 3 deg}"),
@@ -273,7 +271,7 @@ REFUSED = {
     ),
     "a sun in a mesh": (
         ("driver: pinion, driven: wheel", "driver: pinion, driven: sun"),
-        "moves.spur stage: expected a gear that is in no planetary set, got 'sun', which 'reducer' has; put another",
+        "moves.spur stage: expected a gear that no other move has, got 'sun', which 'reducer' has; put another gear",
     ),
     "a bearing of the sun's shaft": (
         (
@@ -281,7 +279,7 @@ REFUSED = {
             "  rear: {kind: bearing, shaft: countershaft, at: 40 mm}\ntolerances:\n  rear clearance: {kind: "
             "bearing_clearance, of: rear, direction: random, distribution: {kind: rayleigh, scale: 5 um}}\n",
         ),
-        "tolerances.rear clearance: expected a shaft without gears of planetary sets, got one that carries 'sun'",
+        "tolerances.rear clearance: expected a shaft without parts of 'reducer', got one that carries 'sun'",
     ),
     "flanks of the sun": (
         ("sun eccentricity: {kind: eccentricity,", "sun eccentricity: {kind: run_out,"),
@@ -375,7 +373,7 @@ def test_a_set_that_goes_up_and_turns_back_drives_a_train(tmp_path: Path) -> Non
 def test_the_set_turns_with_its_train(tmp_path: Path) -> None:
     """Of a turn of the motor: 1/3 at the sun, 25/104 of that at the pins, 25/1368 at ring 2; all against the motor."""
     run = ran(tmp_path, TEXT, 4)
-    moved = motion_of(display(run, "mean", magnify=1.0), "turn", 9)
+    moved = motion_of(PRESENTER.display(run, "mean", magnify=1.0), "turn", 9)
     assert {"sun", "ring 2", "P1 of planet 3"} <= {body.name for body in moved.world.bodies}
     first, now = moved.frames[0].poses, moved.frames[6].poses
     sun = -(2 * math.pi * 6 / 9) / 3

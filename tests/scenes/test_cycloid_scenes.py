@@ -9,7 +9,7 @@ from shipped import shipped
 
 from tol3d import Run, load_scene
 
-SCENES = {"rv_250aii", "rv_bearing_play", "every_cycloid_field"}
+SCENES = {"rv_250aii", "rv_bearing_play", "rv_train", "every_cycloid_field"}
 SEEN = 1e-5  # arcmin: another machine's bits
 
 
@@ -29,7 +29,7 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["rv_250aii", "rv_bearing_play"])  # counts of a hundred trials tell too little
+@pytest.mark.parametrize("scene", sorted(SCENES - {"every_cycloid_field"}))  # few trials tell too little of counts
 def test_both_roads_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:

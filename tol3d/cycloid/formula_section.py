@@ -1,23 +1,27 @@
 """A cycloid stage by formula, as summary.json has it."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tol3d.cycloid.formula_summary import CycloidStageSummary, FormulaTotals, SourceByFormula, StageTotals
 from tol3d.cycloid.paper_formula import Term, first_principles_totals, paper_totals, sun_held_factor, terms
 from tol3d.cycloid.paper_sources import PaperSources
 from tol3d.cycloid.profile import DiscProfile
-from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.cycloid.rv_deviated import Acts
+from tol3d.cycloid.rv_set import RVSet
 from tol3d.runs.summary.values import made
+from tol3d.system.contributor import Contributor
 
 THREE_SIGMA: Final = 3.0 * math.degrees(1.0) * 3600.0  # arc seconds a radian of standard deviation
 
 
-def stages_by_formula(system: RVTrials) -> Mapping[str, CycloidStageSummary]:
+def stages_by_formula(
+    own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]
+) -> Mapping[str, CycloidStageSummary]:
     """That of a reducer by its name; nothing where the formula knows none of its contributors."""
-    own, first = system.own, system.own.first
-    drawn = ((each.name, system.acts[each.name].effect, each.draw.sigma) for each in system.contributors)
+    first = own.first
+    drawn = ((each.name, acts[each.name].effect, each.draw.sigma) for each in contributors)
     sources = PaperSources.of(drawn)
     if not sources.tolerances:
         return {}

@@ -9,11 +9,10 @@ from tol3d.cycloid.grammar.measures.cycloid_pins_near_contact import CycloidPins
 from tol3d.cycloid.grammar.measures.cycloid_transmission_error import CycloidTransmissionErrorSpec
 from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
 from tol3d.cycloid.measure import Reading, RVMeasure
-from tol3d.cycloid.refusals import rv_set
+from tol3d.cycloid.refusals import implausible_stage, rv_set
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.system.plain import UNITS, PlainContributor, stated_of
@@ -47,8 +46,7 @@ def rv_system(scene: Scene) -> RVSystem:
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
-    gears = {} if own.first is None else {own.first.sun: own.first.pair.pinion, own.first.planet: own.first.pair.wheel}
-    found = tuple(implausible_teeth(scene, gears))
+    found = implausible_stage(scene, own)
     stated = tuple(contributors), tuple(measures.values())
     return system(scene.scene, *stated, own, acts, measures, width, hole, steps, found)
 

@@ -1,29 +1,45 @@
 """Why an RV reducer cannot be studied: parts interfere at the mean build, or bearings have less play than none."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from tol3d.cycloid.draws import NOT_NEGATIVE
 from tol3d.cycloid.limits import LEAST_GAP, least_gap
+from tol3d.cycloid.rv_deviated import Acts, RVDeviated
+from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.system.contributor import Contributor
 from tol3d.system.stated import mean_build
 from tol3d.system.system import KeyPath
 
 
 def problems_of(system: RVTrials) -> Iterator[tuple[KeyPath, str]]:
     """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there."""
-    own = system.own
-    for contributor in system.contributors:
+    mean = system.deviated(mean_build(system, system.measures[0]))
+    return problems_at(system.own, system.acts, system.contributors, mean)
+
+
+def problems_at(
+    own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor], deviated: RVDeviated
+) -> Iterator[tuple[KeyPath, str]]:
+    """The same of a reducer's mean build, of one trial.
+
+    Args:
+        own: the reducer.
+        acts: what contributors act on, by their names.
+        contributors: those of the reducer.
+        deviated: of its mean build.
+    """
+    for contributor in contributors:
         mean = contributor.draw.mean(turning=False)[0]
-        if system.acts[contributor.name].effect in NOT_NEGATIVE and mean < 0.0:
+        if acts[contributor.name].effect in NOT_NEGATIVE and mean < 0.0:
             yield (
                 ("tolerances", contributor.name, "distribution"),
                 f"expected a mean clearance of at least 0 um, got {1e3 * mean:g} um: a bearing that is pressed "
                 "together has none, '{kind: constant, value: 0 um}'",
             )
-    deviated = system.deviated(mean_build(system, system.measures[0]))
     stage = deviated.stage
     circle, radius = float(stage.pins[..., 0].mean()), float(stage.pin_radii.mean())
     material = float(np.max(stage.lobe_profile.mean(axis=2)))

@@ -16,6 +16,7 @@ from tol3d.cycloid.shapes import DiscHoles
 from tol3d.cycloid.walls import circle_fault, hole_faults
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.cylindrical_pair import SAME_LENGTH
@@ -24,21 +25,34 @@ from tol3d.scene.place import KeyPath
 
 
 def rv_set(scene: Scene) -> RVSet:
-    """The reducer of a scene.
+    """The reducer of a scene that has nothing else.
 
     Raises:
         SceneError: not one reducer and nothing else, or one that cannot be put together.
     """
     reducers = scene.of(RVReducerSpec)
-    others = [name for name in scene.moves if name not in reducers]
-    if len(reducers) != 1 or others:
-        name = others[0] if others else list(reducers)[-1]
-        raise scene.refuse(("moves", name), f"expected one RV reducer and no other move, got {len(scene.moves)} moves")
+    if len(reducers) != 1:
+        words = f"expected one RV reducer and no other move, got {len(scene.moves)} moves; several make a train"
+        raise scene.refuse(("moves", list(reducers)[-1]), f"{words}, which a move of kind train names")
     ((name, spec),) = reducers.items()
-    used = {spec.pin_ring, spec.disc, spec.crankshaft, spec.carrier, spec.sun, spec.planet}
     for part in scene.parts:
-        if part not in used:
+        if part not in parts_of(spec):
             raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+    return reducer_of(scene, name, spec)
+
+
+def parts_of(spec: RVReducerSpec) -> frozenset[str]:
+    """The parts of a reducer."""
+    own = (spec.pin_ring, spec.disc, spec.crankshaft, spec.carrier, spec.sun, spec.planet)
+    return frozenset(part for part in own if part is not None)
+
+
+def reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
+    """The reducer that a move of a scene stands for, whatever else is in the scene.
+
+    Raises:
+        SceneError: it cannot be put together.
+    """
     carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
     assert isinstance(carrier, CrankCarrierSpec)
     assert isinstance(disc, CycloidDiscSpec)
@@ -58,7 +72,7 @@ def rv_set(scene: Scene) -> RVSet:
         window=spec.window,
         first=_first_stage(scene, name, spec, carrier.radius.internal),
         width=None if disc.width is None else disc.width.internal,
-        plays=any(isinstance(tolerance, BearingPlaySpec) for tolerance in scene.tolerances.values()),
+        plays=any(own.of in (spec.disc, spec.carrier) for own in scene.of(BearingPlaySpec).values()),
     )
 
 
@@ -143,6 +157,18 @@ def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) 
         words = f"expected at most {most} planets of {2 * planet.tip_radius:.4f} mm beside each other on this circle"
         raise scene.refuse(("moves", name, "cranks"), f"{words}, got {spec.cranks}, which are {apart:.4f} mm apart")
     return FirstStage(spec.sun, spec.planet, pair)
+
+
+def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
+    """Warnings of the gears before the cycloid stage.
+
+    Raises:
+        SceneError: a tooth is thinned until nothing is left of its tip.
+    """
+    if own.first is None:
+        return ()
+    gears = {own.first.sun: own.first.pair.pinion, own.first.planet: own.first.pair.wheel}
+    return tuple(implausible_teeth(scene, gears))
 
 
 def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:

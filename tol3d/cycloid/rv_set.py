@@ -75,6 +75,11 @@ class RVSet:
     plays: bool = False
 
     @property
+    def input(self) -> str:
+        """The part that is turned: the sun, or the crankshafts."""
+        return self.crankshaft if self.first is None else self.first.sun
+
+    @property
     def gear_ratio(self) -> Fraction:
         """z2 / z1 of the first stage; 0 without one."""
         return Fraction(0) if self.first is None else Fraction(self.first.teeth[1], self.first.teeth[0])

@@ -50,6 +50,14 @@ class StageShapes:
     carrier: Carrier
     first: tuple[SpurGear, SpurGear] | None = None
 
+    @property
+    def sun_level(self) -> float:
+        """Where the middle of the first stage lies along the axis, the discs' at 0 [mm]; 0 without one."""
+        if self.first is None:
+            return 0.0
+        width = max(gear.face_width for gear in self.first)
+        return self.carrier.between / 2 + self.carrier.flange_width + GAP * self.discs[0].width + width / 2
+
     def placed(self, places: StagePlaces) -> tuple[PosedPart, ...]:
         """Every part in the world, by names such as "pin 1", "disc 2" and "planet 3"; pins as thick as they are."""
         return tuple(self._placed(places))
@@ -71,8 +79,7 @@ class StageShapes:
 
     def _first_stage(self, places: StagePlaces, sun: SpurGear, planet: SpurGear) -> Iterator[PosedPart]:
         """A sun tooth faces a space of each planet nominally; planets turn with their cranks, the sun stands."""
-        gap, width = GAP * self.discs[0].width, max(sun.face_width, planet.face_width)
-        level = self.carrier.between / 2 + self.carrier.flange_width + gap + width / 2
+        level = self.sun_level
         ratio, carried = sun.teeth / planet.teeth, -places.phi / places.stage.profile.lobes
         sun_turned = carried - (places.phi - carried) / ratio
         yield PosedGear("sun", sun, _pose(Place(0j, sun_turned), level))

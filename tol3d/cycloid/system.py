@@ -130,7 +130,7 @@ class RVSystem(RVTrials):
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """Its cycloid stage by formula; see System."""
-        found = stages_by_formula(self)
+        found = stages_by_formula(self.own, self.acts, self.contributors)
         return {"cycloid_stages": found} if found else {}
 
     def display(self, trials: Trials, road: Road) -> ShownReducer:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.linked import link_trials
 from tol3d.gearing.model import LostMotion, Measure, Model, TransmissionError
 from tol3d.gearing.play import seat_key
 from tol3d.gearing.seats import driver_angles
@@ -30,6 +31,11 @@ def neglected(model: Model, measure: Measure, trials: Trials) -> Mapping[str, Ar
         for neglect in stack.neglects:
             own = per * _furthest(model, stack, neglect, trials.deviations, angles)
             found[neglect.words] = found.get(neglect.words, 0.0) + own
+    for factor, name in measure.kind.links:
+        link = model.link(name)
+        for words, free in link.neglected(link_trials(model, measure, link, trials)).items():
+            own = abs(factor) * in_measure(measure) * free.max(axis=1)
+            found[words] = found.get(words, 0.0) + own
     return found
 
 

@@ -97,6 +97,14 @@ class Play:
                 found |= self._jams(stage)
         return found
 
+    def untouched(self) -> NDArray[np.bool_]:
+        """Where nothing is found that stops a link that is no mesh, (trials, positions)."""
+        found = np.zeros(self._shape, dtype=bool)
+        for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
+            if stage.backlash is None:
+                found |= np.isnan(self._turn(stage).play)
+        return found
+
     def _jams(self, stage: Stage) -> NDArray[np.bool_]:
         turn = self._turn(stage)
         return np.broadcast_to(False if turn.jams is None else turn.jams, self._shape)

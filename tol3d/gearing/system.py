@@ -14,8 +14,8 @@ from tol3d.gearing.descriptions import description
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.lazy import exact_engine, exact_is_compiled, fcl_engine
 from tol3d.gearing.interference import interferences
+from tol3d.gearing.linked import link_contributors
 from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
-from tol3d.gearing.model.brought import NOTHING, Brought
 from tol3d.gearing.model.contributor import gear_contributor
 from tol3d.gearing.model.measure import gear_measure, gear_measures
 from tol3d.gearing.neglected import neglected, of_gaps
@@ -188,8 +188,12 @@ class GearSystem:
     # what it shows ----------------------------------------------------------------------------------
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """See System: the trains with their stages."""
-        return {"trains": train_sections(self.model, terms, published)}
+        """See System: the trains with their stages, and what their links say of themselves."""
+        found: dict[str, Any] = {"trains": train_sections(self.model, terms, published)}
+        for link in self.model.links:
+            for section, own in link.sections(link_contributors(self.model, link.name)).items():
+                found[section] = {**found.get(section, {}), link.name: own}
+        return found
 
     def display(self, trials: Trials, road: Road) -> Seats:
         """See System: builds with their seated meshes."""
@@ -231,10 +235,10 @@ def gears_in(system: System) -> GearSystem:
     return found
 
 
-def gear_system(scene: Scene, brought: Brought = NOTHING) -> GearSystem:
-    """What a scene of gears means, with links that another mechanism brings into it.
+def gear_system(scene: Scene) -> GearSystem:
+    """What a scene of gears means, with links that other mechanisms bring into it.
 
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.
     """
-    return GearSystem(model_from_scene(scene, brought))
+    return GearSystem(model_from_scene(scene))

@@ -16,8 +16,6 @@ from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
 from tol3d.planetary.shown import made_gears
 from tol3d.planetary.spring_curve import LeafSpring
-from tol3d.planetary.stage.from_scene import train_system
-from tol3d.planetary.stage.system import SetTrain
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
 from tol3d.scene import Scene
@@ -26,16 +24,6 @@ from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.plain import UNITS, PlainContributor, stated_of
 from tol3d.system.positions import AT_RANDOM, Positions, Take
 from tol3d.system.spectrum import Spectrum
-
-
-def planetary_scene(scene: Scene) -> PlanetarySystem | SetTrain:
-    """What a scene with planetary kinds means: a set by itself, or sets in a train.
-
-    Raises:
-        SceneError: what nobody can build, or what such a set or train cannot have, with its place.
-    """
-    alone = all(isinstance(move, PlanetarySpec) for move in scene.moves.values())
-    return planetary_system(scene) if alone else train_system(scene)
 
 
 def planetary_system(scene: Scene) -> PlanetarySystem:

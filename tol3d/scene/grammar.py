@@ -206,17 +206,25 @@ class Grammar:
     def vocabulary_of(self, scene: Scene) -> Vocabulary:
         """The vocabulary that understands all of a scene: its own kinds, those that it includes or that extend it.
 
+        Of several it is the one whose are all moves, else the first that is registered: one that both includes and
+        extends another has the scenes of its own moves alone, and the other one those where both have moves.
+
         Raises:
             SceneError: the kinds of the scene are of several, none of which understands the others.
         """
         used = self._used(scene)
-        for vocabulary in self.vocabularies:
-            if vocabulary.name in used and used.keys() <= self._understood(vocabulary):
-                return vocabulary
-        *_, (last, path) = used.items()
+        found = [each for each in self.vocabularies if each.name in used and used.keys() <= self._understood(each)]
+        moves = {type(move) for move in scene.moves.values()}
+        if found:
+            return next((each for each in found if moves <= set(each.moves)), found[0])
+        odd = next((own for own in reversed([*used]) if self._go_together(used.keys() - {own})), list(used)[-1])
         kinds = " and ".join(f"{first[1]!r} of {own}" for own, first in used.items())
         words = f"kinds of {' and '.join(used)} do not go together in one scene, got {kinds}"
-        raise scene.refuse(path, f"{words}; {self._joining(used.keys()) or f'take out {last}'}, or make two scenes")
+        advice = self._joining(used.keys()) or f"take out {odd}"
+        raise scene.refuse(used[odd], f"{words}; {advice}, or make two scenes")
+
+    def _go_together(self, names: Set[str]) -> bool:
+        return any(each.name in names and names <= self._understood(each) for each in self.vocabularies)
 
     def _joining(self, names: Set[str]) -> str:
         """The kinds of a vocabulary that understands some others and whose own are not there; or nothing."""

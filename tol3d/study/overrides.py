@@ -13,7 +13,7 @@ from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.simulation import Simulation, study_of
 from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
-from tol3d.system.mechanism import mechanism_of, requires_of
+from tol3d.system.mechanism import mechanism_of, origin_of, requires_of
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         asked.published,
         requires=requires_of(asked),
         presenter=mechanism.presenter,
-        mechanism=mechanism.origin,
+        mechanism=origin_of(asked),
         implausible=implausible,
     )
 

@@ -32,6 +32,7 @@ from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
+from tol3d.system.faults import Origin
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.road import Road
@@ -52,7 +53,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
     return made(
         Findings,
         scene=simulation.system.name,
-        mechanism=made(MechanismSummary, name=mechanism.name, module=mechanism.module) if mechanism else None,
+        mechanism=_mechanism(mechanism) if mechanism else None,
         seed=study.seed,
         trials=tally.trials,
         engine=study.engine,
@@ -84,6 +85,10 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
             *shortfalls(simulation, tally),
         ],
     )
+
+
+def _mechanism(origin: Origin) -> MechanismSummary:
+    return made(MechanismSummary, name=origin.name, module=origin.module, beside=list(origin.beside) or None)
 
 
 def _asked(study: Study) -> StudySummary:

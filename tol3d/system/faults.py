@@ -22,10 +22,12 @@ class Origin:
     Args:
         name: of the mechanism.
         module: the Python module that has the function of its system.
+        beside: names of other mechanisms that bring something into it.
     """
 
     name: str
     module: str
+    beside: tuple[str, ...] = ()
 
     @property
     def package(self) -> str:

@@ -1,12 +1,13 @@
 """A mechanism: kinds of entry that belong together, and the system that they mean."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene, Vocabulary
-from tol3d.system.faults import Origin
+from tol3d.system.faults import Origin, faults_of
 from tol3d.system.system import System
 
 
@@ -19,6 +20,7 @@ class Mechanism(Vocabulary):
     Args:
         system: path of the function that makes of a scene what is simulated; "" where it only adds kinds to the scenes
             of the mechanisms that it `extends`.
+        links: path of the function that makes of a scene what its moves bring into the systems of those; see `brought`.
         summary: path of what its measures and sections are in a run's summary.
         presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
         requires: distributions whose versions decide its results beside those that every study needs; they are part
@@ -26,6 +28,7 @@ class Mechanism(Vocabulary):
     """
 
     system: str = ""
+    links: str = ""
     summary: str = ""
     presenter: str = ""
     requires: tuple[str, ...] = ()
@@ -33,7 +36,7 @@ class Mechanism(Vocabulary):
     @property
     def origin(self) -> Origin:
         """Which one it is, for messages and summaries."""
-        return Origin(self.name, self.system.partition(":")[0])
+        return Origin(self.name, (self.system or self.links).partition(":")[0])
 
     def system_of(self, scene: Scene) -> System:
         """What a scene means.
@@ -43,6 +46,25 @@ class Mechanism(Vocabulary):
         """
         system: System = named(self.system)(scene)
         return system
+
+
+def brought(scene: Scene) -> Iterator[Any]:
+    """What the mechanisms whose kinds a scene has bring into its system, one after the other.
+
+    What that is, says the mechanism that they extend.
+
+    Raises:
+        SceneError: what nobody can build, with its place.
+        MechanismError: a mechanism of another package is at fault.
+    """
+    for own in _bringing(scene):
+        with faults_of(own.origin):
+            yield named(own.links)(scene)
+
+
+def _bringing(scene: Scene) -> Iterator[Mechanism]:
+    """The mechanisms whose kinds a scene has and that bring something into the system of another one."""
+    return (own for own in scene.grammar.vocabularies_of(scene) if isinstance(own, Mechanism) and own.links)
 
 
 def named(path: str) -> Any:
@@ -65,6 +87,12 @@ def mechanism_of(scene: Scene) -> Mechanism:
         others = " or ".join(found.extends) or "another mechanism"
         raise InputError(f"{scene.scene}: kinds of {found.name} stand beside those of {others}, and there are none")
     return found
+
+
+def origin_of(scene: Scene) -> Origin:
+    """Which mechanism a scene is of, and which others bring something into its system; raises as `mechanism_of`."""
+    own = mechanism_of(scene)
+    return replace(own.origin, beside=tuple(each.name for each in _bringing(scene) if own.name in each.extends))
 
 
 def requires_of(scene: Scene) -> tuple[str, ...]:

@@ -69,7 +69,10 @@ def implausible_pins(scene: Scene) -> Iterator[Problem]:
         of_pitch, of_radius = f"the pitch of the pins of {name!r}", f"the pin radius of {name!r}"
         room, taken = pitch - 2 * radius, 0.0
         for tolerance, spec in scene.distributed.items():
-            if not isinstance(spec, PinPositionSpec | PinCircleSpec | PinRingOffsetSpec | PinRadiusSpec):
+            if (
+                not isinstance(spec, PinPositionSpec | PinCircleSpec | PinRingOffsetSpec | PinRadiusSpec)
+                or spec.of != name
+            ):
                 continue
             low, high = spec.distribution.resolve(scene.files).extremes
             far = max(low, high, key=abs)
@@ -99,7 +102,7 @@ def implausible_discs(scene: Scene) -> Iterator[Problem]:
         ring = scene.parts[move.pin_ring]
         assert isinstance(ring, PinRingSpec)
         for name, spec in scene.distributed.items():
-            if isinstance(spec, OF_DISCS_AND_CRANKS):
+            if isinstance(spec, OF_DISCS_AND_CRANKS) and spec.of in (move.disc, move.crankshaft, move.carrier):
                 far = farthest(spec.distribution.resolve(scene.files))
                 words = f"the pin radius of {move.pin_ring!r}"
                 if sentence := HALF.sentence(words, ring.pin_radius.internal, far):

@@ -5,6 +5,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from tol3d.gearing.links import LinkTrials, StatedLink
+    from tol3d.gearing.presenting.shown_train import ShownLink
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
@@ -12,6 +17,9 @@ if TYPE_CHECKING:
     from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
+    from tol3d.system.contributor import Contributor
+
+    Array = NDArray[np.float64]
 
 
 class CycloidPresenter:
@@ -23,8 +31,7 @@ class CycloidPresenter:
 
     def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
         """Its cycloid stage by formula, published and by first principles, and what a negative lost motion means."""
-        formulas = _lazily("formulas")
-        return (*formulas.below_zero(summary), *formulas.formula_blocks(summary))
+        return (*_lazily("formulas").below_zero(summary), *self.link_sections(summary))
 
     def measure_rows(self, measure: "MeasureSummary", summary: "RunSummary") -> "Sequence[FurtherRow]":
         """None."""
@@ -41,6 +48,20 @@ class CycloidPresenter:
     def replayed(self, replay: "Replay", label: str) -> "Display":
         """A trial that was replayed."""
         return _lazily("shown_reducer").replayed_display(replay, label)  # type: ignore[no-any-return]
+
+    # reducers in trains -------------------------------------------------------------------------------
+
+    def link_blocks(self, link: "StatedLink", contributors: "Sequence[Contributor]") -> "Sequence[PageItem]":
+        """What a reducer is; see ShowsLinks."""
+        return _lazily("tables").link_blocks(link, contributors)  # type: ignore[no-any-return]
+
+    def link_sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
+        """Cycloid stages by formula, and what a negative play of one in a train means; see ShowsLinks."""
+        return _lazily("formulas").link_sections(summary)  # type: ignore[no-any-return]
+
+    def shown_link(self, link: "StatedLink", seen: "LinkTrials", world_from_driver: "Array") -> "ShownLink":
+        """All parts of a reducer; see ShowsLinks."""
+        return _lazily("shown_reducer").shown_link(link, seen, world_from_driver)  # type: ignore[no-any-return]
 
 
 def _lazily(module: str) -> Any:

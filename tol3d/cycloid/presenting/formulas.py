@@ -4,11 +4,13 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tol3d.cycloid.formula_summary import CycloidOfRun, CycloidStageSummary
+from tol3d.gearing.summary_types import TrainsOfRun
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
 from tol3d.runs.summary.run import RunSummary
 
 PAPER: Final = "paper (reconstructed) [″]"
 FIRST_PRINCIPLES: Final = "first principles [″]"
+IN_A_TRAIN: Final = "rv_reducer"
 TERM_HEADS: Final = ("tolerance [µm]", PAPER, FIRST_PRINCIPLES, "per µm [″]")
 NEGATIVE: Final = (
     "negative where pins press on both sides of their lobes at once: of rigid parts the turn by which lobes and pins "
@@ -20,9 +22,20 @@ WHAT: Final = (
 )
 
 
-def formula_blocks(summary: RunSummary) -> Sequence[PageItem]:
-    """Tables of each stage of a run."""
-    return stage_blocks((summary.cycloid_stages or {}) if isinstance(summary, CycloidOfRun) else {})
+def link_sections(summary: RunSummary) -> Sequence[PageItem]:
+    """Tables of each stage of a run, and a note to reducers of trains whose mean play is negative."""
+    stages = (summary.cycloid_stages or {}) if isinstance(summary, CycloidOfRun) else {}
+    trains = (summary.trains or {}).values() if isinstance(summary, TrainsOfRun) else ()
+    tight = {
+        stage.link
+        for train in trains
+        for stage in train.stages
+        if stage.kind == IN_A_TRAIN
+        for road in (stage.roads.analytic, stage.roads.geometric)
+        if road is not None and road.mean is not None and road.mean < 0.0
+    }
+    notes = [note(f"{', '.join(sorted(tight))}: {NEGATIVE}; it is added to the play of other stages as it is")]
+    return [*(notes if tight else ()), *stage_blocks(stages)]
 
 
 def below_zero(summary: RunSummary) -> Sequence[PageItem]:

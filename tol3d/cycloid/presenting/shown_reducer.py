@@ -1,19 +1,25 @@
 """A build of an RV reducer as it is shown, exported and moved: discs among their pins, where the first pin touches."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from importlib import import_module
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.cycloid.presenting.motions import MOTIONS, motion
+from tol3d.cycloid.rv_link import RVLink
+from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.shown import ShownReducer
+from tol3d.cycloid.stage_places import StagePlaces
 from tol3d.errors import InputError
 from tol3d.gearing.display import replayed_of
+from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.placed import PlacedGear
+from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body
 from tol3d.report.body import Body, Surface, World
 from tol3d.report.built_body import built_body
@@ -95,6 +101,44 @@ def _body(part: PosedPart) -> Body:
     colour = DISC_COLOURS[(int(number) - 1) % len(DISC_COLOURS)] if kind == "disc" else COLOURS.get(kind or number, "")
     colour = COLOURS["ring"] if part.name == "pin ring" else colour
     return built_body(part.name, part.shape, part.world_from_part, colour, deflection=DEFLECTION)
+
+
+# in trains ----------------------------------------------------------------------------------------
+
+
+def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: NDArray[np.float64]) -> ShownLink:
+    """A reducer in the world of its train, its load turning the output back; see ShowsLinks."""
+    assert isinstance(link, RVLink)
+    shown, note, above = link.shown(seen), "", np.eye(4)
+    above[2, 3] = link.height
+    try:
+        places = shown.seated.places
+    except InputError:
+        note = f"{link.name}: no pin touches its discs; shown where no clearance would have them"
+        places = StagePlaces(
+            shown.own.contact, shown.deviated.stage, float(shown.own.crank_angles(np.array(shown.turns)))
+        )
+    into, names = world_from_driver @ above, _names(shown.own)
+    placed = (replace(part, world_from_part=into @ part.world_from_part) for part in shown.shapes.placed(places))
+    named = [(body.name, replace(body, name=names(body.name))) for body in map(_body, placed)]
+    pins = [body for name, body in named if _is_pin(name)]
+    joined = Body(f"pins of {shown.own.ring}", np.eye(4), partial(_joined, pins), None, COLOURS["pin"])
+    others = (body for name, body in named if not _is_pin(name))
+    return ShownLink(tuple(body for _, body in named), note, (*others, joined))
+
+
+def _names(own: RVSet) -> Callable[[str], str]:
+    """Of bodies in a train, by the names of parts of the scene; several alike are counted."""
+    first = {} if own.first is None else {"sun": own.first.sun, "planet": own.first.planet}
+    known = {"pin ring": own.ring, "carrier": own.carrier, "disc": own.disc, "crank": own.crankshaft, **first}
+
+    def named(body: str) -> str:
+        kind, _, number = body.rpartition(" ")
+        if body in known:
+            return known[body]
+        return f"pin {number} of {own.ring}" if kind == "pin" else f"{known[kind]} {number}"
+
+    return named
 
 
 # builds -------------------------------------------------------------------------------------------

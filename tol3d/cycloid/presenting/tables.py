@@ -1,17 +1,21 @@
 """What a scene's RV reducer is, in tables."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tol3d.cycloid.formula_section import stages_by_formula
 from tol3d.cycloid.limits import largest_pin_radius
 from tol3d.cycloid.presenting.formulas import stage_blocks
+from tol3d.cycloid.rv_deviated import Acts
+from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.system import RVSystem
+from tol3d.gearing.links import StatedLink
 from tol3d.report.page import Heading, PageItem, Row, Table, line
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
+from tol3d.system.contributor import Contributor
 
 ARC_SECONDS: Final = math.degrees(1.0) * 3.6  # that 1 um turns what is 1 mm away
 
@@ -20,9 +24,18 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Ratio, profile, levers and transmission error by formula, then what any system shows."""
     system = simulation.system
     assert isinstance(system, RVSystem)
-    own = system.own
-    formulas = stage_blocks(stages_by_formula(system))
-    return (*map(line, _words(own)), _levers(own), *formulas, *system_blocks(simulation))
+    return (*_nominal(system.own, system.acts, system.contributors), *system_blocks(simulation))
+
+
+def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    """The same of a reducer in a train, without what any system shows."""
+    assert isinstance(link, RVLink)
+    return _nominal(link.own, link.acts, contributors)
+
+
+def _nominal(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    formulas = stage_blocks(stages_by_formula(own, acts, contributors))
+    return (*map(line, _words(own)), _levers(own), *formulas)
 
 
 def _words(own: RVSet) -> list[str]:

@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import ClassVar, Final, Literal
+from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +27,12 @@ class FreeTurn:
     """How far a driven shaft turns freely while its driver, and its carrier if there is one, are held.
 
     Args:
-        play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds.
+        play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds; NaN where nothing is
+            found that stops it.
         middle: of that turn about the shaft's z [rad], against its nominal angle, the same shape; None for 0. It
             matters only where load paths are parallel.
-        jams: where the link cannot be assembled, the same shape; the play there is what it lacks, below 0. None of a
-            link that always can be.
+        jams: where the link cannot be assembled, the same shape; the play there is what it lacks, below 0, or NaN where
+            that is not known. None of a link that always can be.
     """
 
     play: Array
@@ -83,6 +84,9 @@ class StatedLink(ABC):
     housed: ClassVar[bool] = True
     """Whether pictures show a housing in its place; else somebody shows what is in it."""
 
+    presenter: ClassVar[str] = ""
+    """Import path of the module whose PRESENTER shows what is in it; see gearing/presenting/shown_train.py."""
+
     name: str
     driver: str
     driven: str
@@ -121,6 +125,13 @@ class StatedLink(ABC):
         """The free turn by theory; that of the 3D simulation where nothing better is known."""
         return self.exact(seen)
 
+    def neglected(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """Largest first-order change of the play that its theory leaves out on purpose [rad], in words; see System.
+
+        (trials, positions), or (trials, 1), by what is left out.
+        """
+        return {}
+
     @property
     def contacts(self) -> int:
         """Contacts that are found for one of its free turns; none of a formula."""
@@ -144,6 +155,18 @@ class StatedLink(ABC):
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Why it cannot be built with every contributor at its mean, with the place in the scene; see System."""
         return iter(())
+
+    def offset_by(self, contributor: str, part: str) -> "StatedLink | None":
+        """The same link, of which a contributor also moves a part off its axis of rotation by an offset (x, y) [mm].
+
+        The offset turns with the part, as by the run-out of the shaft that carries it; None where the link does not
+        know what that does.
+        """
+        return None
+
+    def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
+        """What summary.json holds of it, by the section in which it stands under its name; see System.sections."""
+        return {}
 
     def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:
         """Between which ends the play lies by the laws of its contributors [rad]; None where that is not known."""

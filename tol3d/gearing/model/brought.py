@@ -1,26 +1,177 @@
-"""Links that another mechanism brings into a scene of gears, with what of the scene is theirs."""
+"""Links that other mechanisms bring into a scene of gears, with what of the scene is theirs."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, TypeVar
 
+from tol3d.gearing.effects import LinkDeviation, TurningOffset
+from tol3d.gearing.grammar.moves import LinkSpec, meshes_of
+from tol3d.gearing.grammar.parts import ShaftSpec, carried
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.contributor import Contributor
+from tol3d.scene import Scene
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.system.draw import Draw
+from tol3d.system.mechanism import brought
+from tol3d.system.plain import UNITS
+
+Owner = TypeVar("Owner")
+
+
+@dataclass(frozen=True)
+class BroughtLink:
+    """A link whose parts gears know nothing of.
+
+    Args:
+        link: as a move of the scene stands for it.
+        parts: in it; they take part in no other move.
+        ends: those of them that may sit on shafts, which turn with its driver or its driven shaft.
+    """
+
+    link: StatedLink
+    parts: frozenset[str]
+    ends: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Brought:
-    """Links of shafts whose parts and tolerances gears know nothing of.
+    """What mechanisms bring into a train.
 
     Args:
-        links: as moves of the scene stand for them.
-        parts: in these links; they take part in no mesh.
-        contributors: by name, those that act in the links alone.
+        links: of moves of the scene.
+        contributors: by name, those that act in these links alone.
+        warnings: of numbers that could be built and are most likely a slip.
     """
 
-    links: tuple[StatedLink, ...] = ()
-    parts: frozenset[str] = frozenset()
+    links: tuple[BroughtLink, ...] = ()
     contributors: Mapping[str, Contributor] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def owners(self) -> Mapping[str, BroughtLink]:
+        """The link that has each part."""
+        return {part: own for own in self.links for part in own.parts}
 
 
 NOTHING: Final = Brought()
+
+
+def brought_into(scene: Scene) -> Brought:
+    """What all mechanisms of a scene bring together, in the order of its moves.
+
+    Raises:
+        SceneError: parts that two moves have, or that sit on shafts otherwise than their link says.
+    """
+    found: list[Brought] = list(brought(scene))
+    order = list(scene.moves)
+    both = Brought(
+        tuple(sorted((link for own in found for link in own.links), key=lambda own: order.index(own.link.name))),
+        {name: each for own in found for name, each in own.contributors.items()},
+        tuple(line for own in found for line in own.warnings),
+    )
+    _refuse_shared(scene, both)
+    _refuse_other_ends(scene, both)
+    return both
+
+
+def _refuse_shared(scene: Scene, own: Brought) -> None:
+    """Refuse parts of two links, and of a link and a mesh."""
+    owner: dict[str, str] = {}
+    for each in own.links:
+        for part in sorted(each.parts):
+            if part in owner:
+                words = f"expected parts of this move alone, got {part!r}, which {owner[part]!r} has"
+                raise scene.refuse(("moves", each.link.name), words)
+            owner[part] = each.link.name
+            for mesh in meshes_of(part, scene.moves):
+                words = f"expected a gear that no other move has, got {part!r}, which {each.link.name!r} has"
+                raise scene.refuse(("moves", mesh), f"{words}; put another gear on the same shaft")
+
+
+def _refuse_other_ends(scene: Scene, own: Brought) -> None:
+    """Refuse parts of links that no shaft turns with, and such as sit on one otherwise than the link says."""
+    owners = own.owners
+    for name, move in scene.moves.items():
+        for role in ("driver", "driven") if isinstance(move, LinkSpec) else ():
+            part = getattr(move, role)
+            if part in owners and part not in owners[part].ends:
+                raise scene.refuse(("moves", name, role), _not_an_end(owners[part], part))
+    for name, shaft in scene.parts.items():
+        for part, sits in shaft.carries.items() if isinstance(shaft, ShaftSpec) else ():
+            if part not in owners:
+                continue
+            path = ("parts", name, "carries", part)
+            if part not in owners[part].ends:
+                raise scene.refuse(path, _not_an_end(owners[part], part))
+            if sits.facing != "forward" or sits.phase.internal:
+                turned: Any = "facing" if sits.facing != "forward" else "phase"
+                words = f"expected no {turned} of {part!r}: the teeth of {owners[part].link.name!r} say how its gears"
+                raise scene.refuse((*path, turned), f"{words} stand")
+
+
+def _not_an_end(own: BroughtLink, part: str) -> str:
+    ends = " or ".join(map(repr, own.ends))
+    return f"expected {ends} of {own.link.name!r}, got {part!r}, which no shaft of a train turns with"
+
+
+# what a mechanism brings ----------------------------------------------------------------------------
+
+
+def shaft_of(scene: Scene, part: str) -> tuple[str, float]:
+    """The shaft that carries a part, and where along it [mm]; a part that none carries is its own."""
+    for name, own in carried(scene.parts):
+        if own == part:
+            shaft = scene.parts[name]
+            assert isinstance(shaft, ShaftSpec)
+            return name, shaft.carries[part].at.internal
+    return part, 0.0
+
+
+def tolerances_of(scene: Scene, owners: Mapping[str, Owner]) -> Iterator[tuple[str, Owner]]:
+    """Tolerances of parts, each with whose they are."""
+    for name, spec in scene.tolerances.items():
+        of: Any = getattr(spec, "of", ())
+        for part in (of,) if isinstance(of, str) else of:
+            if part in owners:
+                yield str(name), owners[part]
+
+
+def acting_in(
+    scene: Scene, name: str, link: str, draw: Draw, turning: str | None = None, least: float | None = None
+) -> Contributor:
+    """A tolerance that acts in a link alone; `turning` is the part of it with which the deviation turns."""
+    spec: Any = scene.tolerances[name]
+    unit: Any = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"][0]
+    return Contributor(name, spec.kind, LinkDeviation(link, turning), draw, unit, spec.description, least)
+
+
+# shafts that carry its parts ------------------------------------------------------------------------
+
+
+def with_shared_shafts(
+    scene: Scene, own: Brought, contributors: Sequence[Contributor]
+) -> tuple[Brought, tuple[Contributor, ...]]:
+    """With what run-outs of shafts do to the parts of links on them.
+
+    Raises:
+        SceneError: a tolerance moves a shaft otherwise, or a part that its link does not let run out.
+    """
+    owners, found = own.owners, []
+    links = {each.link.name: each.link for each in own.links}
+    for contributor in contributors:
+        effects = contributor.effect.singles
+        moved = [(effect, part) for effect in effects if (part := str(getattr(effect, "part", ""))) in owners]
+        for effect, part in moved:
+            name = owners[part].link.name
+            offset = links[name].offset_by(contributor.name, part) if isinstance(effect, TurningOffset) else None
+            if offset is None:
+                words = f"expected a shaft without parts of {name!r}, got one that carries {part!r}, which turns about"
+                raise scene.refuse(("tolerances", contributor.name), f"{words} one axis there; put it on its own shaft")
+            links[name] = offset
+        if moved:
+            inside = (LinkDeviation(owners[part].link.name, part) for _, part in moved)
+            kept = (effect for effect in effects if effect not in [of_a_link for of_a_link, _ in moved])
+            contributor = replace(contributor, effect=together((*kept, *inside)))
+        found.append(contributor)
+    return replace(own, links=tuple(replace(each, link=links[each.link.name]) for each in own.links)), tuple(found)

@@ -7,7 +7,8 @@ from tol3d.errors import SceneError
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.gearing.model.brought import NOTHING, Brought
+from tol3d.gearing.links import StatedLink
+from tol3d.gearing.model.brought import NOTHING, Brought, brought_into, with_shared_shafts
 from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
@@ -35,17 +36,18 @@ from tol3d.gears import LEFT, RIGHT, Gear
 from tol3d.scene import Scene
 
 
-def model_from_scene(scene: Scene, brought: Brought = NOTHING) -> Model:
-    """What a scene means, with links that another mechanism brings into it.
+def model_from_scene(scene: Scene) -> Model:
+    """What a scene means, with links that other mechanisms bring into it.
 
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.
     """
-    for gear in (name for name in loose_gears(scene) if name not in brought.parts):
+    brought = brought_into(scene)
+    for gear in (name for name in loose_gears(scene) if name not in brought.owners):
         raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
     refuse_bearings(scene)
     refuse_second_laws(scene)
-    shafts, stated, arms = shafts_of(scene), (*stated_links_of(scene), *brought.links), arms_of(scene)
+    shafts, arms = shafts_of(scene), arms_of(scene)
     meshes, layout = meshes_of_scene(scene, brought)
     refuse_revolving(scene, layout, arms)
     refuse_misfits(scene, meshes, layout)
@@ -54,6 +56,14 @@ def model_from_scene(scene: Scene, brought: Brought = NOTHING) -> Model:
     meshes = tuple(_loaded(scene, mesh, trains, layout, arms) for mesh in meshes)
     by_name = {mesh.name: mesh for mesh in meshes}
     nominal = Nominal(scene, by_name, layout)
+    brought, contributors = with_shared_shafts(
+        scene,
+        brought,
+        tuple(
+            brought.contributors.get(str(name)) or nominal.contributor(str(name), spec)
+            for name, spec in scene.tolerances.items()
+        ),
+    )
     model = Model(
         name=scene.scene,
         gears=tuple(_gears(scene, by_name, brought)),
@@ -62,16 +72,13 @@ def model_from_scene(scene: Scene, brought: Brought = NOTHING) -> Model:
             for name, part in scene.parts.items()
             if isinstance(part, HousingSpec)
         ),
-        contributors=tuple(
-            brought.contributors.get(str(name)) or nominal.contributor(str(name), spec)
-            for name, spec in scene.tolerances.items()
-        ),
+        contributors=contributors,
         meshes=meshes,
         measures=(),
         profile_steps=scene.options(GearStudyOptions).profile_steps,
-        warnings=(*_warnings(meshes), *implausible_teeth(scene, _by_name(meshes))),
+        warnings=(*_warnings(meshes), *implausible_teeth(scene, _by_name(meshes)), *brought.warnings),
         shafts=shafts,
-        links=stated,
+        links=_links(scene, brought),
         arms=arms,
         trains=trains,
     )
@@ -92,10 +99,17 @@ def meshes_of_scene(scene: Scene, brought: Brought = NOTHING) -> tuple[tuple[Mes
     Raises:
         SceneError: gears that cannot be made or run together, or shafts that do not make trees.
     """
-    shafts, stated = shafts_of(scene), (*stated_links_of(scene), *brought.links)
+    shafts, stated = shafts_of(scene), _links(scene, brought)
     meshes = tuple(_mesh(scene, name, move) for name, move in scene.moves.items() if isinstance(move, GearMeshSpec))
     refuse_no_trees(scene, links_between_shafts(meshes, shafts, stated))
     return meshes, layout_of(meshes, shafts, stated)
+
+
+def _links(scene: Scene, brought: Brought) -> tuple[StatedLink, ...]:
+    """Links that are no meshes, in the order of the moves."""
+    order = list(scene.moves)
+    found = (*stated_links_of(scene), *(own.link for own in brought.links))
+    return tuple(sorted(found, key=lambda link: order.index(link.name)))
 
 
 def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:
@@ -135,7 +149,7 @@ def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout,
 
 def _gears(scene: Scene, meshes: dict[str, Mesh], brought: Brought) -> Iterator[GearPart]:
     for name, part in scene.parts.items():
-        if isinstance(part, GearSpec) and name not in brought.parts:
+        if isinstance(part, GearSpec) and name not in brought.owners:
             first, *others = meshes_of(name, scene.moves)
             gear = meshes[first].gear(name)
             for other in others:

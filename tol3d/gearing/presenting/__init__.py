@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
 
+DISPLAY: Final = "tol3d.gearing.display"
+
 
 class GearPresenter:
     """The presenter of gears; see `tol3d.report.presenter.Presenter`."""
@@ -31,8 +33,8 @@ class GearPresenter:
         return {f"chain-{name}" if k else "chain": partial(_draw_chain, summary, name) for k, name in enumerate(trains)}
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
-        """Tables of every train."""
-        return _lazily("train_tables").train_report(summary)  # type: ignore[no-any-return]
+        """Tables of every train, and those of its links."""
+        return (*_lazily("train_tables").train_report(summary), *_lazily("shown_train").link_sections(summary))
 
     def measure_rows(self, measure: MeasureSummary, summary: RunSummary) -> "Sequence[FurtherRow]":
         """Sums of the stages' ends, where a measure is the sum of a train's stages."""
@@ -40,15 +42,17 @@ class GearPresenter:
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Gears, meshes, trains, measures, and contributors with their coefficients."""
-        return _lazily("scene_check").check_blocks(simulation.system)  # type: ignore[no-any-return]
+        return _lazily("scene_check").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its gears seated again."""
-        return _lazily("gear_display").display(run, which, magnify=magnify)  # type: ignore[no-any-return]
+        build = import_module(DISPLAY).seated_build(run, which, magnify=magnify)
+        return _lazily("shown_train").shown_build(build)  # type: ignore[no-any-return]
 
     def replayed(self, replay: "Replay", label: str) -> "Display":
         """A trial that was replayed, its gears seated again."""
-        return _lazily("gear_display").replayed(replay, label)  # type: ignore[no-any-return]
+        build = import_module(DISPLAY).replayed_build(replay, label)
+        return _lazily("shown_train").shown_build(build)  # type: ignore[no-any-return]
 
 
 def _draw_chain(summary: RunSummary, train: str, path: Path) -> None:

@@ -7,17 +7,15 @@ from importlib import import_module
 from typing import Final
 
 from tol3d.errors import InputError
-from tol3d.gearing.display import SeatedBuild, replayed_build, seated_build
+from tol3d.gearing.display import SeatedBuild
 from tol3d.gearing.placed import SeatedMesh
 from tol3d.gearing.presenting.moved_gears import motion, motions
 from tol3d.gearing.presenting.whole_trains import WholeTrain, gear_body, whole_trains
 from tol3d.report.body import World
 from tol3d.report.motion import Motion
-from tol3d.report.presenter import Panel, View, Which
-from tol3d.runs.run import Run
+from tol3d.report.presenter import Panel, View
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import hint
-from tol3d.simulate import Replay
 
 DRIVER_COLOUR, DRIVEN_COLOUR = "#4682B4", "#E69F00"
 PANELS: Final = "tol3d.gearing.presenting.panels"  # it loads pyvista, which files do not need
@@ -99,16 +97,6 @@ class GearDisplay:
         if len(trains) > 1:
             others = [train.root for train in trains[1:]]
             yield f"shown are the shafts downstream of {trains[0].root}, not those of {', '.join(others)}"
-
-
-def display(run: Run, which: Which, *, magnify: float) -> GearDisplay:
-    """A build of a run, seated again; see `seated_build`."""
-    return GearDisplay(seated_build(run, which, magnify=magnify))
-
-
-def replayed(replay: Replay, label: str) -> GearDisplay:
-    """A trial that was replayed, seated again; see `replayed_build`."""
-    return GearDisplay(replayed_build(replay, label))
 
 
 def _pair(seated: SeatedMesh) -> World:

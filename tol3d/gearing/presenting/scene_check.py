@@ -7,23 +7,29 @@ from functools import singledispatch
 from tol3d.gearing.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, TransmissionError
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
+from tol3d.gearing.presenting.shown_train import link_blocks
 from tol3d.gearing.presenting.train_check import train_blocks
 from tol3d.gearing.system import gear_model
 from tol3d.gears import RIGHT, BevelGear, BevelPair, Gear, GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, titled
-from tol3d.report.system_check import law_name
+from tol3d.report.system_check import law_name, system_blocks
+from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw
-from tol3d.system.system import System
 from tol3d.units import angle_text
 
 UM = 1000.0  # um in a mm
 
 
-def check_blocks(system: System) -> list[PageItem]:
-    """Gears, meshes, trains, measures and contributors of a scene, with what follows from them."""
-    model = gear_model(system)
-    blocks = [*mechanics_blocks(model), *measures_table(model)]
+def check_blocks(simulation: Simulation) -> list[PageItem]:
+    """Gears, meshes, trains, measures and contributors of a scene, with what follows from them.
+
+    Links that compare load paths have no coefficients; a scene with such links is shown as any system is.
+    """
+    model = gear_model(simulation.system)
+    if any(link.compares for link in model.links):
+        return [*link_blocks(model), *mechanics_blocks(model), *system_blocks(simulation)]
+    blocks = [*link_blocks(model), *mechanics_blocks(model), *measures_table(model)]
     return [*blocks, *(contributors_table(model) if model.contributors else ())]
 
 

@@ -79,10 +79,11 @@ class ShaftSizes:
         return self._model.gear(gear).gear.bore
 
     def _shaft(self, name: str) -> Shaft:
-        """A shaft, or a gear that is its own."""
+        """A shaft, or a part that is its own; one that is in no mesh carries nothing that is known here."""
         if name in self.shafts:
             return self.shafts[name]
-        return Shaft(name, (self._model.layout.carrying[name][1],))
+        own = self._model.layout.carrying.get(name)
+        return Shaft(name, () if own is None else (own[1],))
 
     def _needed_diameter(self, shaft: Shaft, after: StatedLink | None) -> float:
         gears = [self._model.gear(carried.gear).gear for carried in shaft.carries]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.breakdowns import staged_measures
 from tol3d.gearing.build import Build
-from tol3d.gearing.engines import INTERFERES, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
+from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
 from tol3d.gearing.linked import Remembered, as_built
 from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
@@ -152,6 +152,7 @@ def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
         codes[play.bound() & (codes == OK)] = INTERFERES
     if play.measure.kind.links:
         codes[play.jammed() & (codes == OK)] = INTERFERES
+        codes[play.untouched() & (codes == OK)] = NO_CONTACT
     return codes
 
 

@@ -1,14 +1,20 @@
 """A build of a planetary set as it is shown and exported: all gears in one world."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.display import replayed_of
+from tol3d.gearing.links import LinkTrials, StatedLink
+from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body
 from tol3d.planetary.presenting.arms import arms_of
 from tol3d.planetary.presenting.motions import motion, motions
+from tol3d.planetary.set_link import SetLink
 from tol3d.planetary.shown import ShownSet
 from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
@@ -60,6 +66,17 @@ def bodies_of(shown: ShownSet) -> tuple[Body, ...]:
         pushed = [spring.sense(planet) for spring in own.springs if spring.sense(planet)]
         colours += [BACKWARD if pushed and pushed[0] < 0 else FORWARD if pushed else PLANETS] * len(own.gears)
     return tuple(gear_body(gear, colour) for gear, colour in zip(shown.gears, colours, strict=True))
+
+
+def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: NDArray[np.float64]) -> ShownLink:
+    """A set in the world of its train; see ShowsLinks."""
+    assert isinstance(link, SetLink)
+    shown, above = link.shown(seen), np.eye(4)
+    above[2, 3] = link.height
+    into = world_from_driver @ above
+    gears = tuple(replace(gear, world_from_gear=into @ gear.world_from_gear) for gear in shown.gears)
+    note = f"{link.name} jams; shown where no backlash would have its gears" if shown.status else ""
+    return ShownLink(bodies_of(replace(shown, gears=gears)), note)
 
 
 def display(run: Run, which: Which, *, magnify: float) -> PlanetaryDisplay:

@@ -3,12 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from tol3d.gearing.presenting.scene_check import mechanics_blocks
-from tol3d.gearing.system import gear_model
+from tol3d.gearing.links import StatedLink
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.presenting.efficiencies import set_blocks
 from tol3d.planetary.sections import set_sections
-from tol3d.planetary.stage.set_link import SetLink
+from tol3d.planetary.set_link import SetLink
 from tol3d.planetary.summary_types import PlanetarySetSummary
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.report.page import Heading, PageItem, Row, Table, line
@@ -17,14 +16,16 @@ from tol3d.study.simulation import Simulation
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Ratio and meshes of the set, of a train with sets its gears and shafts too; then what any system shows."""
+    """Ratio and meshes of the set, then what any system shows."""
     system = simulation.system
-    if isinstance(system, PlanetarySystem):
-        return (*_nominal(system.own, system.summaries), *system_blocks(simulation))
-    model = gear_model(system)
-    links = [link for link in model.links if isinstance(link, SetLink)]
-    sets = [block for link in links for block in _nominal(link.own, set_sections(link.own, link.friction))]
-    return (*sets, *mechanics_blocks(model), *system_blocks(simulation))
+    assert isinstance(system, PlanetarySystem)
+    return (*_nominal(system.own, system.summaries), *system_blocks(simulation))
+
+
+def link_blocks(link: StatedLink) -> Sequence[PageItem]:
+    """Ratio and meshes of a set in a train."""
+    assert isinstance(link, SetLink)
+    return _nominal(link.own, set_sections(link.own, link.friction))
 
 
 def _nominal(own: PlanetarySet, sections: Mapping[str, PlanetarySetSummary]) -> Sequence[PageItem]:

@@ -34,6 +34,9 @@ class MechanismSummary(Section):
 
     name: Label
     module: Label = Field(description="the Python module of its system")
+    beside: Maybe[Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]] = Field(
+        default=LEFT_OUT, description="names of other mechanisms that brought something into it"
+    )
 
 
 class StudySummary(Section):

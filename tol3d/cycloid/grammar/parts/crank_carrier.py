@@ -4,10 +4,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.part import Length, PartSpec
+from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.scene.part import Length
 
 
-class CrankCarrierSpec(PartSpec):
+class CrankCarrierSpec(TurningSpec):
     """A carrier: it turns about the common axis in its main bearing and holds the crankshafts; it is the output."""
 
     words: ClassVar[str] = "a carrier of crankshafts"

@@ -84,7 +84,7 @@ def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, tr
         what = f"the parallel load paths {element.name}"
     else:
         link = model.link(element.name)
-        what = f"{element.name!r}, a {link.kind.replace('_', ' ')} {link.unfollowed}"
+        what = f"{element.name!r}, {scene.moves[element.name].words} {link.unfollowed}"
     raise scene.refuse(
         ("measures", name, "of"),
         f"expected meshes in series from {train.driven!r} to {train.output!r}, got {what}; measure mesh by mesh",

@@ -1,24 +1,35 @@
-"""A planetary set between two shafts of a train."""
+"""Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.numerics.programme import NO_ROOM, ranges
 from tol3d.planetary.contact import Contact, seated_ranges
 from tol3d.planetary.deviated import Acts, Deviated
+from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
+from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.grammar.parts.carrier import CarrierSpec
+from tol3d.planetary.grammar.parts.planet import PlanetSpec
+from tol3d.planetary.implausible import implausible_set
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
-from tol3d.planetary.shown import Made, ShownSet, shown_set
+from tol3d.planetary.refusals import parts_of, set_of
+from tol3d.planetary.sections import set_sections
+from tol3d.planetary.shown import Made, ShownSet, heights_of, made_gears, shown_set
 from tol3d.planetary.stack_up import StackUp
 from tol3d.planetary.stack_up_curves import StackUpCurves
+from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
+from tol3d.scene import Scene
+from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
 from tol3d.system.taken import ROWS_AT_ONCE
 
@@ -48,6 +59,7 @@ class SetLink(StatedLink):
     )
     compares: ClassVar[bool] = True
     housed: ClassVar[bool] = False
+    presenter: ClassVar[str] = "tol3d.planetary.presenting"
 
     own: PlanetarySet
     made: Made
@@ -129,6 +141,85 @@ class SetLink(StatedLink):
             )
         return {name: np.concatenate([own[name] for own in found]) for name in seen.deviations}
 
+    def offset_by(self, contributor: str, part: str) -> "SetLink | None":
+        """See StatedLink: of a central gear."""
+        if part not in {mesh.central.name for mesh in self.own.meshes}:
+            return None
+        return replace(self, actions=(*self.actions, (contributor, Acts("offset", part))))
+
+    def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
+        """Efficiencies, where the friction of its teeth is given; see StatedLink."""
+        found = set_sections(self.own, self.friction)
+        return {"planetary_sets": found[self.name]} if found else {}
+
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Meshes that overlap at the mean build, then load paths of several planets that do."""
         return problems_at(self.own, self.deviated(mean), self.own.output)
+
+
+# from scenes ------------------------------------------------------------------------------------------
+
+
+def sets_as_links(scene: Scene) -> Brought:
+    """The sets of a scene as links of a train.
+
+    Raises:
+        SceneError: what nobody can build, or what such a train cannot have, with its place.
+    """
+    specs = {str(name): spec for name, spec in scene.of(PlanetarySpec).items()}
+    sets = {name: set_of(scene, name, spec) for name, spec in specs.items()}
+    owners = {part: own for name, own in sets.items() for part in parts_of(own, specs[name])}
+    _refuse_alone(scene, specs)
+    for name, part in scene.parts.items():
+        if isinstance(part, PlanetSpec | CarrierSpec) and name not in owners:
+            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; name it in a set or take it out")
+    actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
+    contributors = {}
+    for name, own in tolerances_of(scene, owners):
+        refuse_other_tolerance(scene, name)
+        spec: Any = scene.tolerances[name]
+        acts = acts_of(scene, own, name, spec)
+        turning = acts.gear if acts.effect == "offset" else None
+        actions[own.name].append((name, acts))
+        contributors[name] = acting_in(scene, name, own.name, draw_of(scene, own, spec), turning)
+    links = [_link(scene, own, specs[name], tuple(actions[name])) for name, own in sets.items()]
+    return Brought(
+        tuple(
+            BroughtLink(each, frozenset(parts_of(each.own, specs[each.name])), (each.own.input, each.own.output))
+            for each in links
+        ),
+        contributors,
+        tuple(line for each in links for line in implausible_set(scene, each.own, each.made)),
+    )
+
+
+def _refuse_alone(scene: Scene, specs: Mapping[str, PlanetarySpec]) -> None:
+    """Refuse measures of a set alone: trains read it."""
+    for name, spec in scene.measures.items():
+        if isinstance(spec, PlanetaryMeasureSpec):
+            own = specs[spec.of]
+            raise scene.refuse(
+                ("measures", name, "kind"),
+                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
+                f"of a train whose output turns with {own.output!r}, and of the set alone one whose held shaft turns "
+                f"with {own.input!r}",
+            )
+
+
+def _link(scene: Scene, own: PlanetarySet, spec: PlanetarySpec, actions: tuple[tuple[str, Acts], ...]) -> SetLink:
+    """A set as a link of the shafts that turn with its input and its output."""
+    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
+    made = made_gears(scene, own)
+    heights = heights_of(own, made)
+    return SetLink(
+        name=own.name,
+        driver=driver,
+        driven=driven,
+        rate=1 / own.ratio,
+        offset=(first - heights[own.input]) - (last - heights[own.output]),
+        own=own,
+        made=made,
+        height=first - heights[own.input],
+        actions=actions,
+        friction=spec.friction,
+    )

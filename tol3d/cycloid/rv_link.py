@@ -1,0 +1,244 @@
+"""RV reducers between two shafts of a train, whose play is the reducer's lost motion at its carrier."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.cycloid.contact_kernel import first_contacts
+from tol3d.cycloid.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.formula_section import stages_by_formula
+from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
+from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
+from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
+from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
+from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
+from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
+from tol3d.cycloid.neglected import BEND, BentTurning
+from tol3d.cycloid.problems import problems_at
+from tol3d.cycloid.refusals import implausible_stage, parts_of, reducer_of
+from tol3d.cycloid.rest_kernel import rests
+from tol3d.cycloid.resting import exact_turning, linear_rates, linear_turning
+from tol3d.cycloid.rv_deviated import Acts, Effect, RVDeviated
+from tol3d.cycloid.rv_set import RVSet
+from tol3d.cycloid.shown import ShownReducer
+from tol3d.cycloid.statuses import NO_FIT
+from tol3d.cycloid.system import REST_COSTS
+from tol3d.cycloid.turning import LinearTurning, Turning
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
+from tol3d.scene import Scene
+from tol3d.system.contributor import Contributor
+from tol3d.system.system import KeyPath
+from tol3d.system.taken import ROWS_AT_ONCE
+
+Array = NDArray[np.float64]
+
+PARTS: Final = (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec)
+"""Kinds of part that stand in reducers alone."""
+BOTH_WAYS: Final = ((1, 1.0), (-1, -1.0))
+"""Senses of the output's turn, and how each counts in its lost motion."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RVLink(StatedLink):
+    """A reducer whose input and carrier turn with shafts of a train, its pins fixed in the world.
+
+    It stands as by itself, its output at 0 where the driver is at 0, and is read where the driver stands nominally. Its
+    play is below 0 where pins press on both sides, as the lost motion of a reducer by itself: the train adds it up so.
+
+    Args:
+        own: the reducer.
+        height: where the middle of its discs lies along the driver's z [mm].
+        actions: what each contributor acts on, by its name.
+        crank_hole: diameter of the discs' crank holes where it is shown [mm]; None: as large as walls allow.
+    """
+
+    kind: ClassVar[str] = "rv_reducer"
+    has_middle: ClassVar[bool] = True
+    unfollowed: ClassVar[str] = (
+        "whose error recurs with turns of its output, not of the motor (cycloid_transmission_error reads it, in a "
+        "scene of its own)"
+    )
+    compares: ClassVar[bool] = True
+    housed: ClassVar[bool] = False
+    presenter: ClassVar[str] = "tol3d.cycloid.presenting"
+
+    own: RVSet
+    height: float
+    actions: tuple[tuple[str, Acts], ...]
+    crank_hole: float | None = None
+
+    @property
+    def turns(self) -> Fraction:
+        """Turns of the input until pins, lobes and teeth meet again as they did."""
+        return self.own.period * abs(self.own.ratio)
+
+    @property
+    def contacts(self) -> int:
+        """Every pin of every disc, either way; see RVSystem.cost."""
+        return 2 * self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
+
+    def is_compiled(self) -> bool:
+        """See StatedLink."""
+        return bool((rests if self.own.plays else first_contacts).kept)
+
+    # its play ---------------------------------------------------------------------------------------
+
+    def exact(self, seen: LinkTrials) -> FreeTurn:
+        """The free turn of the output in finite geometry, until pins touch or, of bearings with play, all rests."""
+        return self._free(exact_turning(self.own), seen)
+
+    def analytic(self, seen: LinkTrials) -> FreeTurn:
+        """The same to first order."""
+        return self._free(linear_turning(self.own), seen)
+
+    def _free(self, turning: Turning, seen: LinkTrials) -> FreeTurn:
+        """Position by position, as a measure of the reducer by itself reads one; NaN where nothing touches."""
+        deviated, found = self.deviated(seen), []
+        for turns in self.output_turns(seen).T:
+            ends = [turning.turned(deviated, turns[:, None], sense) for sense, _ in BOTH_WAYS]
+            jams = [np.zeros(len(seen), dtype=bool) if end.codes is None else end.codes[:, 0] == NO_FIT for end in ends]
+            found.append((ends[0].turns[:, 0], ends[1].turns[:, 0], jams[0] | jams[1]))
+        on, back, jammed = (np.stack(own, axis=1) for own in zip(*found, strict=True))
+        return FreeTurn(on - back, np.where(jammed, 0.0, (on + back) / 2), jammed.astype(bool))
+
+    def neglected(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """The bend of flanks; see StatedLink, and neglected.py."""
+        if self.own.plays:
+            return {}
+        bent, straight = (self._free(road(self.own), seen).play for road in (BentTurning, LinearTurning))
+        return {BEND: np.abs(bent - straight)}
+
+    def deviated(self, seen: LinkTrials) -> RVDeviated:
+        """What its parts deviate by."""
+        found = RVDeviated.nothing(self.own, len(seen))
+        for contributor in seen.contributors:
+            found.add(self.acts[contributor.name], seen.deviations[contributor.name])
+        return found
+
+    def output_turns(self, seen: LinkTrials) -> Array:
+        """Turns of the output (trials, positions) where the driver stands nominally."""
+        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
+
+    @cached_property
+    def acts(self) -> Mapping[str, Acts]:
+        """What each contributor acts on."""
+        return dict(self.actions)
+
+    # what acts on it --------------------------------------------------------------------------------
+
+    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+        """By the pins and planets that touch in each trial, to first order; see StatedLink, and regressors.py."""
+        own, found = self.own, []
+        for first in range(0, len(seen), ROWS_AT_ONCE):
+            piece = seen.part(first, first + ROWS_AT_ONCE)
+            turns, deviated = self.output_turns(piece)[:, :1], self.deviated(piece)
+            rates = []
+            for sense, counts in BOTH_WAYS:
+                turned = linear_turning(own).turned(deviated, turns, sense)
+                rates.append((counts, linear_rates(own, deviated, turns[:, 0], turned, sense)))
+            found.append(
+                {
+                    name: sum(counts * each.term(self.acts[name], values - means[name]) for counts, each in rates)
+                    for name, values in piece.deviations.items()
+                }
+            )
+        return {name: np.concatenate([each[name] for each in found]) for name in seen.deviations}
+
+    def offset_by(self, contributor: str, part: str) -> "RVLink | None":
+        """See StatedLink: of the sun, and of the carrier, which its main bearing would displace likewise."""
+        effects: dict[str, Effect] = {self.own.carrier: "carrier offset"}
+        if self.own.first is not None:
+            effects[self.own.first.sun] = "sun offset"
+        if part not in effects:
+            return None
+        return replace(self, actions=(*self.actions, (contributor, Acts(effects[part]))))
+
+    def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
+        """Its cycloid stage by formula; see StatedLink."""
+        known = [each for each in contributors if each.name in self.acts]
+        found = stages_by_formula(self.own, self.acts, known)
+        return {"cycloid_stages": found[self.name]} if found else {}
+
+    def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
+        """Lobes and pins, or teeth, that interfere at the mean build."""
+        return problems_at(self.own, self.acts, mean.contributors, self.deviated(mean))
+
+    def shown(self, seen: LinkTrials) -> ShownReducer:
+        """Its parts in the first trial, in a frame at the middle of its discs that rests."""
+        first = seen.part(0, 1)
+        turns = float(self.output_turns(first)[0, 0])
+        return ShownReducer(self.own, self.deviated(first), turns, self.own.width, self.crank_hole)
+
+
+# from scenes ------------------------------------------------------------------------------------------
+
+
+def reducers_as_links(scene: Scene) -> Brought:
+    """The RV reducers of a scene as links of a train.
+
+    Raises:
+        SceneError: what nobody can build, or what such a train cannot have, with its place.
+    """
+    specs = {str(name): spec for name, spec in scene.of(RVReducerSpec).items()}
+    sets = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}
+    owners = {part: sets[name] for name, spec in specs.items() for part in parts_of(spec)}
+    _refuse_alone(scene, sets)
+    for name, part in scene.parts.items():
+        if isinstance(part, PARTS) and name not in owners:
+            words = f"{name!r} takes part in no move; name it in an RV reducer or take it out"
+            raise scene.refuse(("parts", name), words)
+    actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
+    contributors = {}
+    for name, own in tolerances_of(scene, owners):
+        spec: Any = scene.tolerances[name]
+        acts = acts_of(scene, own, name, spec)
+        actions[own.name].append((name, acts))
+        draw = draw_of(own, acts, spec.distribution.resolve(scene.files))
+        turning = {"sun offset": spec.of, "planet offset": spec.of}.get(acts.effect)
+        least = 0.0 if acts.effect in NOT_NEGATIVE else None
+        contributors[name] = acting_in(scene, name, own.name, draw, turning, least)
+    links = tuple(
+        BroughtLink(_link(scene, own, tuple(actions[name])), parts_of(specs[name]), (own.input, own.carrier))
+        for name, own in sets.items()
+    )
+    return Brought(links, contributors, tuple(line for own in sets.values() for line in implausible_stage(scene, own)))
+
+
+def _refuse_alone(scene: Scene, sets: Mapping[str, RVSet]) -> None:
+    """Refuse measures of a reducer alone: trains read it."""
+    for name, spec in scene.measures.items():
+        if isinstance(spec, CycloidMeasureSpec):
+            own = sets[spec.of]
+            raise scene.refuse(
+                ("measures", name, "kind"),
+                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
+                f"of a train whose output turns with {own.carrier!r}, and of the reducer alone one whose held shaft "
+                f"turns with {own.input!r}",
+            )
+
+
+def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RVLink:
+    """A reducer as a link of the shafts that turn with its input and its carrier."""
+    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.carrier))
+    disc = scene.parts[own.disc]
+    assert isinstance(disc, CycloidDiscSpec)
+    hole = None if disc.hole is None else disc.hole.internal
+    height = first - ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
+    return RVLink(
+        name=own.name,
+        driver=driver,
+        driven=driven,
+        rate=1 / own.ratio,
+        offset=height - last,
+        own=own,
+        height=height,
+        actions=actions,
+        crank_hole=hole,
+    )
