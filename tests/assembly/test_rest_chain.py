@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from tol3d.assembly.model import Assembly, Fix, Measured, Move, Point, Rest, Wel
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.plan import after
 from tol3d.assembly.torsors import road as torsors
 
 Array = NDArray[np.float64]
@@ -123,3 +125,20 @@ def test_of_a_distance_the_ends_of_the_rocking_are_read(rocking: Rocking) -> Non
     assert (codes == OK).all()
     assert np.abs(found - values).max() < 5e-4
     assert np.abs(torsors.values(model, trials, ["seen"])["seen"] - values).max() < 1e-12
+
+
+def test_the_ends_of_a_rocking_are_placed_from_the_first_rest_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three moves for all measures, then for each end the two rests; each trial as if it were by itself."""
+    model, trials = stacked("least"), np.random.default_rng(8).normal(0, 0.03, (20, 8))
+    one_by_one = [placing.values(model, row[None], ["seen"])["seen"][0][0] for row in trials]
+    laid = []
+
+    def counted(move: Any, world: Any) -> Any:
+        laid.append(move)
+        return after(move, world)
+
+    monkeypatch.setattr(placing, "after", counted)
+    found, codes = placing.values(model, trials, ["seen"])["seen"]
+    assert np.array_equal(found, one_by_one)
+    assert not codes.any()
+    assert len(laid) == 3 + 2 * 2

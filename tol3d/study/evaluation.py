@@ -1,7 +1,7 @@
 """One evaluation of stated deviations: measures of a system by one road, all rows at once.
 
-Ends, slopes, shares and explanations ask this and nothing else, in batches: each call places every part again, and
-most of what it takes does not grow with the rows.
+Columns of trials, replays, witnesses, ends, slopes, shares and explanations ask this and nothing else, in batches: each
+call places every part again, and most of what it takes does not grow with the rows.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,15 +11,16 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.study.columns import answered, rows_at_once
 from tol3d.system.contributor import Contributor
+from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Road
+from tol3d.system.road import ANALYTIC_ROAD, Answers, Road
 from tol3d.system.stated import stated
 from tol3d.system.statuses import OK
 from tol3d.system.system import System
+from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -29,6 +30,21 @@ BATCH: Final = 2**22
 
 Values = Callable[[Array, Sequence[Measure]], Mapping[str, Array]]
 """Measures (rows,) by name of deviations (rows, components), in their units; nan where a build does not seat."""
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What a road says of some trials.
+
+    Args:
+        trials: they.
+        answers: the road's.
+        values: what measures take of them: by name (trials,), or (trials, positions) of a curve, in their units.
+    """
+
+    trials: Trials
+    answers: Answers
+    values: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -66,14 +82,11 @@ class Evaluation:
             By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build does not
             seat.
         """
-        road = self.road or self.system.road(ANALYTIC_ROAD, None)
         pieces = []
         judged = {own.name for own in measures if self.road and not overlaps(own)}
-        for first in range(0, len(trials), step := rows_at_once(measures)):
-            piece = trials.part(first, first + step)
-            answers = road.answers(piece, measures)
-            found = answered(self.name, answers, measures, len(piece))
-            for name, codes in answers.status.items():
+        for asked in self.asked(trials, measures):
+            found = dict(asked.values)
+            for name, codes in asked.answers.status.items():
                 if name in judged and codes.any():
                     found[name] = found[name].copy()
                     found[name][codes != OK] = np.nan
@@ -81,6 +94,29 @@ class Evaluation:
         if len(pieces) == 1:
             return pieces[0]
         return {own.name: np.concatenate([piece[own.name] for piece in pieces]) for own in measures}
+
+    def asked(self, trials: Trials, measures: Sequence[Measure]) -> Iterator[Asked]:
+        """All that the road says of trials, as many at once as their positions let it."""
+        road = self.road or self.system.road(ANALYTIC_ROAD, None)
+        rows = max(1, ROWS_AT_ONCE // max(measure.positions.in_a_trial for measure in measures))
+        for first in range(0, len(trials), rows):
+            piece = trials.part(first, first + rows)
+            answers = road.answers(piece, measures)
+            values = {
+                own.name: taken(own, _read(self.name, answers, own, len(piece))) * own.per_internal for own in measures
+            }
+            yield Asked(piece, answers, values)
+
+
+def _read(road: str, answers: Answers, measure: Measure, count: int) -> NDArray[np.float64]:
+    """Values (trials, positions) of a measure, if the road has answered as many."""
+    values, expected = answers.values.get(measure.name), (count, measure.positions.in_a_trial)
+    if values is None or np.shape(values) != expected:
+        got = "none" if values is None else f"an array of shape {np.shape(values)}"
+        raise UnfitError(
+            f"{road} road, measure {measure.name!r}: expected values (trials, positions) of shape {expected}, got {got}"
+        )
+    return values
 
 
 def evaluations(system: System, road: Road | None) -> Mapping[str, Evaluation]:

@@ -218,6 +218,7 @@ def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[A
 
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
     """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
+    alone = block
     if plan.assembly.measures[name].over_play is not None:
         block = _placed(plan, deviations, _over_play(plan, name), block)
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
@@ -236,7 +237,7 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
     ends = []
     for sign in (-1.0, 1.0):
         instead = {index: _leaning(plan, index, (sign * own).tobytes()) for index, own in leaning.items()}
-        there = _placed(plan, deviations[varies], instead)
+        there = _placed(plan, deviations[varies], instead, alone if varies.all() else None)
         ends.append(_read(plan, there, name, plan.of_measures[name])[0])
     numbers[varies], codes[varies] = over_poses(
         ends[0], ends[1], numbers[varies], codes[varies], plan.assembly.measures[name].rocking
