@@ -22,6 +22,7 @@ from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene import Grammar, Kinds, Scene, Vocabulary, read_scene
 from tol3d.scene.entry import kind_of
+from tol3d.scene.schema import SECTIONS
 from tol3d.system.mechanism import Mechanism, named
 
 if TYPE_CHECKING:
@@ -126,7 +127,8 @@ def _grammar_of(shipped: Iterable[str]) -> Grammar:
 def _declared(path: str) -> frozenset[str]:
     """Words that a shipped mechanism's grammar declares, by its sources: some may be of other things than entries."""
     folder = Path(__file__).parent / _room(path) / "grammar"
-    return frozenset(word for file in folder.rglob("*.py") for word in DECLARED.findall(file.read_text("utf-8")))
+    files = (file for own in ("", *SECTIONS) for file in (folder / own).glob("*.py"))
+    return frozenset(word for file in files for word in DECLARED.findall(file.read_text("utf-8")))
 
 
 def _room(path: str) -> str:

@@ -273,6 +273,7 @@ def test_the_sources_of_shipped_mechanisms_declare_all_their_kinds_but_shared_on
     ("scene", "loaded"),
     [
         ("spur_pair", {"gearing"}),
+        ("every_field", {"gearing"}),
         ("two_plates", {"assembly"}),
         ("gearbox_in_housing", {"gearing", "assembly", "machine"}),
         ("every_planetary_field", {"gearing", "planetary"}),
