@@ -26,6 +26,7 @@ from tol3d.machine.drives import drives_of
 from tol3d.machine.grammar.open_chain import FLANK, OpenChainSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.machine.joined import HIDDEN, is_hidden
+from tol3d.machine.mechanism import MACHINE
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.nominal import HousedShaft, housed
 from tol3d.machine.system import MachineSystem
@@ -148,9 +149,24 @@ def _entries_of(scene: Scene, vocabulary: Vocabulary) -> Scene:
     return scene.model_copy(update=kept)
 
 
+def _others_than(scene: Scene, vocabulary: Vocabulary) -> Scene:
+    """The scene without the kinds of a vocabulary, but those that gears have too, and without moves between both."""
+    kept = {
+        section: {name: entry for name, entry in scene.section(section).items() if not _is_between(entry, vocabulary)}
+        for section in SECTIONS
+    }
+    return scene.model_copy(update=kept)
+
+
+def _is_between(entry: Any, vocabulary: Vocabulary) -> bool:
+    kinds = {spec for own in (vocabulary, MACHINE) for section in SECTIONS for spec in own.specs(section)}
+    shared = {spec for section in SECTIONS for spec in GEARING.specs(section)}
+    return type(entry) in kinds - shared or isinstance(entry, StatedMoveSpec)
+
+
 def _gears_of(scene: Scene) -> Scene:
     """Its gears; temperatures of those among their parts that are of gears."""
-    gears = _entries_of(scene, GEARING)
+    gears = _others_than(scene, ASSEMBLY)
     tolerances = {name: spec for name, spec in gears.tolerances.items() if not isinstance(spec, TemperatureSpec)}
     for name, spec in gears.of(TemperatureSpec).items():
         if own := tuple(part for part in spec.of if part in gears.parts):

@@ -276,8 +276,8 @@ class Grammar:
         return used
 
     def _understood(self, vocabulary: Vocabulary) -> set[str]:
-        extending = (each.name for each in self.vocabularies if vocabulary.name in each.extends)
-        return {vocabulary.name, *vocabulary.includes, *extending}
+        own = {vocabulary.name, *vocabulary.includes}
+        return own | {each.name for each in self.vocabularies if own & set(each.extends)}
 
     @cached_property
     def _owners(self) -> Mapping[type[Entry], Sequence[str]]:
