@@ -223,6 +223,9 @@ def test_thinner_sun_teeth_free_the_carrier_by_their_arc_over_planet_and_cranks(
 
     for road in ROADS.values():
         assert play(road, 0.02) - play(road, 0.0) == pytest.approx(0.02 / 10 / 12.5, rel=0.01)
+    seen = link_trials(three[0].model, three[0].measures[0], own, three[1])
+    part = own.parts(seen, {name: np.full(width, 0.001) for name, width in widths.items()})["sun teeth"]
+    np.testing.assert_allclose(part, -(seen.deviations["sun teeth"][:, 0] - 0.001) / 125, rtol=1e-12)
 
 
 def test_its_rate_is_the_ratio_of_the_reducer_with_its_sign(three: tuple[GearSystem, Trials], tmp_path: Path) -> None:
