@@ -95,8 +95,12 @@ def test_its_mechanism_is_the_one_that_includes_all_kinds_and_makes_the_system(
 
 def test_mechanisms_that_do_not_know_each_other_do_not_share_a_scene(tmp_path: Path) -> None:
     strangers = Grammar((*kinds.all_kinds().vocabularies, replace(SPRINGS, includes=())))
-    with pytest.raises(SceneError, match=r"springs.yaml:\d+: .*gearing"):
+    with pytest.raises(SceneError, match=r"springs.yaml:\d+: .*gearing.*; take out gearing, or make two scenes"):
         mechanism_of(read_scene(written(tmp_path), strangers))
+    spring = next(row for row in TEXT.splitlines() if row.startswith("  spring: "))
+    train = (SPUR_PAIR.parent / "reducer_3k_train.yaml").read_text("utf-8").replace("parts:\n", f"parts:\n{spring}\n")
+    with pytest.raises(SceneError, match=r"of springs and 'motor' of gearing .*; take out springs, or make two scenes"):
+        mechanism_of(read_scene(written(tmp_path, train), strangers))
 
 
 def test_a_grammar_of_one_kind_a_section_reads_too(tmp_path: Path) -> None:

@@ -26,8 +26,8 @@ from tol3d.machine.drives import drives_of
 from tol3d.machine.grammar.open_chain import FLANK, OpenChainSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.machine.joined import HIDDEN, is_hidden
-from tol3d.machine.mechanism import MACHINE
 from tol3d.machine.measure import WorstMeasure
+from tol3d.machine.mechanism import MACHINE
 from tol3d.machine.nominal import HousedShaft, housed
 from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene, Vocabulary

@@ -92,13 +92,14 @@ def mechanism_of(scene: Scene) -> Mechanism:
 def origin_of(scene: Scene) -> Origin:
     """Which mechanism a scene is of, and which others bring something into its system; raises as `mechanism_of`."""
     own = mechanism_of(scene)
-    return replace(own.origin, beside=tuple(each.name for each in _bringing(scene) if own.name in each.extends))
+    return replace(own.origin, beside=tuple(each.name for each in _bringing(scene) if each.name != own.name))
 
 
 def requires_of(scene: Scene) -> tuple[str, ...]:
     """The packages whose versions decide its results: of its mechanism, of what extends it, of laws and entries."""
     own = mechanism_of(scene)
-    used = (each for each in scene.grammar.vocabularies_of(scene) if own.name in each.extends)
+    hosts = {own.name, *own.includes}
+    used = (each for each in scene.grammar.vocabularies_of(scene) if hosts & set(each.extends))
     others = (*used, *scene.grammar.lawgivers_of(scene))
     extending = (each.requires for each in others if isinstance(each, Mechanism))
     entries = (entry.requires for entry in scene.entries().values())
