@@ -18,6 +18,7 @@ from toys.registered import known
 
 from tol3d import Overrides, Run, SceneError, check_scene, compare_runs, load_scene, open_run, run_scene
 from tol3d.cycloid.from_scene import rv_system
+from tol3d.cycloid.resting import exact_turning, linear_turning
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.gearing.linked import link_trials
 from tol3d.gearing.links import FreeTurn, LinkTrials
@@ -377,6 +378,38 @@ def test_of_two_reducers_in_series_the_first_counts_over_the_ratio_of_the_last(t
             assert np.array_equal(found[name], read)
             assert found[name].std() > 3e-6
         np.testing.assert_allclose(found["lost motion"], found["first"] / 25 + found["last"], rtol=0, atol=1e-17)
+
+
+BESIDE = f"""
+scene: a reducer beside a bought one
+parts:{RV}
+tolerances:{OF_RV}
+  run-out: {{kind: carrier_bearing, of: carrier, distribution: {{kind: rayleigh, scale: 9 um}}}}
+  box play: {{kind: reducer_backlash, of: box, distribution: {{kind: uniform, lower: 1 arcmin, upper: 5 arcmin}}}}
+moves:{IS_RV}
+  box: {{kind: reducer, driver: sun, driven: carrier, ratio: 25}}
+  train: {{kind: train, driven: sun, output: carrier}}
+measures: {{lost motion: {{kind: lost_motion, of: train}}}}
+study: {{trials: 40}}
+"""
+
+
+def test_beside_another_load_path_both_leave_what_each_leaves_where_its_middle_lies(tmp_path: Path) -> None:
+    """The bought reducer's free turn lies about the nominal angle; this one's ends are its turns on and back."""
+    simulation = simulation_of(load_scene(written(tmp_path, BESIDE)))
+    whole, trials = simulation.system, drawn(simulation, 0, 40)
+    assert isinstance(whole, GearSystem)
+    own = whole.model.link("rv")
+    assert isinstance(own, RVLink)
+    seen = link_trials(whole.model, whole.measures[0], own, trials)
+    half = trials.deviations[:, whole.model.component_slices["box play"]][:, 0] / 2
+    for road, turning in (("exact", exact_turning(own.own)), (ANALYTIC_ROAD, linear_turning(own.own))):
+        on, back = (turning.turned(own.deviated(seen), own.output_turns(seen), sense).turns[:, 0] for sense in (1, -1))
+        wanted = np.minimum(on, half) - np.maximum(back, -half)
+        found = whole.road(road, None).answers(trials, whole.measures).values["lost motion"][:, 0]
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-16)
+        centred = np.minimum(on - back, 2 * half)
+        assert np.abs(found - centred).max() > 1e-5  # its middle counts
 
 
 def test_builds_that_fail_fail_their_train_in_its_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
