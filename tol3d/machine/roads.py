@@ -5,6 +5,7 @@ The assembly is read where its joints then stand, in each pose.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import islice
 from typing import Any, Final
 
@@ -20,6 +21,7 @@ from tol3d.machine.drives import HALF, JointDrive
 from tol3d.machine.joined import Joined
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.statuses import FROM_ASSEMBLIES
+from tol3d.machine.turned import Turned, Turning
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import reason_column
 from tol3d.system.road import Answers, Codes, Road
@@ -34,19 +36,6 @@ ROWS: Final = 16384
 
 NOT_TURNED: Final = int(FROM_ASSEMBLIES[NO_BUILD])
 """The status of what a joint carries whose train jams or finds no contact."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Turned:
-    """Joints of some trials.
-
-    Args:
-        play: by reading of a drive (trials,) [rad].
-        failed: by reading, trials in which the train has none (trials,).
-    """
-
-    play: Mapping[str, Array]
-    failed: Mapping[str, NDArray[np.bool_]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,13 +91,12 @@ class MachineRoad:
             {name: values[name][:, None] for name in still}, details=shown, status=self._status(codes, still)
         )
         if not reads_gears:
-            return self._with_poses(found, trials, [name for name in others if name not in still], _Turned({}, {}))
+            return self._with_poses(found, trials, [name for name in others if name not in still], Turned())
         seen, failed = self._seen(trials, values, codes)
-        gears = self.gears.answers(seen, [*of_gears, *needed.values()])
-        gears = self._without_axes(gears, [*of_gears, *needed.values()], failed)
-        turned = _turned_by(gears, needed)
-        if needed:
-            gears = _only(gears, {own.name for own in of_gears})
+        gears = Answers({})
+        if of_gears:
+            gears = self._without_axes(self.gears.answers(seen, of_gears), of_gears, failed)
+        turned = self._turned_by(seen, list(needed.values()), failed)
         found = self._with_poses(found, trials, [name for name in others if name not in still], turned)
         for measure in worst:
             found = _joined(found, self._worst(trials, measure, turned))
@@ -124,9 +112,8 @@ class MachineRoad:
         readings = {drive.readings[pose].name: drive.readings[pose] for drive in self.system.drives}
         if not readings:
             return self.system.of_assembly(trials.deviations)
-        seen, _ = self.gear_trials(trials)
-        gears = self.gears.answers(seen, list(readings.values()))
-        return self._turned(trials, pose, _turned_by(gears, readings))
+        seen, failed = self.gear_trials(trials)
+        return self._turned(trials, pose, self._turned_by(seen, list(readings.values()), failed))
 
     # joints -----------------------------------------------------------------------------------------
 
@@ -137,7 +124,22 @@ class MachineRoad:
         wanted += [(drive, pose) for own in worst for pose, name in own.sizes for drive in system.joints_of(name)]
         return list({(drive.joint, pose): (drive, pose) for drive, pose in wanted}.values())
 
-    def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: _Turned) -> Answers:
+    def _turned_by(self, seen: Trials, readings: Sequence[GearMeasure], failed: Mapping[str, Codes]) -> Turned:
+        """What trains leave free; nothing is known of one whose axes are not where they should be."""
+        found = self.turning.turned(seen, readings)
+        lost = {
+            own.name: found.failed[own.name] | np.any([failed[shaft] != 0 for shaft in self._shafts(own)], axis=0)
+            for own in readings
+            if self._shafts(own)
+        }
+        return replace(found, failed={**found.failed, **lost}) if lost else found
+
+    @cached_property
+    def turning(self) -> Turning:
+        """What trains turn joints by."""
+        return Turning(self.system.gears, self.gears)
+
+    def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: Turned) -> Answers:
         """Answers, and measures of the assembly in their poses."""
         poses = self.system.pose_of
         for pose in dict.fromkeys(poses[name] for name in names):
@@ -145,7 +147,7 @@ class MachineRoad:
             answers = _joined(answers, self._in_pose(trials, own, pose, turned))
         return answers
 
-    def _in_pose(self, trials: Trials, names: Sequence[str], pose: str, turned: _Turned) -> Answers:
+    def _in_pose(self, trials: Trials, names: Sequence[str], pose: str, turned: Turned) -> Answers:
         system = self.system
         deviations = self._turned(trials, pose, turned)
         values, codes, details = self._placed(deviations, names, pose)
@@ -165,7 +167,7 @@ class MachineRoad:
             found[name] = np.where((before != 0)[:, None], np.nan, found[name])
         return Answers(found, details={**details, **reasons}, status=status)
 
-    def _turned(self, trials: Trials, pose: str, turned: _Turned, sides: Mapping[str, float] | None = None) -> Array:
+    def _turned(self, trials: Trials, pose: str, turned: Turned, sides: Mapping[str, float] | None = None) -> Array:
         """Deviations (trials, columns) of the assembly, its joints turned to one end of their plays.
 
         Args:
@@ -185,7 +187,7 @@ class MachineRoad:
             deviations[:, drawn[drive.turn].start] = HALF * side * play
         return deviations
 
-    def _worst(self, trials: Trials, measure: WorstMeasure, turned: _Turned) -> Answers:
+    def _worst(self, trials: Trials, measure: WorstMeasure, turned: Turned) -> Answers:
         """The largest over poses, and over flanks; of a trial in which a joint has no play there is none."""
         largest, place = np.full(len(trials), -np.inf), np.full(len(trials), "", dtype=f"<U{measure.longest}")
         status, reason = np.zeros(len(trials), dtype=np.int8), np.full(len(trials), "")
@@ -271,29 +273,10 @@ def batched(items: Iterator[Mapping[str, float] | None], size: int) -> Iterator[
         yield batch
 
 
-def _turned_by(answers: Answers, readings: Iterable[str]) -> _Turned:
-    """What trains leave free."""
-    play, failed = {}, {}
-    for name in readings:
-        play[name] = np.asarray(answers.values[name][:, 0])
-        codes = answers.status.get(name, np.zeros(len(play[name]), dtype=np.int8))
-        failed[name] = (codes != 0) | ~np.isfinite(play[name])
-    return _Turned(play, failed)
-
-
 def _joined(first: Answers, second: Answers) -> Answers:
     return Answers(
         {**first.values, **second.values},
         {**first.terms, **second.terms},
         {**first.details, **second.details},
         {**first.status, **second.status},
-    )
-
-
-def _only(answers: Answers, names: set[str]) -> Answers:
-    """Answers of some measures."""
-    values = {name: own for name, own in answers.values.items() if name in names}
-    terms = {key: own for key, own in answers.terms.items() if key[0] in names}
-    return replace(
-        answers, values=values, terms=terms, status={name: own for name, own in answers.status.items() if name in names}
     )

@@ -1,0 +1,102 @@
+"""How far trains turn joints: each joint is solved once for each build of its own train and each position.
+
+Builds that differ in other trains alone, such as those of slopes, ends and second looks, share what is found; so do all
+measures and poses that read a joint where it stands alike.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from hashlib import blake2b
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.model.measure import Measure
+from tol3d.gearing.system import GearSystem
+from tol3d.system.road import Road
+from tol3d.system.stated import component_slices
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+DEAR: Final = 4
+"""Contacts of a link from which its builds are worth remembering; a mesh takes a microsecond."""
+MOST_KEPT: Final = 200_000
+"""Builds of all joints that are remembered; then none is, and it begins anew."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """Joints of some trials.
+
+    Args:
+        play: by reading of a drive (trials,) [rad].
+        failed: by reading, trials in which the train has none (trials,).
+    """
+
+    play: Mapping[str, Array] = field(default_factory=dict)
+    failed: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+
+
+@dataclass(eq=False)
+class Turning:
+    """What trains of a system leave free, by one of its roads.
+
+    Args:
+        gears: whose trains.
+        road: by which.
+    """
+
+    gears: GearSystem
+    road: Road
+    _kept: dict[tuple[str, bytes], float] = field(default_factory=dict)
+    _columns: dict[str, NDArray[np.intp]] = field(default_factory=dict)
+
+    def turned(self, trials: Trials, readings: Sequence[Measure]) -> Turned:
+        """The lost motions of some readings.
+
+        Args:
+            trials: as the gears see them.
+            readings: each at one position that all trials share.
+        """
+        plays = {own.name: self._play(trials, own) for own in readings if self._is_dear(own)}
+        others = [own for own in readings if own.name not in plays]
+        if others:
+            plays |= self._solved(trials, others)
+        ordered = {own.name: plays[own.name] for own in readings}
+        return Turned(ordered, {name: ~np.isfinite(own) for name, own in ordered.items()})
+
+    def _is_dear(self, reading: Measure) -> bool:
+        return any(self.gears.model.link(name).contacts >= DEAR for _, name in reading.kind.links)
+
+    def _solved(self, trials: Trials, readings: Sequence[Measure]) -> dict[str, Array]:
+        """Lost motions (trials,) by reading, not a number where a train has none."""
+        answers = self.road.answers(trials, list(readings))
+        found = {}
+        for own in readings:
+            codes = answers.status.get(own.name, np.zeros(len(trials), dtype=np.int8))
+            found[own.name] = np.where(codes != 0, np.nan, answers.values[own.name][:, 0])
+        return found
+
+    def _play(self, trials: Trials, reading: Measure) -> Array:
+        """Lost motion (trials,), of builds that are not known solved anew, each once."""
+        own = np.ascontiguousarray(trials.deviations[:, self._acting(reading)])
+        keys = [(reading.name, blake2b(row, digest_size=16).digest()) for row in own]
+        kept = self._kept
+        if len(kept) + len(keys) > MOST_KEPT:
+            kept = self._kept = {}  # another thread may still read the other one
+        new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in kept}
+        rows = np.array([*new.values()], dtype=np.intp)
+        if len(rows):
+            part = Trials(trials.deviations[rows], {name: at[rows] for name, at in trials.positions.items()})
+            kept |= zip(new, self._solved(part, [reading])[reading.name].tolist(), strict=True)
+        return np.array([kept[key] for key in keys])
+
+    def _acting(self, reading: Measure) -> NDArray[np.intp]:
+        """Columns of the deviations that act on a reading."""
+        if reading.name not in self._columns:
+            slices = component_slices(self.gears)
+            its = [np.arange(slices[own.name].start, slices[own.name].stop) for own in self.gears.acting(reading)]
+            self._columns[reading.name] = np.concatenate([*its, np.zeros(0)]).astype(np.intp)
+        return self._columns[reading.name]
