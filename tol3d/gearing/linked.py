@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from tol3d.gearing.model.contributor import Contributor
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
+
+DEAR: Final = 4
+"""Contacts of a link from which it is worth the while to look for trials that it sees alike."""
 
 LinkLaw = Callable[[StatedLink, LinkTrials], FreeTurn]
 """The free turn of a link's driven shaft."""
@@ -28,8 +32,20 @@ class Remembered:
         """See LinkLaw; all that it is asked is of the same trials."""
         key = link.name, seen.angles.shape, seen.angles.tobytes()
         if key not in self.known:
-            self.known[key] = self.law(link, seen)
+            self.known[key] = _each_once(self.law, link, seen) if link.contacts >= DEAR else self.law(link, seen)
         return self.known[key]
+
+
+def _each_once(law: LinkLaw, link: StatedLink, seen: LinkTrials) -> FreeTurn:
+    """Of trials that a link sees alike, such as those in which something else deviates, one is solved for all."""
+    rows = np.ascontiguousarray(np.concatenate([seen.angles, *seen.deviations.values()], axis=1))
+    first: dict[bytes, int] = {}
+    places = np.array([first.setdefault(row.tobytes(), len(first)) for row in rows], dtype=np.intp)
+    if len(first) == len(rows):
+        return law(link, seen)
+    found = law(link, seen.rows(np.unique(places, return_index=True)[1]))
+    middle = None if found.middle is None else found.middle[places]
+    return FreeTurn(found.play[places], middle, None if found.jams is None else found.jams[places])
 
 
 def as_built(link: StatedLink, seen: LinkTrials) -> FreeTurn:

@@ -6,15 +6,17 @@ position; over a whole turn only its length matters. Squares catch one-sided eff
 
 from collections.abc import Hashable, Mapping, Sequence, Set
 from dataclasses import replace
-from typing import Any
+from hashlib import blake2b
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.linked import link_contributors
-from tol3d.gearing.links import LinkTrials
+from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
 from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.system.itself import Itself
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import mean_deviations, stated
 from tol3d.system.taken import ROWS_AT_ONCE, taken
@@ -22,6 +24,11 @@ from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
+
+MOST_KEPT: Final = 200_000
+"""Trials of links that are kept, of what their contributors add."""
+
+_KEPT: Final[list[dict[tuple[Itself, bytes, bytes], Array]]] = [{}]
 
 
 def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
@@ -83,9 +90,26 @@ def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping
         means = {
             each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions))) for each in own
         }
-        parts = link.parts(LinkTrials(own, deviations, _link_angles(model, measure, name, columns)), means)
+        parts = _parts(link, LinkTrials(own, deviations, _link_angles(model, measure, name, columns)), means)
         found |= {name: factor * measure.per_internal * part for name, part in parts.items()}
     return found
+
+
+def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+    """What contributors add to a link's play; each trial is worked out once, whatever measures and findings ask."""
+    names, rows = [*seen.deviations], np.concatenate([seen.angles[:, :1], *seen.deviations.values()], axis=1)
+    about = blake2b(np.concatenate([means[name] for name in names] or [np.zeros(0)]).tobytes(), digest_size=16).digest()
+    keys = [(Itself(link), about, blake2b(row, digest_size=16).digest()) for row in np.ascontiguousarray(rows)]
+    known = _KEPT
+    if len(known[0]) + len(keys) > MOST_KEPT:
+        known[0] = {}  # another thread may still read the other one
+    found = known[0]
+    new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in found}
+    if new:
+        parts = link.parts(seen.rows(np.array([*new.values()], dtype=np.intp)), means)
+        found |= zip(new, np.stack([parts[name] for name in names], axis=1), strict=True)
+    every = np.array([found[key] for key in keys])
+    return {name: every[:, k] for k, name in enumerate(names)}
 
 
 def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) -> Array:

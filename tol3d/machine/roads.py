@@ -137,7 +137,7 @@ class MachineRoad:
     @cached_property
     def turning(self) -> Turning:
         """What trains turn joints by."""
-        return Turning(self.system.gears, self.gears)
+        return Turning(self.system, self.gears)
 
     def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: Turned) -> Answers:
         """Answers, and measures of the assembly in their poses."""

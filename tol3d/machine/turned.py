@@ -8,22 +8,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from typing import Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gearing.linked import DEAR
 from tol3d.gearing.model.measure import Measure
-from tol3d.gearing.system import GearSystem
+from tol3d.machine.joined import Joined
 from tol3d.system.road import Road
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
-DEAR: Final = 4
-"""Contacts of a link from which its builds are worth remembering; a mesh takes a microsecond."""
 MOST_KEPT: Final = 200_000
 """Builds of all joints that are remembered; then none is, and it begins anew."""
+
+
+_KNOWN: Final[WeakKeyDictionary[Joined, dict[str, dict[tuple[str, bytes], float]]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,13 +47,12 @@ class Turning:
     """What trains of a system leave free, by one of its roads.
 
     Args:
-        gears: whose trains.
-        road: by which.
+        system: whose trains; what is solved of it is known to all roads of a kind in this process.
+        road: of its gears.
     """
 
-    gears: GearSystem
+    system: Joined
     road: Road
-    _kept: dict[tuple[str, bytes], float] = field(default_factory=dict)
     _columns: dict[str, NDArray[np.intp]] = field(default_factory=dict)
 
     def turned(self, trials: Trials, readings: Sequence[Measure]) -> Turned:
@@ -68,7 +70,7 @@ class Turning:
         return Turned(ordered, {name: ~np.isfinite(own) for name, own in ordered.items()})
 
     def _is_dear(self, reading: Measure) -> bool:
-        return any(self.gears.model.link(name).contacts >= DEAR for _, name in reading.kind.links)
+        return any(self.system.gears.model.link(name).contacts >= DEAR for _, name in reading.kind.links)
 
     def _solved(self, trials: Trials, readings: Sequence[Measure]) -> dict[str, Array]:
         """Lost motions (trials,) by reading, not a number where a train has none."""
@@ -83,9 +85,10 @@ class Turning:
         """Lost motion (trials,), of builds that are not known solved anew, each once."""
         own = np.ascontiguousarray(trials.deviations[:, self._acting(reading)])
         keys = [(reading.name, blake2b(row, digest_size=16).digest()) for row in own]
-        kept = self._kept
+        known, kind = _KNOWN.setdefault(self.system, {}), type(self.road).__name__
+        kept = known.setdefault(kind, {})
         if len(kept) + len(keys) > MOST_KEPT:
-            kept = self._kept = {}  # another thread may still read the other one
+            kept = known[kind] = {}  # another thread may still read the other one
         new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in kept}
         rows = np.array([*new.values()], dtype=np.intp)
         if len(rows):
@@ -96,7 +99,9 @@ class Turning:
     def _acting(self, reading: Measure) -> NDArray[np.intp]:
         """Columns of the deviations that act on a reading."""
         if reading.name not in self._columns:
-            slices = component_slices(self.gears)
-            its = [np.arange(slices[own.name].start, slices[own.name].stop) for own in self.gears.acting(reading)]
+            slices = component_slices(self.system.gears)
+            its = [
+                np.arange(slices[own.name].start, slices[own.name].stop) for own in self.system.gears.acting(reading)
+            ]
             self._columns[reading.name] = np.concatenate([*its, np.zeros(0)]).astype(np.intp)
         return self._columns[reading.name]

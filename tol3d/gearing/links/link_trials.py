@@ -35,6 +35,11 @@ class LinkTrials:
         deviations = {name: own[first:last] for name, own in self.deviations.items()}
         return LinkTrials(self.contributors, deviations, self.angles[first:last])
 
+    def rows(self, places: NDArray[np.intp]) -> "LinkTrials":
+        """Some trials."""
+        deviations = {name: own[places] for name, own in self.deviations.items()}
+        return LinkTrials(self.contributors, deviations, self.angles[places])
+
     def of(self, kind: str) -> Array:
         """Components (trials, components) of the contributors of a kind, added up; 0 where there is none."""
         own = [self.deviations[each.name] for each in self.contributors if each.kind == kind]
