@@ -404,7 +404,10 @@ def test_beside_another_load_path_both_leave_what_each_leaves_where_its_middle_l
     seen = link_trials(whole.model, whole.measures[0], own, trials)
     half = trials.deviations[:, whole.model.component_slices["box play"]][:, 0] / 2
     for road, turning in (("exact", exact_turning(own.own)), (ANALYTIC_ROAD, linear_turning(own.own))):
-        on, back = (turning.turned(own.deviated(seen), own.output_turns(seen), sense).turns[:, 0] for sense in (1, -1))
+        on, back = (
+            turning.turned(own.deviated(seen, own.output_turns(seen)[:, 0]), own.output_turns(seen), sense).turns[:, 0]
+            for sense in (1, -1)
+        )
         wanted = np.minimum(on, half) - np.maximum(back, -half)
         found = whole.road(road, None).answers(trials, whole.measures).values["lost motion"][:, 0]
         np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-16)

@@ -19,6 +19,7 @@ Complex = NDArray[np.complex128]
 PRESSURE_ANGLE: Final = np.radians(20.0)
 PLACES: Final = np.linspace(-0.05, 0.55, 49)  # of a lobe, and a bit of what lies beyond its half
 HEIGHTS: Final = 81
+CENTRAL: Final = ("sun", "carrier", "pin ring")
 
 
 def involute(angle: Array) -> Array:
@@ -65,7 +66,7 @@ class Numbers:
 
 
 class WholeReducer:
-    """One trial. Tolerances have the names by which they are read here."""
+    """One trial. Tolerances have the names by which they are read here; those of bores rest in the world."""
 
     def __init__(self, own: Numbers, drawn: DrawnColumns) -> None:
         self.own = own
@@ -74,6 +75,8 @@ class WholeReducer:
         outwards = drawn.one("circle") + drawn.all("outwards", *each) + 1j * drawn.all("round", *each)
         towards = np.exp(2j * np.pi * np.arange(pins) / pins)
         self.pins = (own.circle + outwards + drawn.plane("anywhere", *each)) * towards + drawn.plane("ring", "")[0]
+        bores = {name: complex(drawn.one(f"{name} bore x"), drawn.one(f"{name} bore y")) for name in CENTRAL}
+        self.sun_bore, self.carrier_bore, self.pins = bores["sun"], bores["carrier"], self.pins + bores["pin ring"]
         self.radii = own.pin_radius + drawn.all("radii", *each)
         lobes = [[f"disc {disc} lobe {lobe + 1}" for lobe in range(own.lobes)] for disc in discs]
         self.pitch = np.stack([drawn.all("pitch", *one) for one in lobes])
@@ -99,7 +102,7 @@ class WholeReducer:
             return nominal + self.phases
         z1, z2 = own.teeth
         bases = own.module * np.cos(PRESSURE_ANGLE) / 2 * np.array([z1, z2])
-        sun = self.sun_off * np.exp(1j * position * (1 + z2 / z1 * own.pins))
+        sun = self.sun_off * np.exp(1j * position * (1 + z2 / z1 * own.pins)) + self.sun_bore
         ray = 2 * np.pi * np.arange(own.cranks) / own.cranks
         # a planet's x points so that where its crank's throw has turned by 0 a space of its teeth faces the sun
         x = np.exp(1j * (np.pi + np.pi / z2 + ray * (1 + z1 / z2)))
@@ -108,7 +111,9 @@ class WholeReducer:
         pitch = np.pi * own.module * np.cos(PRESSURE_ANGLE)
         turned = np.full(own.cranks, nominal)
         for _ in range(12):
-            line = np.exp(1j * carrier) * self.axes + self.planets_off * x * np.exp(1j * turned) - sun
+            line = (
+                np.exp(1j * carrier) * self.axes + self.carrier_bore + self.planets_off * x * np.exp(1j * turned) - sun
+            )
             meets = np.arccos(bases.sum() / abs(line))
             room = pitch / 2 - bases[0] * half[0] - bases[1] * half[1] + bases.sum() * involute(meets)
             aside = np.angle(line * np.exp(-1j * (position + ray)))
@@ -121,7 +126,7 @@ class WholeReducer:
         own, carrier = self.own, position + turn
         throw = 2 * np.pi * disc / own.discs
         throws = self.throws_at(position, carrier, sense)
-        eccentrics = np.exp(1j * carrier) * self.axes
+        eccentrics = np.exp(1j * carrier) * self.axes + self.carrier_bore
         eccentrics = eccentrics + np.exp(1j * throws) * (own.eccentricity * np.exp(1j * throw) + self.thrown[disc])
         bored, middle = self.bored[disc], eccentrics.mean()
         leads = np.angle(np.sum((eccentrics - middle) * np.conj(bored - bored.mean())))

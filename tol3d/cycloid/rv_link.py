@@ -56,6 +56,7 @@ class RVLink(StatedLink):
         own: the reducer.
         height: where the middle of its discs lies along the driver's z [mm].
         actions: what each contributor acts on, by its name.
+        sun_level: of the middle of the sun's teeth, from there [mm].
         crank_hole: diameter of the discs' crank holes where it is shown [mm]; None: as large as walls allow.
     """
 
@@ -72,6 +73,7 @@ class RVLink(StatedLink):
     own: RVSet
     height: float
     actions: tuple[tuple[str, Acts], ...]
+    sun_level: float = 0.0
     crank_hole: float | None = None
 
     @property
@@ -100,8 +102,9 @@ class RVLink(StatedLink):
 
     def _free(self, turning: Turning, seen: LinkTrials) -> FreeTurn:
         """Position by position, as a measure of the reducer by itself reads one; NaN where nothing touches."""
-        deviated, found = self.deviated(seen), []
+        found = []
         for turns in self.output_turns(seen).T:
+            deviated = self.deviated(seen, turns)
             ends = [turning.turned(deviated, turns[:, None], sense) for sense, _ in BOTH_WAYS]
             jams = [np.zeros(len(seen), dtype=bool) if end.codes is None else end.codes[:, 0] == NO_FIT for end in ends]
             found.append((ends[0].turns[:, 0], ends[1].turns[:, 0], jams[0] | jams[1]))
@@ -115,12 +118,34 @@ class RVLink(StatedLink):
         bent, straight = (self._free(road(self.own), seen).play for road in (BentTurning, LinearTurning))
         return {BEND: np.abs(bent - straight)}
 
-    def deviated(self, seen: LinkTrials) -> RVDeviated:
-        """What its parts deviate by."""
+    def deviated(self, seen: LinkTrials, turns: Array) -> RVDeviated:
+        """What its parts deviate by where the output has made so many turns (trials,).
+
+        A carrier that lies aside is a ring and a sun that lie aside the other way: all of it moved changes nothing.
+        """
         found = RVDeviated.nothing(self.own, len(seen))
         for contributor in seen.contributors:
-            found.add(self.acts[contributor.name], seen.deviations[contributor.name])
+            if contributor.name in self.acts:
+                found.add(self.acts[contributor.name], seen.deviations[contributor.name])
+        asides = self.asides(seen)
+        for acts, part, sun_turned in self._against_carrier if asides else ():
+            none = np.zeros((len(seen), 2))
+            aside = asides.get(part, none) - asides.get(self.own.carrier, none)
+            found.add(acts, _turned(aside, -sun_turned * turns))
         return found
+
+    @property
+    def _against_carrier(self) -> tuple[tuple[Acts, str, float], ...]:
+        """Pin ring, and sun: how each acts that lies aside, and its turns a turn of the output."""
+        ring = (Acts("pin ring"), self.own.ring, 0.0)
+        first = self.own.first
+        return (ring,) if first is None else (ring, (Acts("sun offset"), first.sun, float(self.own.ratio)))
+
+    @property
+    def levels(self) -> Mapping[str, float]:
+        """See StatedLink: sun at its teeth's middle, ring and carrier at that of the discs."""
+        found = {self.own.ring: self.height, self.own.carrier: self.height}
+        return found if self.own.first is None else {self.own.first.sun: self.height + self.sun_level, **found}
 
     def output_turns(self, seen: LinkTrials) -> Array:
         """Turns of the output (trials, positions) where the driver stands nominally."""
@@ -135,21 +160,47 @@ class RVLink(StatedLink):
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
         """By the pins and planets that touch in each trial, to first order; see StatedLink, and regressors.py."""
-        own, found = self.own, []
+        found = [
+            {
+                name: sum(counts * each.term(acts, piece.deviations[name] - means[name]) for counts, each in rates)
+                for name, acts in self.acts.items()
+            }
+            for piece, _, rates in self._rates(seen)
+        ]
+        return {name: np.concatenate([each[name] for each in found]) for name in self.acts}
+
+    def _rates(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, list[tuple[float, RVDeviated]]]]:
+        """What both ends at the first position change by per deviation, and how each end counts.
+
+        Piece by piece of the trials, with its turns of the output.
+        """
+        own = self.own
         for first in range(0, len(seen), ROWS_AT_ONCE):
             piece = seen.part(first, first + ROWS_AT_ONCE)
-            turns, deviated = self.output_turns(piece)[:, :1], self.deviated(piece)
-            rates = []
+            turns = self.output_turns(piece)[:, :1]
+            deviated, rates = self.deviated(piece, turns[:, 0]), []
             for sense, counts in BOTH_WAYS:
-                turned = linear_turning(own).turned(deviated, turns, sense)
-                rates.append((counts, linear_rates(own, deviated, turns[:, 0], turned, sense)))
-            found.append(
-                {
-                    name: sum(counts * each.term(self.acts[name], values - means[name]) for counts, each in rates)
-                    for name, values in piece.deviations.items()
-                }
-            )
-        return {name: np.concatenate([each[name] for each in found]) for name in seen.deviations}
+                found = linear_turning(own).turned(deviated, turns, sense)
+                rates.append((counts, linear_rates(own, deviated, turns[:, 0], found, sense)))
+            yield piece, turns[:, 0], rates
+
+    @property
+    def held(self) -> str:
+        """See StatedLink."""
+        return self.own.ring
+
+    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """See StatedLink."""
+        found: dict[str, list[Array]] = {part: [] for part in self.levels}
+        for piece, turns, rates in self._rates(seen):
+            against = np.zeros((len(piece), 2))
+            for acts, part, sun_turned in self._against_carrier:
+                units = (_turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
+                by = np.stack([sum(n * each.term(acts, unit) for n, each in rates) for unit in units], axis=-1)
+                found[part].append(by)
+                against -= by
+            found[self.own.carrier].append(against)
+        return {part: np.concatenate(each) for part, each in found.items()}
 
     def offset_by(self, contributor: str, part: str) -> "RVLink | None":
         """See StatedLink: of the sun, and of the carrier, which its main bearing would displace likewise."""
@@ -168,13 +219,22 @@ class RVLink(StatedLink):
 
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Lobes and pins, or teeth, that interfere at the mean build."""
-        return problems_at(self.own, self.acts, mean.contributors, self.deviated(mean))
+        known = [each for each in mean.contributors if each.name in self.acts]
+        return problems_at(self.own, self.acts, known, self.deviated(mean, np.zeros(len(mean))))
 
     def shown(self, seen: LinkTrials) -> ShownReducer:
         """Its parts in the first trial, in a frame at the middle of its discs that rests."""
         first = seen.part(0, 1)
-        turns = float(self.output_turns(first)[0, 0])
-        return ShownReducer(self.own, self.deviated(first), turns, self.own.width, self.crank_hole)
+        turns = self.output_turns(first)[:, 0]
+        return ShownReducer(self.own, self.deviated(first, turns), float(turns[0]), self.own.width, self.crank_hole)
+
+
+def _turned(vectors: Array, turns: Array) -> Array:
+    """Vectors (trials, 2) turned by so many turns (trials,)."""
+    angles = 2 * math.pi * (turns - np.round(turns))
+    cos, sin = np.cos(angles), np.sin(angles)
+    x, y = vectors.T
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 # from scenes ------------------------------------------------------------------------------------------
@@ -230,7 +290,8 @@ def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RV
     disc = scene.parts[own.disc]
     assert isinstance(disc, CycloidDiscSpec)
     hole = None if disc.hole is None else disc.hole.internal
-    height = first - ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
+    sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
+    height = first - sun_level
     return RVLink(
         name=own.name,
         driver=driver,
@@ -239,6 +300,7 @@ def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RV
         offset=height - last,
         own=own,
         height=height,
+        sun_level=sun_level,
         actions=actions,
         crank_hole=hole,
     )

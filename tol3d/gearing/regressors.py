@@ -79,25 +79,25 @@ def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping
     """What contributors that act in links add to a measure there (trials,), where a link says it; [its unit]."""
     found: dict[str, Array] = {}
     for factor, name in measure.kind.links if measure.take == "value" else ():
-        link, own = model.link(name), link_contributors(model, name)
+        link, seen = model.link(name), _link_trials(model, measure, name, columns)
         if not link.compares:
             continue
-        deviations = {
-            each.name: np.stack([np.asarray(columns[key], dtype=np.float64) for key in each.columns], axis=-1)
-            * each.per_unit
-            for each in own
-        }
         means = {
-            each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions))) for each in own
+            each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions)))
+            for each in seen.contributors
         }
-        parts = _parts(link, LinkTrials(own, deviations, _link_angles(model, measure, name, columns)), means)
+        parts = _parts(link, seen, means)
         found |= {name: factor * measure.per_internal * part for name, part in parts.items()}
     return found
 
 
 def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
     """What contributors add to a link's play; each trial is worked out once, whatever measures and findings ask."""
-    names, rows = [*seen.deviations], np.concatenate([seen.angles[:, :1], *seen.deviations.values()], axis=1)
+    by_bores = {own.contributor for own in link.moved}
+    names = [name for name in seen.deviations if name not in by_bores]
+    if not names:
+        return {}
+    rows = np.concatenate([seen.angles[:, :1], *seen.deviations.values()], axis=1)
     about = blake2b(np.concatenate([means[name] for name in names] or [np.zeros(0)]).tobytes(), digest_size=16).digest()
     keys = [(Itself(link), about, blake2b(row, digest_size=16).digest()) for row in np.ascontiguousarray(rows)]
     known = _KEPT
@@ -110,6 +110,22 @@ def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Ma
         found |= zip(new, np.stack([parts[name] for name in names], axis=1), strict=True)
     every = np.array([found[key] for key in keys])
     return {name: every[:, k] for k, name in enumerate(names)}
+
+
+def slopes_by_bores(model: Model, measure: Measure, link: str, columns: Columns) -> Mapping[str, Array]:
+    """Change of a link's play by each displacement of the bores of its parts [rad/mm], by contributor (trials, 2)."""
+    own = model.link(link)
+    return own.slopes_by_bores(_link_trials(model, measure, link, columns)) if own.moved else {}
+
+
+def _link_trials(model: Model, measure: Measure, link: str, columns: Columns) -> LinkTrials:
+    own = link_contributors(model, link)
+    deviations = {
+        each.name: np.stack([np.asarray(columns[key], dtype=np.float64) for key in each.columns], axis=-1)
+        * each.per_unit
+        for each in own
+    }
+    return LinkTrials(own, deviations, _link_angles(model, measure, link, columns))
 
 
 def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) -> Array:

@@ -27,6 +27,11 @@ def reading_name(shaft: str, point: int, direction: str) -> str:
     return f".{shaft}.{point}.{direction}"
 
 
+def twin_name(own: HousedShaft, point: int) -> str:
+    """The point of the host where a point of an axis is nominally."""
+    return f"{own.host}..{own.shaft} {point}"
+
+
 @dataclass(frozen=True, eq=False)
 class Bores:
     """The axes of shafts in bores, as an assembly reads them.
@@ -87,7 +92,7 @@ def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
         for k, bore in enumerate(own.bores):
             frame = own.frame.copy()
             frame[:3, 3] = bore.place
-            twin = Feature(f"{own.host}..{own.shaft} {k}", own.host, Point(), into @ frame, is_named=False)
+            twin = Feature(twin_name(own, k), own.host, Point(), into @ frame, is_named=False)
             added[own.host].append(twin)
             actual = assembly.features[bore.feature]
             if bore.end is not None:

@@ -1,6 +1,6 @@
 """From one scene to gears, the assembly that holds them, and the bores between the two."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,9 +10,10 @@ from tol3d.assembly.from_scene.assembly import pose_names
 from tol3d.assembly.grammar.measures import PositionErrorSpec
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
+from tol3d.assembly.placing import road as placing
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.distributions.constant import Constant
-from tol3d.gearing.effects import NOTHING
+from tol3d.gearing.effects import NOTHING, LinkDeviation
 from tol3d.gearing.grammar.checks import off_shaft
 from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
@@ -20,12 +21,13 @@ from tol3d.gearing.grammar.tolerances.lever import Lever
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system
-from tol3d.machine.bores import Bores, bores_of
+from tol3d.machine.bores import Bores, bores_of, twin_name
+from tol3d.machine.centrals import displacement_name, with_bores
 from tol3d.machine.counted import refuse_counted_twice
 from tol3d.machine.drives import drives_of
 from tol3d.machine.grammar.open_chain import FLANK, OpenChainSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
-from tol3d.machine.joined import HIDDEN, is_hidden
+from tol3d.machine.joined import HIDDEN, TURN, is_hidden
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.mechanism import MACHINE
 from tol3d.machine.nominal import HousedShaft, housed
@@ -54,7 +56,8 @@ def machine_system(scene: Scene) -> MachineSystem:
     place = housed(scene, _gears_of(scene), drawn.assembly)
     bores = bores_of(drawn.assembly, tuple(place.shafts.values()))
     gears = gear_system(place.scene)
-    model = replace(gears.model, contributors=(*gears.model.contributors, *_by_bores(gears.model, bores)))
+    model = with_bores(place.scene, gears.model, place)
+    model = replace(model, contributors=(*model.contributors, *_by_bores(model, bores)))
     by_name: dict[str, Measure] = {own.name: own for own in gears.measures}
     by_name |= {own.name: own for system in poses.values() for own in system.measures}
     by_name |= {name: _worst(scene, name, spec) for name, spec in scene.of(WorstPositionErrorSpec).items()}
@@ -119,12 +122,30 @@ def _refuse_turned_bores(scene: Scene, system: MachineSystem) -> None:
     slices = component_slices(system.drawn)
     for drive in system.drives:
         turned = system.displacing[:, slices[drive.turn]].reshape(-1, 4)
+        with_part = _turned_against_hosts(system, slices[drive.turn].start)
         for own, displaced in zip(system.bores.shafts, turned, strict=True):
-            if displaced.any():
+            if displaced.any() or own.shaft in with_part:
                 first, last = (bore.words for bore in own.bores)
                 words = f"expected bores that no joint turns, got {first!r} and {last!r}, which {drive.joint!r} turns"
                 ring = f"the shaft is in a ring of reads: {own.shaft}, {drive.joint}, its bores"
                 raise scene.refuse(("moves", own.move, "in"), f"{words} with what its shafts drive; {ring}")
+
+
+def _turned_against_hosts(system: MachineSystem, column: int) -> set[str]:
+    """Held parts of links whose bores a turn of a joint turns, be it about their own axis, against their hosts."""
+    held = [own for own in system.bores.shafts if own.shaft in {link.held for link in system.gears.model.links}]
+    if not held:
+        return set()
+    rows = np.zeros((2, system.bores.assembly.width))
+    rows[1, column] = TURN
+    frames = placing.features_placed(system.bores.assembly, rows)
+    found = set()
+    for own in held:
+        host, bore = (frames[name] for name in (twin_name(own, 0), own.bores[0].feature))
+        seen = np.linalg.inv(host) @ bore
+        if np.abs(seen[1] - seen[0]).max() > TURN / 2:
+            found.add(own.shaft)
+    return found
 
 
 def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
@@ -182,19 +203,22 @@ def _by_bores(model: Model, bores: Bores) -> Iterator[Contributor]:
     """
     for shaft in bores.shafts:
         places = [shaft.along(bore) for bore in shaft.bores]
-        for k, bore in enumerate(shaft.bores):
+        for k in range(2):
             yield Contributor(
-                name=f".{shaft.shaft} at {bore.words}",
+                name=displacement_name(shaft, k),
                 kind=KIND,
-                effect=_effect(model, shaft, places[k], places[1 - k]),
+                effect=_effect(model, shaft, k, places),
                 draw=Planar(Constant(0.0), None),
                 unit="um",
             )
 
 
-def _effect(model: Model, shaft: HousedShaft, moved: float, fixed: float) -> Any:
-    levers = [Lever(own, moved, fixed, rate=1.0) for name, own in model.layout.carrying.values() if name == shaft.shaft]
+def _effect(model: Model, shaft: HousedShaft, k: int, places: Sequence[float]) -> Any:
+    own = [each for name, each in model.layout.carrying.values() if name == shaft.shaft]
+    levers = [Lever(each, places[k], places[1 - k], rate=1.0) for each in own]
     effects = [effect for lever in levers for effect in lever.anywhere()]
+    name = displacement_name(shaft, k)
+    effects += [LinkDeviation(link.name) for link in model.links if any(own.contributor == name for own in link.moved)]
     return together(effects) if effects else NOTHING
 
 

@@ -202,6 +202,13 @@ class Joined:
         own = {each.name for each in self.gears.acting(measure)}
         return np.array([each.name in own for each in self.displacements for _ in "xy"], dtype=bool)
 
+    @cached_property
+    def link_shafts(self) -> Mapping[str, frozenset[str]]:
+        """By link, the shafts whose bores move its parts."""
+        shaft_of = {own.name: self.bores.shafts[k // 2].shaft for k, own in enumerate(self.displacements)}
+        links = self.gears.model.links
+        return {link.name: frozenset(shaft_of[own.contributor] for own in link.moved) for link in links}
+
     @property
     def displacements(self) -> tuple[GearContributor, ...]:
         """The displacements of the bores, as the gears have them."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
+from tol3d.gearing.model.brought import Brought, brought_into
 from tol3d.gearing.model.from_scene import meshes_of_scene
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
@@ -103,6 +104,46 @@ def _line(scene: Scene, name: str, move: ShaftInBoresSpec, assembly: Assembly) -
 
 
 @dataclass(frozen=True, eq=False)
+class _Axes:
+    """Where a train puts the axes of its shafts, and of what no shaft turns with: a held ring, a carrier of planets.
+
+    Args:
+        layout: of the shafts.
+        others: by name, the shaft on whose axis each of the others lies, and its height along that shaft's z [mm].
+    """
+
+    layout: Layout
+    others: Mapping[str, tuple[str, float]]
+
+    def root(self, name: str) -> str:
+        """The first shaft of its train."""
+        return self.layout.root_of[self.others.get(name, (name, 0.0))[0]]
+
+    def pose(self, name: str) -> Array:
+        """Its frame at rest in the world of its train (4, 4)."""
+        shaft, height = self.others.get(name, (name, 0.0))
+        world = self.layout.world_from_shaft[shaft]
+        along = np.eye(4)
+        along[2, 3] = height
+        return np.asarray(world @ along) if height else world
+
+    def order(self, name: str) -> tuple[bool, int]:
+        """By which the first of a train is told: shafts in the order in which they turn, then the others."""
+        return name in self.others, len(self.layout.upstream(name))
+
+
+def _axes(gears: Scene, brought: Brought) -> _Axes:
+    _, layout = meshes_of_scene(gears, brought)
+    others = {
+        part: (own.link.driver, level)
+        for own in brought.links
+        for part, level in own.link.levels.items()
+        if part not in own.ends
+    }
+    return _Axes(layout, others)
+
+
+@dataclass(frozen=True, eq=False)
 class Housed:
     """Shafts in bores, and what follows.
 
@@ -130,20 +171,26 @@ def housed(scene: Scene, gears: Scene, assembly: Assembly) -> Housed:
     """
     lines = lines_of(scene, assembly)
     gears = _with_distances(gears, lines)
-    _, layout = meshes_of_scene(gears)
-    worlds = dict(_worlds(scene, lines, layout))
+    brought = brought_into(gears)
+    axes = _axes(gears, brought)
+    layout = axes.layout
+    for shaft, (name, _) in lines.items():
+        if shaft not in layout.root_of and shaft not in axes.others:
+            words = f"expected a shaft that gears or trains turn, or a part on the axis of one, got {shaft!r}"
+            raise scene.refuse(("moves", name, "shaft"), words)
+    worlds = dict(_worlds(scene, lines, axes))
     for link in sorted(layout.links, key=lambda link: len(layout.upstream(link.driven))):
         if isinstance(gears.moves.get(link.name), MeshSpec) and {link.driver, link.driven} <= lines.keys():
-            meshes, layout = meshes_of_scene(gears)
+            meshes, layout = meshes_of_scene(gears, brought)
             mesh = next(own for own in meshes if own.name == link.name)
             gears = _with_azimuth(gears, mesh, lines[link.driven][1], worlds[layout.root_of[link.driver]], layout)
-    _, layout = meshes_of_scene(gears)
+    axes = _axes(gears, brought)
     shafts = {}
     for shaft, (move, bores) in lines.items():
-        root = layout.root_of[shaft]
-        first = min((own for own in lines if layout.root_of[own] == root), key=lambda own: len(layout.upstream(own)))
+        root = axes.root(shaft)
+        first = min((own for own in lines if axes.root(own) == root), key=axes.order)
         host = assembly.features[lines[first][1][0].feature].part
-        shafts[shaft] = HousedShaft(move, shaft, bores, worlds[root] @ layout.world_from_shaft[shaft], host)
+        shafts[shaft] = HousedShaft(move, shaft, bores, worlds[root] @ axes.pose(shaft), host)
     for own in shafts.values():
         _refuse_misfit(scene, own)
     return Housed(gears, shafts, worlds)
@@ -202,18 +249,18 @@ def _with_move(scene: Scene, name: str, move: Any) -> Scene:
 
 
 def _worlds(
-    scene: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bore]]], layout: Layout
+    scene: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bore]]], axes: _Axes
 ) -> Iterator[tuple[str, Array]]:
     """By first shaft of a train, where its world lies: as the first of its shafts that lies in bores."""
     found: set[str] = set()
-    for shaft in sorted(lines, key=lambda own: len(layout.upstream(own))):
-        root = layout.root_of[shaft]
+    for shaft in sorted(lines, key=axes.order):
+        root = axes.root(shaft)
         if root not in found:
             found.add(root)
             move, bores = lines[shaft]
             spec = scene.of(ShaftInBoresSpec)[move]
             frame = _frame(bores, 0.0 if spec.at is None else spec.at.internal)
-            yield root, frame @ np.linalg.inv(layout.world_from_shaft[shaft])
+            yield root, frame @ np.linalg.inv(axes.pose(shaft))
 
 
 def _frame(bores: tuple[Bore, Bore], at: float) -> Array:

@@ -1,16 +1,99 @@
 """What a backlash sees of contributors that move bores: each of their components, over its sigma."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.zones import ZoneDraw
+from tol3d.gearing.effects import Effect, LinkDeviation
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
+from tol3d.gearing.model.measure import Measure
+from tol3d.gearing.regressors import slopes_by_bores
+from tol3d.gearing.system import GearSystem
+from tol3d.machine.joined import Joined, is_hidden
 from tol3d.system.contributor import Contributor
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.system.stated import component_slices
 from tol3d.system.system import Columns
 
 Array = NDArray[np.float64]
+
+
+def with_displacements(system: Joined, measure: Measure, columns: Columns) -> Columns:
+    """Columns with those of the displacements of bores, where a measure reads a link whose parts lie in some.
+
+    Args:
+        system: whose.
+        measure: of its gears.
+        columns: of the trials.
+    """
+    if not any(system.link_shafts[name] for _, name in measure.kind.links):
+        return columns
+    own = [each for each in system.drawn.contributors if not is_hidden(each)]
+    deviations = np.zeros((len(next(iter(columns.values()))), system.drawn.assembly.width))
+    slices = component_slices(system.drawn)
+    for each in own:
+        deviations[:, slices[each.name]] = _values(each, columns)
+    read = torsors.values(system.bores.assembly, deviations, system.bores.lateral_names)
+    displaced = system.bores.to_first_order(read)
+    names = [(name, each.per_unit) for each in system.displacements for name in each.columns]
+    return {**columns, **{name: displaced[:, k] / unit for k, (name, unit) in enumerate(names)}}
+
+
+def parts_by_links(
+    system: Joined, measure: Measure, contributors: Sequence[Contributor], columns: Columns
+) -> Mapping[str, Array]:
+    """What contributors that displace bores of a link's parts do to a measure (trials,), by name, in its unit.
+
+    By the contacts that the link meets in each trial; with what they do to meshes on the way, by its slopes at the
+    means.
+
+    Args:
+        system: whose.
+        measure: of its gears.
+        contributors: of the assembly.
+        columns: of the trials, those of the displacements too.
+    """
+    places = {own.name: 2 * k for k, own in enumerate(system.displacements)}
+    slopes: dict[int, Array] = {}
+    for factor, name in measure.kind.links if measure.take == "value" else ():
+        for point, by in slopes_by_bores(system.gears.model, measure, name, columns).items():
+            own = factor * measure.per_internal * by
+            slopes[places[point]] = slopes[places[point]] + own if places[point] in slopes else own
+    if not slopes:
+        return {}
+    meshes = measure.per_internal * _without_links(system).bore_slopes(measure)
+    slices, found = component_slices(system.drawn), dict[str, Array]()
+    for each in contributors:
+        off = _values(each, columns) - np.array(each.draw.mean(turning=False))
+        displaced = off @ system.displacing[:, slices[each.name]].T
+        if displaced[:, [row + k for row in slopes for k in range(2)]].any():
+            through = (np.einsum("ij,ij->i", by, displaced[:, row : row + 2]) for row, by in slopes.items())
+            found[each.name] = np.asarray(sum(through, displaced @ meshes))
+    return found
+
+
+def _values(own: Contributor, columns: Columns) -> Array:
+    """Its components (trials, components) [mm, rad, K]."""
+    return np.stack([np.asarray(columns[name], dtype=np.float64) for name in own.columns], axis=-1) * own.per_unit
+
+
+def _without_links(system: Joined) -> Joined:
+    """The same, its bores moving nothing of its links."""
+    model, names = system.gears.model, {own.name for own in system.displacements}
+    contributors = (
+        replace(own, effect=together(_of_meshes(own.effect))) if own.name in names else own
+        for own in model.contributors
+    )
+    links = tuple(replace(link, moved=()) for link in model.links)
+    return replace(system, gears=GearSystem(replace(model, contributors=tuple(contributors), links=links)))
+
+
+def _of_meshes(effect: Effect) -> list[Effect]:
+    return [own for own in effect.singles if not isinstance(own, LinkDeviation)]
 
 
 def regress_bores(

@@ -260,10 +260,11 @@ class MachineRoad:
         return replace(answers, values=values, status=status)
 
     def _shafts(self, measure: GearMeasure) -> set[str]:
-        """Shafts in bores of the meshes that a measure reads."""
+        """Shafts in bores of the meshes and other links that a measure reads."""
         model = self.system.gears.model
         meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
         shafts = {model.layout.carrying[gear][0] for mesh in meshes for gear in (mesh.driver, mesh.driven)}
+        shafts |= {shaft for _, link in measure.kind.links for shaft in self.system.link_shafts[link]}
         return shafts & {own.shaft for own in self.system.bores.shafts}
 
 

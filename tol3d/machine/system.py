@@ -17,7 +17,7 @@ from tol3d.machine.closed_form import closed_form, with_joints
 from tol3d.machine.drives import HALF, JointDrive
 from tol3d.machine.joined import Joined, is_hidden
 from tol3d.machine.measure import WorstMeasure
-from tol3d.machine.regressors import regress_bores
+from tol3d.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.machine.roads import MachineRoad
 from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES
 from tol3d.system.breakdown import Breakdown
@@ -243,11 +243,15 @@ class MachineSystem(Joined):
         if not isinstance(measure, GearMeasure):
             self._regress_part(measure, contributors, columns, rows)
             return
-        self.gears.regress(measure, [own for own in contributors if own.name in self._of_gears], columns, rows)
+        seen = with_displacements(self, measure, columns)
+        self.gears.regress(measure, [own for own in contributors if own.name in self._of_gears], seen, rows)
         others = [own for own in contributors if own.name not in self._of_gears]
         slices = component_slices(self.drawn)
         squared = {own.name: self.squared[slices[own.name]] for own in others}
         regress_bores(others, columns, rows, squared, lambda: self._bore_slopes(measure, others))
+        for name, part in parts_by_links(self, measure, others, seen).items():
+            rows[name][...] = 0.0
+            rows[name][0] = part
 
     def _regress_part(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]

@@ -42,12 +42,13 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
             sine of each planet's azimuth (planets, 2); how springs push each planet (planets, springs); the radius of
             the pins' circle [mm].
         given: of the trial, before these turns: centres of central gears off the axis (meshes, 2), of planets' gears
-            off their pins (gears, planets, 2), places of pins (planets, 2); what thinning leaves each flank, nominal
-            clearance included, and what clocking moves n by (planets, meshes).
+            off their pins (gears, planets, 2), places of pins (planets, 2), the planets' circle beside each central
+            gear's axis (meshes, 2), which turns with nothing; what thinning leaves each flank, nominal clearance
+            included, and what clocking moves n by (planets, meshes).
         turns: of central gears, carrier, planets; then displacements by springs [mm].
     """
     meshes, places, planets, senses, distance = shape
-    central, planet, pin, room, middle = given
+    central, planet, pin, aside, room, middle = given
     count = meshes.shape[0]
     number = planets.shape[0]
     for k in range(number):
@@ -68,7 +69,7 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
             cos_c, sin_c = np.cos(theta), np.sin(theta)
             own_x = cos_c * central[m, 0] - sin_c * central[m, 1]
             own_y = sin_c * central[m, 0] + cos_c * central[m, 1]
-            x, y = pin_x + off_x - own_x, pin_y + off_y - own_y
+            x, y = pin_x + off_x - own_x + aside[m, 0], pin_y + off_y - own_y + aside[m, 1]
             apart = np.sqrt(x * x + y * y)
             if not apart > base:
                 return False
@@ -137,11 +138,12 @@ def seated(
 
 @kernel(
     arrays="f8[:,::1], i8[::1], f8[:,::1], f8[:,::1], f8, f8[:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,:,::1], "
-    "f8[:,:,::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], f8[:,:,::1], i1[::1], i8[::1], f8[::1]"
+    "f8[:,:,::1], f8[:,:,::1], f8[:,::1], i8[::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], f8[:,:,::1], "
+    "i1[::1], i8[::1], f8[::1]"
 )
 def seated_ranges(
     meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
-    central: Any, planet: Any, pin: Any, room: Any, middle: Any,
+    central: Any, planet: Any, pin: Any, aside: Any, room: Any, middle: Any,
     pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
     ends: Any, reached: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
@@ -157,7 +159,7 @@ def seated_ranges(
     shape = (meshes, places, planets, senses, distance)
     for i in range(central.shape[0]):
         status[i], decided[i], amount[i] = OK, -1, 0.0
-        given = (central[i], planet[i], pin[i], room[i], middle[i])
+        given = (central[i], planet[i], pin[i], aside[i], room[i], middle[i])
         for end in range(2):
             turns[:] = 0.0
             for j in range(count):
@@ -234,6 +236,7 @@ class Contact:
             own.senses,
             own.centre_distance,
             *self._placed(deviated, turns, directions),
+            np.ascontiguousarray(deviated.aside),
             np.ascontiguousarray(room - thicker * cosines / 2),
             np.ascontiguousarray(middle),
         )

@@ -42,6 +42,8 @@ class Deviated:
         planet_offset: the same of planets (trials, gears, planets, 2), off the pin.
         central_clocking, planet_clocking: turn of the teeth on what carries them [rad].
         pins: outwards and counter-clockwise off their places (trials, planets, 2) [mm].
+        aside: the axis of the planets' circle off that of each central gear (trials, centrals, 2) [mm], in the frame of
+            the carrier, where it stands without backlash.
     """
 
     central_thickness: Array
@@ -51,6 +53,7 @@ class Deviated:
     central_clocking: Array
     planet_clocking: Array
     pins: Array
+    aside: Array
 
     @classmethod
     def nothing(cls, own: PlanetarySet, trials: int) -> "Deviated":
@@ -64,6 +67,7 @@ class Deviated:
             np.zeros((trials, centrals)),
             np.zeros((trials, gears, planets)),
             np.zeros((trials, planets, 2)),
+            np.zeros((trials, centrals, 2)),
         )
 
     def add(self, own: PlanetarySet, acts: Acts, components: Array) -> None:

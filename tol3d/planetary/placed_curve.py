@@ -27,12 +27,12 @@ def turn_offsets(central: Any, planet: Any, centrals: Any, own: Any, now: Any) -
 
 @kernel(
     arrays="f8[:,::1], i8[::1], f8[:,::1], f8[:,::1], f8, f8[:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,:,::1], "
-    "f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,::1], i8[::1], f8[::1], f8[::1], i8[::1], "
+    "f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,::1], i8[::1], f8[::1], f8[::1], i8[::1], "
     "f8[:,::1], i1[::1], i8[::1], f8[::1]"
 )
 def placed_curve(
     meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
-    central: Any, planet: Any, pin: Any, room: Any, middle: Any,
+    central: Any, planet: Any, pin: Any, aside: Any, room: Any, middle: Any,
     centrals_turned: Any, planets_turned: Any, pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
     ends: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
@@ -61,7 +61,7 @@ def placed_curve(
         afresh = True
         for p in range(ends.shape[1]):
             turn_offsets(central[i], planet[i], centrals_turned[p], planets_turned[p], now)
-            given = (now[0], now[1], pin[i], room[i], middle[i])
+            given = (now[0], now[1], pin[i], aside[i], room[i], middle[i])
             for attempt in range(2):
                 if afresh or attempt == 1:
                     turns[:] = 0.0

@@ -15,6 +15,7 @@ from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_o
 from tol3d.numerics.programme import NO_ROOM, ranges
 from tol3d.planetary.contact import Contact, seated_ranges
 from tol3d.planetary.deviated import Acts, Deviated
+from tol3d.planetary.free import turned
 from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
 from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
 from tol3d.planetary.grammar.parts.carrier import CarrierSpec
@@ -92,21 +93,34 @@ class SetLink(StatedLink):
         return self._free(StackUp(self.own), seen)
 
     def _free(self, road: StackUp | Contact, seen: LinkTrials) -> FreeTurn:
-        own, deviated = self.own, self.deviated(seen)
-        stands = own.opposite(own.output)
-        found = [road.free(deviated, turns, own.output, stands) for turns in self.output_turns(seen).T]
+        own, stands = self.own, self.own.opposite(self.own.output)
+        found = [
+            road.free(deviated, turns, own.output, stands)
+            for turns in self.output_turns(seen).T
+            for deviated in [self.deviated(seen, turns)]
+        ]
         jams = np.stack([free.status == NO_ROOM for free in found], axis=1)
         lacking = np.stack([free.lacking for free in found], axis=1)
         ends = np.stack([free.ends for free in found], axis=1)
         play = np.where(jams, -2 * lacking / own.arm(own.output), ends[..., 1] - ends[..., 0])
         return FreeTurn(play, np.where(jams, 0.0, ends.mean(axis=-1)), jams)
 
-    def deviated(self, seen: LinkTrials) -> Deviated:
-        """What its gears and pins deviate by."""
-        found = Deviated.nothing(self.own, len(seen))
+    def deviated(self, seen: LinkTrials, turns: Array) -> Deviated:
+        """What its gears and pins deviate by where the output has made so many turns (trials,)."""
+        own, found = self.own, Deviated.nothing(self.own, len(seen))
         for contributor in seen.contributors:
-            found.add(self.own, self._acts[contributor.name], seen.deviations[contributor.name])
+            if contributor.name in self._acts:
+                found.add(own, self._acts[contributor.name], seen.deviations[contributor.name])
+        asides, none = self.asides(seen), np.zeros((len(seen), 2))
+        for m, mesh in enumerate(own.meshes if asides else ()):
+            aside = asides.get(own.carrier, none) - asides.get(mesh.central.name, none)
+            found.aside[:, m] = turned(aside, -self._carrier_rate * turns)
         return found
+
+    @property
+    def _carrier_rate(self) -> float:
+        """Turns of the carrier in the world a turn of the output."""
+        return -float(self.own.turn(self.own.held) * self.own.planet_turns)
 
     def output_turns(self, seen: LinkTrials) -> Array:
         """Turns of the output (trials, positions) where the driver stands nominally."""
@@ -118,28 +132,57 @@ class SetLink(StatedLink):
 
     def shown(self, seen: LinkTrials) -> ShownSet:
         """Its gears in the first trial, in a frame at the driver's origin that rests, its height not counted."""
-        return shown_set(self.own, self.made, self.deviated(seen), float(self.output_turns(seen)[0, 0]))
+        turns = self.output_turns(seen)[:, 0]
+        return shown_set(self.own, self.made, self.deviated(seen, turns), float(turns[0]))
 
     # what acts on it --------------------------------------------------------------------------------
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
         """By the contacts that are met in each trial, to first order; see StatedLink, and regressors.py."""
-        own, stands, found = self.own, self.own.opposite(self.own.output), []
+        own = self.own
+        found = [
+            {
+                name: (slopes.of(own, acts) * (piece.deviations[name] - means[name])).sum(axis=1)
+                for name, acts in self._acts.items()
+            }
+            for piece, _, slopes in self._slopes(seen)
+        ]
+        return {name: np.concatenate([own[name] for own in found]) for name in self._acts}
+
+    def _slopes(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, Deviated]]:
+        """Change of the play at the first position by each deviation: piece by piece of the trials, with its turns."""
+        own, stands = self.own, self.own.opposite(self.own.output)
         for first in range(0, len(seen), ROWS_AT_ONCE):
             piece = seen.part(first, first + ROWS_AT_ONCE)
-            turns, deviated = self.output_turns(piece)[:, :1], self.deviated(piece)
+            turns = self.output_turns(piece)[:, :1]
+            deviated = self.deviated(piece, turns[:, 0])
             senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
             low, high = (
                 StackUpCurves(own).slopes(deviated, turns, own.output, stands, end, sign) for end, sign in senses
             )
-            slopes = low.plus(high)
-            found.append(
-                {
-                    name: (slopes.of(own, self._acts[name]) * (deviations - means[name])).sum(axis=1)
-                    for name, deviations in piece.deviations.items()
-                }
-            )
-        return {name: np.concatenate([own[name] for own in found]) for name in seen.deviations}
+            yield piece, turns[:, 0], low.plus(high)
+
+    @property
+    def levels(self) -> Mapping[str, float]:
+        """See StatedLink: central gears at the middle of their faces, the carrier at that of all its planets' gears."""
+        heights = heights_of(self.own, self.made)
+        centrals = [heights[mesh.central.name] for mesh in self.own.meshes]
+        middle = (min(centrals) + max(centrals)) / 2
+        return {name: self.height + (middle if name == self.own.carrier else at) for name, at in heights.items()}
+
+    @property
+    def held(self) -> str:
+        """See StatedLink."""
+        return self.own.held
+
+    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """See StatedLink."""
+        pieces = [
+            turned(slopes.aside, (self._carrier_rate * turns)[:, None]) for _, turns, slopes in self._slopes(seen)
+        ]
+        slopes = np.concatenate(pieces)
+        of_gears = {mesh.central.name: -slopes[:, m] for m, mesh in enumerate(self.own.meshes)}
+        return {**of_gears, self.own.carrier: slopes.sum(axis=1)}
 
     def offset_by(self, contributor: str, part: str) -> "SetLink | None":
         """See StatedLink: of a central gear."""
@@ -154,7 +197,7 @@ class SetLink(StatedLink):
 
     def problems(self, mean: LinkTrials) -> Iterator[tuple[KeyPath, str]]:
         """Meshes that overlap at the mean build, then load paths of several planets that do."""
-        return problems_at(self.own, self.deviated(mean), self.own.output)
+        return problems_at(self.own, self.deviated(mean, np.zeros(len(mean))), self.own.output)
 
 
 # from scenes ------------------------------------------------------------------------------------------

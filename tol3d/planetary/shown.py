@@ -119,7 +119,7 @@ def _centrals(
     for m, mesh in enumerate(own.meshes):
         angle = carrier + 2 * math.pi * float(own.turn(mesh.central.name) * own.planet_turns) * turns
         angle += at[m] + deviated.central_clocking[0, m]
-        place = _turned(deviated.central_offset[0, m], angle)
+        place = _turned(deviated.central_offset[0, m], angle) - _turned(deviated.aside[0, m], carrier)
         thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
         pose = _pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
         yield PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0)

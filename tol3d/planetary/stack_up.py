@@ -46,7 +46,8 @@ class StackUp:
             central = turned(central, (of_centrals[place] * turns)[:, None] - azimuths)
             phases = own.phases / (2 * np.pi)
             planet = turned(deviated.planet_offset[:, gear], (of_planet * turns)[:, None] + phases)
-            apart = planet + deviated.pins - central
+            aside = turned(deviated.aside[:, None, place].repeat(own.planets, axis=1), -azimuths)
+            apart = planet + deviated.pins - central + aside
             thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]
             room = mesh.clearance - thicker * np.cos(mesh.central.pressure_angle) / 2
             room = room + s * np.sin(angle) * apart[..., 0]

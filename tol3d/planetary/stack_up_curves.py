@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.planetary.deviated import Deviated
 from tol3d.planetary.first_order_curve import first_order_curve
-from tol3d.planetary.free import Followed, cosines_and_sines
+from tol3d.planetary.free import Followed, cosines_and_sines, turned
 from tol3d.planetary.planetary_set import PlanetarySet
 from tol3d.planetary.stack_up import StackUp
 
@@ -50,8 +50,9 @@ class Slopes:
             thicker = -np.cos(mesh.central.pressure_angle) / 2 * opened[:, :, place]
             found.central_thickness[:, place] += thicker.sum(axis=1)
             found.planet_thickness[:, gear] += thicker
-            found.pins[:, :, 0] += s * np.sin(angle) * opened[:, :, place]
-            found.pins[:, :, 1] += s * np.cos(angle) * moved[:, :, place]
+            pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s
+            found.pins[...] += pushed
+            found.aside[:, place] += turned(pushed, np.array(own.azimuths) / (2 * np.pi)).sum(axis=1)
             found.planet_clocking[:, gear] -= mesh.planet.base_radius * moved[:, :, place]
             found.central_clocking[:, place] -= s * mesh.central.base_radius * moved[:, :, place].sum(axis=1)
         return found

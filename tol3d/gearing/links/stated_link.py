@@ -53,6 +53,21 @@ class LinkSum:
     rates: Mapping[str, tuple[float, ...]]
 
 
+@dataclass(frozen=True)
+class Moved:
+    """A part of a link whose centre lies off the link's axis because the bores of its shaft do.
+
+    Args:
+        contributor: displacement x, y of a point of that shaft [mm].
+        part: in the link.
+        matrix: what the centre moves by x and by y, rows x and y across the driver's axis, in its frame at rest.
+    """
+
+    contributor: str
+    part: str
+    matrix: tuple[tuple[float, float], tuple[float, float]]
+
+
 @dataclass(frozen=True, kw_only=True)
 class StatedLink(ABC):
     """A link of shafts that a move of a scene stands for. Frozen; it pickles.
@@ -64,6 +79,8 @@ class StatedLink(ABC):
         carrier: the shaft that carries the link round, as the arm of an epicyclic gear does; None if it rests in the
             world.
         offset: of the driven shaft's origin along the driver's axis [mm].
+        moved: what bores do to its parts.
+        assumed: what is taken of parts whose bores nobody names, in words.
     """
 
     kind: ClassVar[str]
@@ -93,6 +110,8 @@ class StatedLink(ABC):
     rate: Fraction
     carrier: str | None = None
     offset: float = 0.0
+    moved: tuple[Moved, ...] = ()
+    assumed: str = ""
 
     @property
     def turns(self) -> Fraction | None:
@@ -102,7 +121,7 @@ class StatedLink(ABC):
     @property
     def remark(self) -> str:
         """What the check of a scene says of its play, if anything."""
-        return ""
+        return self.assumed
 
     @property
     def driver_from_driven(self) -> Array:
@@ -163,6 +182,44 @@ class StatedLink(ABC):
         know what that does.
         """
         return None
+
+    # bores of its parts -----------------------------------------------------------------------------
+
+    @property
+    def levels(self) -> Mapping[str, float]:
+        """Parts that turn about its axis, or rest on it, and whose bores may move them.
+
+        Each with its height along the driver's z, where it counts how far its axis lies aside [mm].
+        """
+        return {}
+
+    @property
+    def held(self) -> str:
+        """The part of it that stands in the world; empty where nobody asks which."""
+        return ""
+
+    def asides(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """Centres of parts that bores move (trials, 2) [mm], at rest in the driver's frame at rest."""
+        found: dict[str, Array] = {}
+        for own in self.moved:
+            by = seen.deviations[own.contributor] @ np.array(own.matrix).T
+            found[own.part] = found[own.part] + by if own.part in found else by
+        return found
+
+    def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """Change of the play at the first position by each of `asides` (trials, 2) [rad/mm].
+
+        To first order, the contacts as they are met in each trial; asked of a link that compares load paths.
+        """
+        return {}
+
+    def slopes_by_bores(self, seen: LinkTrials) -> Mapping[str, Array]:
+        """The same by each displacement of the bores, by contributor (trials, 2)."""
+        slopes, found = self.aside_slopes(seen) if self.moved else {}, dict[str, Array]()
+        for own in self.moved:
+            by = slopes[own.part] @ np.array(own.matrix)
+            found[own.contributor] = found[own.contributor] + by if own.contributor in found else by
+        return found
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """What summary.json holds of it, by the section in which it stands under its name; see System.sections."""

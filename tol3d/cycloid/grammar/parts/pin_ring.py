@@ -4,10 +4,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.scene.part import Length, PartSpec
+from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.scene.part import Length
 
 
-class PinRingSpec(PartSpec):
+class PinRingSpec(TurningSpec):
     """Pins, evenly spaced on a circle of the housing, among which cycloid discs run."""
 
     words: ClassVar[str] = "a pin ring"

@@ -6,6 +6,6 @@ from tol3d.scene.part import PartSpec
 
 
 class TurningSpec(PartSpec):
-    """A part that turns about an axis of its own: a gear, or whatever another mechanism drives."""
+    """A part with an axis of its own, about which it turns or is held: a gear, or that of another mechanism."""
 
     words: ClassVar[str] = "a gear"
