@@ -129,7 +129,7 @@ def check_against_search(seed: int, count: int, folder: Path) -> float:
     roles = [("ring", "sun", "carrier"), ("carrier", "sun", "ring"), ("sun", "ring", "carrier")][seed % 3]
     planets = int(rng.integers(3, 6))
     planet = int(rng.integers(18, 30))
-    sun = int(rng.integers(18, 40))
+    sun = int(rng.integers(28, 45))
     while (2 * sun + 2 * planet) % planets:
         sun += 1
     teeth = (sun, planet, sun + 2 * planet)
