@@ -81,7 +81,7 @@ def arm_scene(
         f"\n      {pose}: {{" + ", ".join(f"joint {k + 1}: {own} deg" for k, own in enumerate(inputs)) + "}"
         for pose, inputs in poses.items()
     )
-    its = "".join(f"\n      - {{on: link {k + 1}, mass: {mass} kg, at: {vector(at)}}}" for k, mass, at in masses)
+    its = "".join(f"\n      - {{of: link {k + 1}, mass: {mass} kg, at: {vector(at)}}}" for k, mass, at in masses)
     own = f"\n    masses:{its}" if masses else ""
     chain = f"\n  arm:\n    kind: open_chain\n    joints:{joints}\n    poses:{named}{gravity}{own}"
     said = f"scene: arm\nparts:{parts}\ntolerances:{tolerances}\nmoves:{moves}{chain}\nmeasures:{measures}"

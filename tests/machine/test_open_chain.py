@@ -227,7 +227,7 @@ WRONG = {
         "link 3.pilot], train", "link 2.pilot], train", "another link after each joint, got 'link 2' after two"
     ),
     "masses without gravity": ("\n    gravity: [0, 0, -1]", "", "gravity: expected its direction beside masses"),
-    "a mass elsewhere": ("- {on: link 2", "- {on: base", f"expected a link of the chain: {LINKS}, got 'base'"),
+    "a mass elsewhere": ("- {of: link 2", "- {of: base", f"expected a link of the chain: {LINKS}, got 'base'"),
 }  # fmt: skip
 
 

@@ -12,7 +12,15 @@ from shipped import shipped
 from tol3d import Overrides, Run, load_scene, run_scene
 
 SCENES = (*shipped("assembly"), *shipped("machine"))
-LONG = ("gearbox_in_housing", "bolted_cover", "every_assembly_field", "hole_and_slot", "housed_gears", "lid_by_a_wall")
+LONG = (
+    "gearbox_in_housing",
+    "bolted_cover",
+    "every_assembly_field",
+    "hole_and_slot",
+    "housed_gears",
+    "lid_by_a_wall",
+    "robot_arm",
+)
 EACH = [pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in SCENES]
 """Those that take seconds, and those whose numbers tests of their own work out by hand, are slow ones here."""
 SEEN = 1e-5  # um or arcmin: another machine's bits, of lengths up to 100 mm

@@ -71,6 +71,7 @@ def scaled(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> I
         [
             pytest.param(own, marks=pytest.mark.slow) if own in LONG else own
             for own in (*shipped("assembly"), *shipped("machine"))
+            if own != "robot_arm"  # which takes minutes; test_assembly_scenes.py asks it of fewer trials
         ],
         4,
     ),

@@ -93,7 +93,7 @@ def loaded_sides(scene: Scene, spec: "OpenChainSpec", pose: str) -> Mapping[str,
     placed = forward(joints, axes, poses_of(scene), {joint.name: joint.angle for joint in joints})
     gravity = np.array(spec.gravity if spec.gravity is not None else (0.0, 0.0, 0.0))
     gravity = gravity / (np.linalg.norm(gravity) or 1.0)
-    masses = [(own.mass.internal, placed[own.on] @ [*(x.internal for x in own.at), 1.0], own.on) for own in spec.masses]
+    masses = [(own.mass.internal, placed[own.of] @ [*(x.internal for x in own.at), 1.0], own.of) for own in spec.masses]
     found = {}
     for joint in joints:
         axis = placed[joint.axis.partition(".")[0]] @ axes[joint.axis]

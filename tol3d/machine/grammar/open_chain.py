@@ -71,7 +71,7 @@ class MassSpec(Strict):
 
     words: ClassVar[str] = "a mass"
 
-    on: Name = Field(description="the link")
+    of: Name = Field(description="the link")
     mass: Annotated[Quantity, Of("mass")] = Field(description="such as 30 kg")
     at: Vector = Field(description="where it is, in the frame of that part")
 
@@ -122,7 +122,7 @@ class OpenChainSpec(StatedMoveSpec):
                 found.append(Reference(("joints", name, "between", k), part_of(feature), (SolidSpec,)))
             if joint.train is not None:
                 found.append(Reference(("joints", name, "train"), joint.train, (TrainSpec,)))
-        found += [Reference(("masses", k, "on"), own.on, (SolidSpec,)) for k, own in enumerate(self.masses)]
+        found += [Reference(("masses", k, "of"), own.of, (SolidSpec,)) for k, own in enumerate(self.masses)]
         return tuple(found)
 
     def uses(self) -> Iterator[Use]:
@@ -170,8 +170,8 @@ class OpenChainSpec(StatedMoveSpec):
                 if joint not in self.joints:
                     raise refused(f"poses.{pose}.{joint}", f"a joint of {', '.join(self.joints)}", repr(joint))
         for k, mass in enumerate(self.masses):
-            if mass.on not in self.links:
-                raise refused(f"masses.{k}.on", f"a link of the chain: {', '.join(self.links)}", repr(mass.on))
+            if mass.of not in self.links:
+                raise refused(f"masses.{k}.of", f"a link of the chain: {', '.join(self.links)}", repr(mass.of))
         if self.masses and self.gravity is None:
             raise refused("gravity", "its direction beside masses, such as [0, 0, -1]", "none")
         return self
