@@ -25,6 +25,7 @@ from tol3d.machine.chain import Chain
 from tol3d.machine.system import MachineSystem
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
+from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
 WORST = """
@@ -250,3 +251,28 @@ def test_masses_decide_the_flank(tmp_path: Path) -> None:
     assert sides["joint 1"] == {"home": 0, "up": 0}
     assert sides["joint 2"]["home"] == -1
     assert sides["joint 3"]["home"] == 1
+
+
+def test_a_seat_that_leans_takes_its_link_along(tmp_path: Path) -> None:
+    """A flange that rises by 1 mm at 40 mm from its middle lays its link askew by that, and the tool at 750 mm."""
+    flange = "flange: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [80 mm, 80 mm]}"
+    law = "zone: {width: 80 um}, law: {kind: uniform}"
+    text = arm_scene(
+        axes=AXES[:1],
+        tool=(750.0, 0.0, 200.0),
+        poses={"home": (0.0,)},
+        masses=(),
+        bores=False,
+        measures="\n  z home: {kind: position_error, of: link 1.tool, from: base, component: z, at: home}",
+    )
+    text = text.replace("\n      tool:", f"\n      {flange}\n      tool:")
+    text = text.replace("link 1.pilot], train", "link 1.pilot], seat: [flange, pilot], train")
+    lean = f"\n  lean: {{kind: perpendicularity, of: link 1.flange, datums: [pilot], {law}}}"
+    system = system_of(text.replace("\nmoves:", f"{lean}\nmoves:"), tmp_path)
+    place = component_slices(system.drawn)["lean"]
+    slopes = system.poses["home"].slopes_of("z home").coefficients[place]
+    assert np.abs(slopes) == pytest.approx([750.0 / 40.0, 0.0], abs=1e-9)
+    rows = np.zeros((1, max(own.stop for own in component_slices(system).values())))
+    rows[0, component_slices(system)["lean"].start] = 0.01
+    found = answers(system, Trials(rows, {"stage 1": np.zeros(1)}), "exact")["z home"]
+    assert np.abs(found) == pytest.approx([0.01 * 750.0 / 40.0], abs=1e-4)
