@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 from machine.arm_by_hand import (
     AXES,
+    DRIVE,
     MASSES,
     POSES,
+    STAGE,
+    THIN,
     TOOL,
     arm_scene,
     columns_of,
@@ -21,6 +24,7 @@ from machine.arm_by_hand import (
 from machine.housed import Array
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.machine.chain import Chain
 from tol3d.machine.system import MachineSystem
 from tol3d.study.draws import drawn
@@ -276,3 +280,17 @@ def test_a_seat_that_leans_takes_its_link_along(tmp_path: Path) -> None:
     rows[0, component_slices(system)["lean"].start] = 0.01
     found = answers(system, Trials(rows, {"stage 1": np.zeros(1)}), "exact")["z home"]
     assert np.abs(found) == pytest.approx([0.01 * 750.0 / 40.0], abs=1e-4)
+
+
+def test_compensation_of_an_arm_is_that_of_its_gears(tmp_path: Path) -> None:
+    found = []
+    gears = f"parts:{STAGE.format(k=2)}\ntolerances:{THIN.format(k=2)}\nmoves:{DRIVE.format(k=2)}"
+    measures = "measures:\n  lost: {kind: lost_motion, of: drive 2}"
+    alone = f"scene: gears\n{gears}\n{measures}\nstudy: {{trials: 40, seed: 3}}\n"
+    for name, text in (("arm", arm_scene(measures=errors())), ("gears", alone)):
+        place = tmp_path / f"{name}.yaml"
+        place.write_text(text, "utf-8")
+        question = CompensationQuestion(train="drive 2", robots=40)
+        found.append(compensation(load_scene(place), question).corrections["geometric"])
+    assert found[0] == found[1]
+    assert found[0].motor == pytest.approx(3 * 5.4, abs=0.6)  # 45 um of 28.5 mm cos 20 deg, thrice at the motor

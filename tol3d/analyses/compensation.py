@@ -27,6 +27,7 @@ from tol3d.gearing.model.measures import lost_motion
 from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem, gear_model
+from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, simulation_of
@@ -161,7 +162,7 @@ def compensation(
     Raises:
         InputError: no such train, or no link in it.
     """
-    simulation = _simulation_of(scene, question, replace(overrides, witness=0))
+    simulation = _of_gears(scene, _simulation_of(scene, question, replace(overrides, witness=0)))
     model = gear_model(simulation.system)
     train = _train_of(scene, model, question.train)
     tip = next((kind for _, kind in swings_of(model, train)), None) or _kind(model, train, "tip_displacement")
@@ -203,6 +204,21 @@ def _simulation_of(scene: Scene, question: CompensationQuestion, overrides: Over
         return simulation
     most = max(study.replicates, MOST_ROBOTS - MOST_ROBOTS % study.replicates)
     return simulation_of(scene, replace(overrides, trials=min(study.trials, most)))
+
+
+def _of_gears(scene: Scene, simulation: Simulation) -> Simulation:
+    """Of a machine that of its gears, which are the same there: nothing else acts on their lost motions.
+
+    Raises:
+        SceneError: the shafts of the gears lie in bores, which deviate too.
+    """
+    system = simulation.system
+    if not isinstance(system, MachineSystem):
+        return simulation
+    for own in system.bores.shafts:
+        words = f"expected trains whose shafts lie in no bores, got {own.shaft!r} in those of a part"
+        raise scene.refuse(("moves", own.move), f"{words}: compensation asks the gears alone")
+    return replace(simulation, system=system.gears)
 
 
 def _train_of(scene: Scene, model: Model, name: str | None) -> Train:
