@@ -95,7 +95,7 @@ def test_a_bush_that_grows_more_than_its_pin_has_more_play(road: str, tmp_path: 
 
 def test_gears_and_solid_parts_have_one_temperature() -> None:
     """The same word, of the mechanism whose other kinds the scene has."""
-    for name, mechanism in (("warm_bar", "assembly"), ("every_field", "gearing"), ("housed_gears", "gearbox")):
+    for name, mechanism in (("warm_bar", "assembly"), ("every_field", "gearing"), ("housed_gears", "machine")):
         scene = load_scene(SCENES / f"{name}.yaml")
         assert any(own.kind == "temperature" for own in scene.tolerances.values())
         assert scene.grammar.vocabulary_of(scene).name == mechanism
