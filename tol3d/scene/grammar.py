@@ -223,6 +223,10 @@ class Grammar:
         advice = self._joining(used.keys()) or f"take out {odd}"
         raise scene.refuse(used[odd], f"{words}; {advice}, or make two scenes")
 
+    def understands(self, scene: Scene) -> bool:
+        """Whether a vocabulary understands all of a scene."""
+        return self._go_together(self._used(scene).keys())
+
     def _go_together(self, names: Set[str]) -> bool:
         return any(each.name in names and names <= self._understood(each) for each in self.vocabularies)
 

@@ -59,6 +59,8 @@ def read_scene(
     grammar = kinds.saying(_words(top))
     try:
         scene = checked(grammar)
+        if not grammar.understands(scene):
+            scene = checked(kinds.whole())  # whose message names what may join its kinds
     except SceneError:
         if grammar is kinds.whole():
             raise

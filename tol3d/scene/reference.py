@@ -12,7 +12,7 @@ Spec = type[Any]
 
 def any_of(specs: Collection[Spec]) -> str:
     """What may stand there, in words: "a shaft or a housing"."""
-    return " or ".join(spec.words for spec in specs)
+    return " or ".join(dict.fromkeys(spec.words for spec in specs))
 
 
 @dataclass(frozen=True)

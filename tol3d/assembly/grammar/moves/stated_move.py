@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class StatedMoveSpec(MoveSpec):
     """A move that places one body or several, of whatever mechanism, and says itself how; see StatedMove."""
 
-    words: ClassVar[str] = "a move that places parts"
+    words: ClassVar[str] = "a move that places a part"
 
     @property
     @abstractmethod
