@@ -319,7 +319,8 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
         [added(PARTS, "pinion: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 10 mm}")],
         "parts.base",
         "kinds of gearing and assembly do not go together in one scene, got 'pinion' of gearing and 'base' of "
-        "assembly; join them by a move of kind open_chain or a move of kind shaft_in_bores, or make two scenes",
+        "assembly; join them by a move of kind carrier_pins or a move of kind open_chain or a move of kind "
+        "shaft_in_bores, or make two scenes",
     ),
     "engine of gears": (
         [("trials: 10000", "trials: 10000, engine: fcl")],

@@ -580,7 +580,8 @@ REFUSED = {
         ("parts:\n", "parts:\n  base: {kind: solid, features: {mark: {kind: point, at: [0 mm, 0 mm, 0 mm]}}}\n"),
         "parts.base: kinds of assembly and gearing and cycloid and planetary do not go together in one scene, got "
         "'base' of assembly and 'motor' of gearing and 'crankshaft' of cycloid and 'planets' of planetary; join them "
-        "by a move of kind open_chain or a move of kind shaft_in_bores, or make two scenes",
+        "by a move of kind carrier_pins or a move of kind open_chain or a move of kind shaft_in_bores, or make two "
+        "scenes",
     ),
 }
 

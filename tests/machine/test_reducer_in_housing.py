@@ -25,6 +25,7 @@ OWN = Numbers(
 )  # fmt: skip
 RATIO = 1 + 2 * 12
 LAW = "distribution: {kind: uniform, lower: -20 um, upper: 20 um}"
+RANDOM = "distribution: {kind: rayleigh, scale: 2 um}"
 BORES = "".join(
     f"\n      {name} bore: {{kind: cylinder, at: [0 mm, 0 mm, {z} mm], axis: [0, 0, 1], length: 10 mm, diameter: 9 mm}}"
     for name, z in (("sun", -40), ("pin ring", 0), ("carrier", 40))

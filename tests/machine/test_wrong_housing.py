@@ -124,7 +124,8 @@ WRONG: dict[str, tuple[dict[str, str], str, str]] = {
         {"tolerances": F, "moves": "\n  stage: {kind: mesh, driver: pinion, driven: wheel}"},
         "parts.first shaft",
         "kinds of assembly and gearing do not go together in one scene, got 'housing' of assembly and 'first shaft' of "
-        "gearing; join them by a move of kind open_chain or a move of kind shaft_in_bores, or make two scenes",
+        "gearing; join them by a move of kind carrier_pins or "
+        "a move of kind open_chain or a move of kind shaft_in_bores, or make two scenes",
     ),
 }
 

@@ -30,7 +30,7 @@ from tol3d.cycloid.shown import ShownReducer
 from tol3d.cycloid.statuses import NO_FIT
 from tol3d.cycloid.system import REST_COSTS
 from tol3d.cycloid.turning import LinearTurning, Turning
-from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
@@ -132,6 +132,9 @@ class RVLink(StatedLink):
             none = np.zeros((len(seen), 2))
             aside = asides.get(part, none) - asides.get(self.own.carrier, none)
             found.add(acts, _turned(aside, -sun_turned * turns))
+        for k, (_, azimuth) in enumerate(self.pins):
+            if pin_name(k) in asides:
+                found.stage.carrier_holes[:, k] += _turned(asides[pin_name(k)], _alike(seen, azimuth))
         return found
 
     @property
@@ -185,13 +188,18 @@ class RVLink(StatedLink):
             yield piece, turns[:, 0], rates
 
     @property
+    def pins(self) -> Sequence[tuple[float, float]]:
+        """See StatedLink: where cranks turn in the carrier."""
+        return [(self.own.crank_circle, float(azimuth)) for azimuth in self.own.azimuths]
+
+    @property
     def held(self) -> str:
         """See StatedLink."""
         return self.own.ring
 
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """See StatedLink."""
-        found: dict[str, list[Array]] = {part: [] for part in self.levels}
+        found: dict[str, list[Array]] = {part: [] for part in (*self.levels, *map(pin_name, range(self.own.cranks)))}
         for piece, turns, rates in self._rates(seen):
             against = np.zeros((len(piece), 2))
             for acts, part, sun_turned in self._against_carrier:
@@ -200,6 +208,9 @@ class RVLink(StatedLink):
                 found[part].append(by)
                 against -= by
             found[self.own.carrier].append(against)
+            for k, (_, azimuth) in enumerate(self.pins):
+                of_hole = np.sum([n * each.stage.carrier_holes[:, k] for n, each in rates], axis=0)
+                found[pin_name(k)].append(_turned(of_hole, _alike(piece, -azimuth)))
         return {part: np.concatenate(each) for part, each in found.items()}
 
     def offset_by(self, contributor: str, part: str) -> "RVLink | None":
@@ -227,6 +238,11 @@ class RVLink(StatedLink):
         first = seen.part(0, 1)
         turns = self.output_turns(first)[:, 0]
         return ShownReducer(self.own, self.deviated(first, turns), float(turns[0]), self.own.width, self.crank_hole)
+
+
+def _alike(seen: LinkTrials, angle: float) -> Array:
+    """The turns of an angle [rad] in each of some trials (trials,)."""
+    return np.full(len(seen), angle / (2 * math.pi))
 
 
 def _turned(vectors: Array, turns: Array) -> Array:

@@ -31,6 +31,7 @@ from tol3d.machine.joined import HIDDEN, TURN, is_hidden
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.mechanism import MACHINE
 from tol3d.machine.nominal import HousedShaft, housed
+from tol3d.machine.pins import pins_of, with_pins
 from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene, Vocabulary
 from tol3d.scene.implausible import warned
@@ -54,9 +55,11 @@ def machine_system(scene: Scene) -> MachineSystem:
     poses = {pose: assembly_system(parts, pose) for pose in pose_names(parts) or ("",)}
     drawn = next(iter(poses.values()))
     place = housed(scene, _gears_of(scene), drawn.assembly)
-    bores = bores_of(drawn.assembly, tuple(place.shafts.values()))
     gears = gear_system(place.scene)
-    model = with_bores(place.scene, gears.model, place)
+    pins = pins_of(scene, gears.model, drawn.assembly)
+    model = with_pins(with_bores(place.scene, gears.model, place), pins)
+    read = (*place.shafts.values(), *(shaft for own in pins for shaft in own.shafts))
+    bores = bores_of(drawn.assembly, read)
     model = replace(model, contributors=(*model.contributors, *_by_bores(model, bores)))
     by_name: dict[str, Measure] = {own.name: own for own in gears.measures}
     by_name |= {own.name: own for system in poses.values() for own in system.measures}
@@ -151,7 +154,7 @@ def _turned_against_hosts(system: MachineSystem, column: int) -> set[str]:
 def _off_shafts(scene: Scene, bores: Bores) -> Iterator[str]:
     """Warnings of bores whose middles lie beyond an end of the shaft that they hold."""
     for own in bores.shafts:
-        shaft, places = scene.parts[own.shaft], [own.along(bore) for bore in own.bores]
+        shaft, places = scene.parts.get(own.shaft), [own.along(bore) for bore in own.bores]
         if own.bores[0].end is not None:  # of a long bore, which may stand out, its middle
             places = [sum(places) / 2]
         for k, at in enumerate(places):

@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from tol3d.machine.grammar.carrier_pins import CarrierPinsSpec
 from tol3d.machine.grammar.checks import laid_too_early, laid_twice, shafts_thicker_than_bores
 from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
@@ -10,7 +11,7 @@ from tol3d.system.mechanism import Mechanism
 
 MACHINE: Final = Mechanism(
     name="machine",
-    moves=(OpenChainSpec, ShaftInBoresSpec),
+    moves=(CarrierPinsSpec, OpenChainSpec, ShaftInBoresSpec),
     measures=(WorstPositionErrorSpec,),
     checks=(laid_twice, laid_too_early),
     warnings=(shafts_thicker_than_bores,),

@@ -61,6 +61,7 @@ class HousedShaft:
         bores: two points of its axis.
         frame: the frame of the shaft at rest, in the world of the parts (4, 4).
         host: the part that carries the first bore of its train: shafts lie off their places as it sees them.
+        lies: what it is to the parts of its bores, in words.
     """
 
     move: str
@@ -68,6 +69,7 @@ class HousedShaft:
     bores: tuple[Bore, Bore]
     frame: Array
     host: str
+    lies: str = "shaft in bores of"
 
     def along(self, bore: Bore) -> float:
         """Where a point of it lies along the shaft's z [mm]."""

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.numerics.programme import NO_ROOM, ranges
 from tol3d.planetary.contact import Contact, seated_ranges
@@ -115,6 +115,8 @@ class SetLink(StatedLink):
         for m, mesh in enumerate(own.meshes if asides else ()):
             aside = asides.get(own.carrier, none) - asides.get(mesh.central.name, none)
             found.aside[:, m] = turned(aside, -self._carrier_rate * turns)
+        for k in range(own.planets):
+            found.pins[:, k] += asides.get(pin_name(k), none)
         return found
 
     @property
@@ -171,18 +173,25 @@ class SetLink(StatedLink):
         return {name: self.height + (middle if name == self.own.carrier else at) for name, at in heights.items()}
 
     @property
+    def pins(self) -> Sequence[tuple[float, float]]:
+        """See StatedLink."""
+        return [(self.own.centre_distance, azimuth) for azimuth in self.own.azimuths]
+
+    @property
     def held(self) -> str:
         """See StatedLink."""
         return self.own.held
 
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """See StatedLink."""
-        pieces = [
-            turned(slopes.aside, (self._carrier_rate * turns)[:, None]) for _, turns, slopes in self._slopes(seen)
+        found = [
+            (turned(slopes.aside, (self._carrier_rate * turns)[:, None]), slopes.pins)
+            for _, turns, slopes in self._slopes(seen)
         ]
-        slopes = np.concatenate(pieces)
-        of_gears = {mesh.central.name: -slopes[:, m] for m, mesh in enumerate(self.own.meshes)}
-        return {**of_gears, self.own.carrier: slopes.sum(axis=1)}
+        aside, pins = (np.concatenate(own) for own in zip(*found, strict=True))
+        of_gears = {mesh.central.name: -aside[:, m] for m, mesh in enumerate(self.own.meshes)}
+        of_pins = {pin_name(k): pins[:, k] for k in range(self.own.planets)}
+        return {**of_gears, **of_pins, self.own.carrier: aside.sum(axis=1)}
 
     def offset_by(self, contributor: str, part: str) -> "SetLink | None":
         """See StatedLink: of a central gear."""

@@ -2,6 +2,6 @@
 
 from tol3d.gearing.links.link_trials import LinkTrials
 from tol3d.gearing.links.reducer import Reducer
-from tol3d.gearing.links.stated_link import FreeTurn, LinkSum, Moved, StatedLink
+from tol3d.gearing.links.stated_link import FreeTurn, LinkSum, Moved, StatedLink, pin_name
 
-__all__ = ["FreeTurn", "LinkSum", "LinkTrials", "Moved", "Reducer", "StatedLink"]
+__all__ = ["FreeTurn", "LinkSum", "LinkTrials", "Moved", "Reducer", "StatedLink", "pin_name"]

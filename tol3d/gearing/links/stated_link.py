@@ -22,6 +22,11 @@ STEP: Final = 1e-5  # mm, rad, K; differences over it lose 1e-11 of a play of 1 
 SAME_AXIS: Final = 1e-6  # mm, and rad
 
 
+def pin_name(k: int) -> str:
+    """A pin of a carrier, counted from 0, among the parts that bores move; scenes cannot name a part so."""
+    return f".pin {k + 1}"
+
+
 @dataclass(frozen=True)
 class FreeTurn:
     """How far a driven shaft turns freely while its driver, and its carrier if there is one, are held.
@@ -55,12 +60,13 @@ class LinkSum:
 
 @dataclass(frozen=True)
 class Moved:
-    """A part of a link whose centre lies off the link's axis because the bores of its shaft do.
+    """A part of a link whose centre lies off its place because the bores of its shaft do, or a pin of its carrier.
 
     Args:
-        contributor: displacement x, y of a point of that shaft [mm].
-        part: in the link.
-        matrix: what the centre moves by x and by y, rows x and y across the driver's axis, in its frame at rest.
+        contributor: displacement x, y of a point of that shaft, or of the pin [mm].
+        part: in the link; of a pin its `pin_name`.
+        matrix: what the centre moves by x and by y: rows x and y across the driver's axis, in its frame at rest; of a
+            pin outwards and counter-clockwise, in the frame of the carrier.
     """
 
     contributor: str
@@ -194,12 +200,17 @@ class StatedLink(ABC):
         return {}
 
     @property
+    def pins(self) -> Sequence[tuple[float, float]]:
+        """Pins of its carrier that may be drawn as features of a part: radius [mm] and azimuth [rad] of each."""
+        return ()
+
+    @property
     def held(self) -> str:
         """The part of it that stands in the world; empty where nobody asks which."""
         return ""
 
     def asides(self, seen: LinkTrials) -> Mapping[str, Array]:
-        """Centres of parts that bores move (trials, 2) [mm], at rest in the driver's frame at rest."""
+        """How far parts that bores move lie off their places (trials, 2) [mm], in the directions of `Moved`."""
         found: dict[str, Array] = {}
         for own in self.moved:
             by = seen.deviations[own.contributor] @ np.array(own.matrix).T

@@ -34,7 +34,7 @@ def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
     shafts = []
     for own in system.bores.shafts:
         parts = dict.fromkeys(assembly.features[bore.feature].part for bore in own.bores)
-        shafts.append(Laid(own.shaft, "shaft in bores of", own.move, tuple(parts)))
+        shafts.append(Laid(own.shaft, own.lies, own.move, tuple(parts)))
     return parts_tree(assembly, shafts)
 
 
