@@ -232,6 +232,17 @@ WRONG = {
         "link 3.pilot], train", "link 2.pilot], train", "another link after each joint, got 'link 2' after two"
     ),
     "masses without gravity": ("\n    gravity: [0, 0, -1]", "", "gravity: expected its direction beside masses"),
+    "links before their joints": (
+        "between: [base.bore, link 1", "between: [link 2.bore, link 1", "a link that joints before it have placed"
+    ),
+    "a worst error of no pose": (
+        "\nstudy", "\n  w: {kind: worst_position_error, of: link 3.tool, from: base, poses: [upp]}\nstudy",
+        "w.poses[0]: expected one of the poses home, up, got 'upp'"
+    ),
+    "a difference of two poses": (
+        "\nstudy", "\n  d: {kind: difference, of: x up, minus: x home}\nstudy",
+        "d.minus: expected a measure that is read at 'up', as 'x up' is, got 'x home', which is read at 'home'"
+    ),
     "a mass elsewhere": ("- {of: link 2", "- {of: base", f"expected a link of the chain: {LINKS}, got 'base'"),
 }  # fmt: skip
 
@@ -294,3 +305,40 @@ def test_compensation_of_an_arm_is_that_of_its_gears(tmp_path: Path) -> None:
         found.append(compensation(load_scene(place), question).corrections["geometric"])
     assert found[0] == found[1]
     assert found[0].motor == pytest.approx(3 * 5.4, abs=0.6)  # 45 um of 28.5 mm cos 20 deg, thrice at the motor
+
+
+def test_a_difference_is_read_in_the_pose_of_both(tmp_path: Path) -> None:
+    more = "\n  d: {kind: difference, of: x up, minus: z up}"
+    system = system_of(arm_scene(bores=False, measures=errors() + more), tmp_path)
+    trials = loose(np.random.default_rng(6), flanks=1)
+    for road in ("exact", "analytic"):
+        found = answers(system, trials, road)
+        assert found["d"] == pytest.approx(found["x up"] - found["z up"], abs=1e-9)
+        assert np.abs(found["d"]).max() > 0.1
+
+
+def test_a_chain_on_a_chain_is_one_chain(tmp_path: Path) -> None:
+    """The last joint as a chain of its own, which has another pose and lacks the first: it stands in its own first."""
+    whole = arm_scene(measures=errors(), bores=False)
+    hand = "joint 3: {between: [link 2.bore, link 3.pilot], train: drive 3}"
+    apart = whole.replace(f"\n      {hand}", "").replace(", joint 3: 0.0 deg", "").replace(", joint 3: -45.0 deg", "")
+    last = "\n      - {of: link 3, mass: 5.0 kg, at: [150 mm, 0 mm, 0 mm]}"
+    assert last in apart
+    own = f"\n  hand:\n    kind: open_chain\n    joints: {{{hand}}}\n    gravity: [0, 0, -1]\n    masses:{last}"
+    poses = "\n    poses: {shut: {joint 3: 0 deg}, up: {joint 3: -45 deg}}"
+    apart = apart.replace(last, "").replace("\nmeasures:", f"{own}{poses}\nmeasures:")
+    systems = [system_of(text, tmp_path) for text in (whole, apart)]
+    trials = loose(np.random.default_rng(7), flanks=1)
+    for road in ("exact", "analytic"):
+        one, two = (answers(system, trials, road) for system in systems)
+        for name in one:
+            assert two[name] == pytest.approx(one[name], abs=1e-9), name
+
+
+@pytest.mark.slow
+def test_fcl_witnesses_a_tool_as_far_as_it_does_its_trains(tmp_path: Path) -> None:
+    place = tmp_path / "arm.yaml"
+    place.write_text(arm_scene(measures=errors() + WORST), "utf-8")
+    run = run_scene(place, overrides=Overrides(trials=40, witness=6), out=tmp_path / "run").summary
+    assert [own for own in run["warnings"] if "witness" in own] == []
+    assert run["witness"]["measures"].keys() == run["measures"].keys()

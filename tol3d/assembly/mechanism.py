@@ -4,7 +4,7 @@ from typing import Final
 
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
-from tol3d.assembly.grammar.checks import unknown_features, unknown_poses, unplaced_bodies
+from tol3d.assembly.grammar.checks import differences_of_two_poses, unknown_features, unknown_poses, unplaced_bodies
 from tol3d.assembly.grammar.contact_checks import round_contacts
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
 from tol3d.assembly.grammar.implausible_sizes import implausible_sizes
@@ -70,6 +70,7 @@ ASSEMBLY: Final = Mechanism(
         unknown_features,
         unplaced_bodies,
         unknown_poses,
+        differences_of_two_poses,
         contradicting_tolerances,
         unfit_orientations,
         unfit_modifiers,

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
 from tol3d.assembly.from_scene import Meant, understood
-from tol3d.assembly.from_scene.assembly import pose_names
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
+from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.measures import PoseErrorSpec
 from tol3d.assembly.model import Assembly

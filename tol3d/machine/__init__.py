@@ -1,17 +1,22 @@
-"""Gears in a machined housing: shafts lie in bores that deviate as the drawing of their parts says.
+"""Machines: gears and parts with drawings in one world, joined at bores, at pins and at joints.
 
-The parts are an assembly, placed and measured as any; the meshes are those of any train. Between the two stands one
-move, `shaft_in_bores`: the axis of a shaft is the line through its bores in the trial, and how far it lies off its
-nominal place is what both gear roads get, beside the tolerances of the gears.
+The parts are an assembly, placed and measured as any; the gears, planetary sets and reducers are those of any train.
+Between both stand moves: the axis of a shaft is the line through its bores in the trial, planets turn about pins of a
+plate, and a train turns the links of an arm by what it leaves free. Each hands on what it reads as deviations that
+nobody draws, so that either side sees no more than its own kind.
 
-grammar/     the move, and what must not be counted twice
+grammar/     the moves, worst errors over poses, and what does not hold together
 nominal      where shafts lie in their bores, and the centre distances and azimuths that follow
-bores        the lines through bores, trial by trial, by either road of the assembly
-from_scene   the gears, the assembly and the bores between them, from one scene
-joined       both together: whose columns are whose, how bores follow from deviations
-roads        placed, then meshed
+bores, pins  lines through bores, and pins of plates, trial by trial, by either road of the assembly
+centrals     what bores do to the parts on the axis of a planetary set or a reducer
+chain        links, joints and poses on both roads; open_chains makes them of a scene, with the flanks that are loaded
+drives       which train turns which joint, and where its lost motion is read
+from_scene   all of it, from one scene
+joined       all together: whose columns are whose, how bores and joints follow from deviations
+turned       what trains leave free, each build and position once
+roads        placed, meshed, turned
 counted      what would be counted twice
-closed_form  moments of a backlash by the tolerances of the bores too
+closed_form  moments of a backlash, and of a part that trains turn
 system       all of it as one system
-presenting/  gears and housing in one picture
+presenting/  gears, housing and arms in one picture
 """

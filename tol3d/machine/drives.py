@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
+from tol3d.assembly.grammar.checks import pose_names
 from tol3d.gearing.model import LostMotion, Measure, Model
 from tol3d.gearing.model.measures import lost_motion
 from tol3d.gearing.model.readings import reader_like
@@ -38,14 +39,15 @@ class JointDrive:
 def drives_of(scene: Scene, model: Model) -> Iterator[JointDrive]:
     """The joints of a scene that trains turn.
 
-    Poses in which a joint stands alike are one reading.
+    Poses in which a joint stands alike are one reading. A chain that lacks a pose of another one stands in its first.
 
     Raises:
         SceneError: a train that turns two joints.
     """
     driven: dict[str, str] = {}
     for name, spec in scene.of(OpenChainSpec).items():
-        sides = {pose: loaded_sides(scene, spec, pose) for pose in spec.poses}
+        stands = {pose: pose if pose in spec.poses else next(iter(spec.poses)) for pose in pose_names(scene)}
+        sides = {pose: loaded_sides(scene, spec, own) for pose, own in stands.items()}
         for joint, own in spec.joints.items():
             if own.train is None:
                 continue
@@ -54,7 +56,7 @@ def drives_of(scene: Scene, model: Model) -> Iterator[JointDrive]:
                 raise scene.refuse(("moves", name, "joints", joint, "train"), words)
             driven[own.train] = joint
             readings = {
-                pose: reading_at(model, own.train, joint, inputs[joint].internal) for pose, inputs in spec.poses.items()
+                pose: reading_at(model, own.train, joint, spec.poses[at][joint].internal) for pose, at in stands.items()
             }
             its = {pose: found[joint] for pose, found in sides.items()}
             yield JointDrive(joint, turn_name(name, joint), flank_name(joint), readings, its)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from tol3d.assembly.from_scene.assembly import pose_names
+from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.measures import PositionErrorSpec
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY

@@ -94,28 +94,36 @@ class Joined:
         return replace(self.drawn, assembly=self.bores.assembly)
 
     def joints_of(self, name: str) -> tuple[JointDrive, ...]:
-        """The drives on whose joints a measure of the assembly hangs, by what it reads of a build like others."""
-        if name not in self._known_joints:
-            self._known_joints[name] = tuple(self._hung_on(name)) if self.drives else ()
-        return self._known_joints[name]
+        """The drives on whose joints a measure of the assembly hangs."""
+        return tuple(drive for drive in self.drives if drive.joint in self.reaches_of(name))
+
+    def reaches_of(self, name: str) -> Mapping[str, float]:
+        """By joint on which a measure hangs, how far a turn of it moves that, per rad, in a build like others."""
+        if name not in self._known_reaches:
+            self._known_reaches[name] = dict(self._reaches(name)) if self.drives else {}
+        return self._known_reaches[name]
 
     @cached_property
-    def _known_joints(self) -> dict[str, tuple[JointDrive, ...]]:
+    def _known_reaches(self) -> dict[str, Mapping[str, float]]:
         """By measure, as far as they were asked for."""
         return {}
 
-    def _hung_on(self, name: str) -> Iterator[JointDrive]:
+    def _reaches(self, name: str) -> Iterator[tuple[str, float]]:
         own = self.poses[self.pose_of[name]]
         slices = component_slices(self.drawn)
         turns = [slices[drive.turn].start for drive in self.drives]
-        if own.assembly.measures[name].kind == "clearance":
-            yield from self.drives
+        if own.assembly.measures[name].kind == "clearance":  # whose solids are not read here
+            yield from ((drive.joint, 0.0) for drive in self.drives)
             return
         rows = np.repeat(widely(own.contributors)[:1], 1 + len(turns), axis=0)
         rows[np.arange(1, len(rows)), turns] += TURN
         values, codes = placing.values(own.assembly, rows, [name])[name]
-        same = (codes == OK) & (codes[0] == OK) & (np.abs(values - values[0]) < NOTHING)
-        yield from (drive for drive, kept in zip(self.drives, same[1:], strict=True) if not kept)
+        for drive, value, code in zip(self.drives, values[1:], codes[1:], strict=True):
+            moved = abs(float(value - values[0]))
+            if code != OK or codes[0] != OK:
+                yield drive.joint, 0.0
+            elif moved >= NOTHING:
+                yield drive.joint, moved / TURN
 
     def lever_of(self, name: str, drive: JointDrive) -> float:
         """How far a measure of the assembly moves per turn of a joint nominally, to first order [mm/rad]."""

@@ -3,7 +3,13 @@
 from typing import Final
 
 from tol3d.machine.grammar.carrier_pins import CarrierPinsSpec
-from tol3d.machine.grammar.checks import laid_too_early, laid_twice, shafts_thicker_than_bores
+from tol3d.machine.grammar.checks import (
+    joints_named_twice,
+    laid_too_early,
+    laid_twice,
+    shafts_thicker_than_bores,
+    unfit_worst_errors,
+)
 from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
@@ -13,7 +19,7 @@ MACHINE: Final = Mechanism(
     name="machine",
     moves=(CarrierPinsSpec, OpenChainSpec, ShaftInBoresSpec),
     measures=(WorstPositionErrorSpec,),
-    checks=(laid_twice, laid_too_early),
+    checks=(laid_twice, laid_too_early, joints_named_twice, unfit_worst_errors),
     warnings=(shafts_thicker_than_bores,),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),

@@ -66,12 +66,26 @@ class MachineRoad:
         return True
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad; of the assembly clearances alone are read otherwise than by the road that is witnessed."""
-        if not isinstance(measure, GearMeasure):
-            return self.chords.get(measure.name, 0.0) * measure.per_internal, 0.0
+        """See WitnessRoad; of the assembly clearances and joints are read otherwise than by the witnessed road."""
         witness: Any = self.gears
-        found: tuple[float, float] = witness.bounds(measure)
-        return found
+        if isinstance(measure, GearMeasure):
+            found: tuple[float, float] = witness.bounds(measure)
+            return found
+        names = [name for _, name in measure.sizes] if isinstance(measure, WorstMeasure) else [measure.name]
+        by_facets, by_all_else = self.chords.get(measure.name, 0.0), 0.0
+        for own in (self._joint_bounds(name, witness) for name in names):
+            by_facets, by_all_else = max(by_facets, own[0]), max(by_all_else, own[1])
+        return by_facets * measure.per_internal, by_all_else * measure.per_internal
+
+    def _joint_bounds(self, name: str, witness: Any) -> tuple[float, float]:
+        """By what trains are off, as it moves a measure of the assembly, with the clearance's own [mm or rad]."""
+        found = np.array([self.chords.get(name, 0.0), 0.0])
+        for drive in self.system.joints_of(name):
+            reading = drive.readings[self.system.pose_of[name]]
+            levers = self.system.lever_of(name, drive), self.system.reaches_of(name)[drive.joint]
+            per = HALF * max(levers) / reading.per_internal
+            found += per * np.array(witness.bounds(reading))
+        return float(found[0]), float(found[1])
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
@@ -182,7 +196,7 @@ class MachineRoad:
                 continue
             side: Array | float = drive.sides[pose] if sides is None else sides[drive.joint]
             if not side:
-                side = deviations[:, drawn[drive.flank].start]
+                side = np.sign(deviations[:, drawn[drive.flank].start])
             play = np.where(turned.failed[name], 0.0, turned.play[name])
             deviations[:, drawn[drive.turn].start] = HALF * side * play
         return deviations

@@ -184,7 +184,19 @@ class MachineSystem(Joined):
 
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
         """See System."""
-        return 0.0 if isinstance(measure, WorstMeasure) else self._owner(measure).chord_bound(measure, chord_error)
+        if isinstance(measure, GearMeasure):
+            return self.gears.chord_bound(measure, chord_error)
+        if isinstance(measure, WorstMeasure):
+            return max(self.chord_bound(size, chord_error) for size in self._sizes(measure))
+        by_joints = sum(
+            HALF
+            * self.lever_of(measure.name, drive)
+            * self.gears.chord_bound(reading, chord_error)
+            / reading.per_internal
+            for drive, pose in self._turning(measure)
+            for reading in [drive.readings[pose]]
+        )
+        return self._owner(measure).chord_bound(measure, chord_error) + by_joints * measure.per_internal
 
     # what acts on a measure -------------------------------------------------------------------------
 

@@ -13,8 +13,8 @@ from tol3d.assembly.from_scene.features import TouchedPoints, features_of
 from tol3d.assembly.from_scene.measures import add_projected, add_twins, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import warmed
+from tol3d.assembly.grammar.checks import pose_of
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
 from tol3d.assembly.picking.shapes import shapes_of
@@ -83,22 +83,10 @@ class Understood:
             Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
             for name in self.scene.of(SolidSpec)
         )
-        measured = {name: own for name, own in self.measured.items() if self._is_read(name, pose)}
+        measured = {name: own for name, own in self.measured.items() if pose_of(self.scene, name) == pose}
         assembly = Assembly(parts, moves, measured, self.effects.width)
         shown = tuple(own for own in shown_measures(self.scene, self.measured) if own.name in measured)
         return Meant(assembly, tuple(self.effects.contributors), shown, named_by(self.scene))
-
-    def _is_read(self, measure: str, pose: str) -> bool:
-        """Whether a measure is read in a pose: in the one that it names, or in the first."""
-        poses = pose_names(self.scene)
-        named = getattr(self.scene.measures[measure], "at", None)
-        return not poses or pose == (named or poses[0])
-
-
-def pose_names(scene: Scene) -> tuple[str, ...]:
-    """The poses of a scene's moves, in order."""
-    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
-    return tuple(dict.fromkeys(pose for move in moves for pose in move.pose_names))
 
 
 def understood(scene: Scene) -> Understood:

@@ -7,6 +7,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.grammar.measures.difference import DifferenceSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec, WeldSpec
 from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -139,9 +140,32 @@ class Bodies:
         self.placed |= dict.fromkeys(its, str(here[1]))
 
 
+def pose_names(scene: Scene) -> tuple[str, ...]:
+    """The poses of a scene's moves, in order."""
+    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
+    return tuple(dict.fromkeys(pose for move in moves for pose in move.pose_names))
+
+
+def pose_of(scene: Scene, name: str) -> str:
+    """The pose in which a measure is read, a difference as its first measure; "" where no move has poses."""
+    spec = scene.measures[name]
+    if isinstance(spec, DifferenceSpec):
+        return pose_of(scene, spec.of)
+    return getattr(spec, "at", None) or next(iter(pose_names(scene)), "")
+
+
+def differences_of_two_poses(scene: Scene) -> Iterator[Problem]:
+    """Differences of measures that are read in two poses, of which a trial has one at a time."""
+    for name, spec in scene.of(DifferenceSpec).items():
+        own, other = (pose_of(scene, each) for each in (spec.of, spec.minus))
+        if own != other:
+            words = f"expected a measure that is read at {own!r}, as {spec.of!r} is, got {spec.minus!r}"
+            yield ("measures", name, "minus"), f"{words}, which is read at {other!r}"
+
+
 def unknown_poses(scene: Scene) -> Iterator[Problem]:
     """Poses that no move has, named by measures."""
-    poses = [pose for move in scene.moves.values() if isinstance(move, StatedMoveSpec) for pose in move.pose_names]
+    poses = pose_names(scene)
     for name, measure in scene.measures.items():
         if isinstance(measure, TimedSpec) and measure.at is not None and measure.at not in poses:
             if not poses:

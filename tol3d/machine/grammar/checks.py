@@ -1,18 +1,26 @@
 """What must hold across the entries of a scene of gears in a housing, and what is most likely a slip."""
 
 from collections.abc import Iterator
+from typing import Final
 
+from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.moves import PlacingSpec
+from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.gearing.grammar.checks import too_thick
 from tol3d.gearing.grammar.parts import ShaftSpec
+from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.scene import Scene
+from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
+
+MOST_JOINTS: Final = 12
+"""Of which a worst error asks both flanks: 4096 builds a trial and pose."""
 
 
 def laid_twice(scene: Scene) -> Iterator[Problem]:
@@ -36,7 +44,12 @@ def laid_twice(scene: Scene) -> Iterator[Problem]:
 def laid_too_early(scene: Scene) -> Iterator[Problem]:
     """Shafts in bores of parts that a later move places; each part is said once."""
     order = list(scene.moves)
-    placing = {move.part: name for name, move in reversed(list(scene.moves.items())) if isinstance(move, PlacingSpec)}
+    placing: dict[str, str] = {}
+    for name, move in reversed(list(scene.moves.items())):
+        if isinstance(move, StatedMoveSpec):
+            placing |= {part: name for _, part in move.parts_placed}
+        elif isinstance(move, PlacingSpec):
+            placing[move.part] = name
     for name, move in scene.of(ShaftInBoresSpec).items():
         for k, bore in enumerate(move.in_):
             by = placing.get(part_of(bore), name)
@@ -56,3 +69,30 @@ def shafts_thicker_than_bores(scene: Scene) -> Iterator[Problem]:
         for bore in move.in_:
             if sentence := too_thick(shaft, nominal_size(drawing.kind(bore).shape), repr(bore)):
                 yield ("parts", move.shaft, "diameter"), sentence
+
+
+def joints_named_twice(scene: Scene) -> Iterator[Problem]:
+    """Joints of two chains that have one name, by which flanks and reasons are told."""
+    known: dict[str, str] = {}
+    for name, spec in scene.of(OpenChainSpec).items():
+        for joint in spec.joints:
+            if other := known.get(joint):
+                words = f"expected a name of its own, got {joint!r}, which is a joint of {other!r} too"
+                yield ("moves", name, "joints", joint), words
+            known[joint] = name
+
+
+def unfit_worst_errors(scene: Scene) -> Iterator[Problem]:
+    """Worst errors over poses that no move has, or over the flanks of too many joints."""
+    poses = pose_names(scene)
+    driven = [own for spec in scene.of(OpenChainSpec).values() for own in spec.joints.values() if own.train]
+    for name, spec in scene.of(WorstPositionErrorSpec).items():
+        if not poses:
+            yield ("measures", name, "kind"), "expected a move with poses beside it, such as an open_chain, got none"
+        for k, pose in enumerate(spec.poses or ()):
+            if poses and pose not in poses:
+                words = f"expected one of the poses {', '.join(poses)}, got {pose!r}"
+                yield ("measures", name, "poses", k), f"{words}{hint(pose, poses)}"
+        if spec.flanks == "any" and len(driven) > MOST_JOINTS:
+            words = f"expected loaded, got any with {len(driven)} joints that trains turn"
+            yield ("measures", name, "flanks"), f"{words}; both flanks of {MOST_JOINTS} are asked at most"

@@ -158,6 +158,9 @@ class OpenChainSpec(StatedMoveSpec):
         if len(set(self.links)) < len(self.links):
             twice = next(link for k, link in enumerate(self.links) if link in self.links[:k])
             raise refused("joints", "another link after each joint", f"{twice!r} after two")
+        for k, (name, own) in enumerate(self.joints.items()):
+            if (before := part_of(own.between[0])) in self.links[k:]:
+                raise refused(f"joints.{name}.between", "a link that joints before it have placed", repr(before))
         for pose, inputs in self.poses.items():
             lacking = [joint for joint in self.joints if joint not in inputs]
             if lacking:

@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec
+from tol3d.assembly.grammar.measures.pose_errors import PoseErrorSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
 
@@ -20,5 +21,5 @@ class DifferenceSpec(AssemblyMeasureSpec):
 
     def references(self) -> tuple[Reference, ...]:
         """Both measures; those of lengths."""
-        specs = (FeatureMeasureSpec,)
+        specs = (FeatureMeasureSpec, PoseErrorSpec)
         return Reference(("of",), self.of, specs), Reference(("minus",), self.minus, specs)
