@@ -99,7 +99,7 @@ def errors(last: int = 3) -> str:
 
 
 def system_of(text: str, folder: Path) -> MachineSystem:
-    """What a scene means."""
+    """The machine that a scene means."""
     place = folder / "arm.yaml"
     place.write_text(text, "utf-8")
     system = simulation_of(load_scene(place), Overrides()).system
@@ -143,7 +143,7 @@ def tool_by_hand(
     turns: Sequence[float],
     ends: Sequence[tuple[Array, Array]] | None = None,
 ) -> Array:
-    """Where the tool is (3,), every joint turned by so much from inputs 0.
+    """The tool's place (3,), every joint turned by so much from inputs 0.
 
     Args:
         axes, tool: at inputs 0.

@@ -69,7 +69,7 @@ def sides_of(system: MachineSystem, trials: Trials) -> Array:
 
 
 def bores(system: MachineSystem, trials: Trials, k: int) -> list[list[tuple[Array, Array]]]:
-    """How far both ends of every bore are displaced, by trial and joint, along the bore's x and y in the world."""
+    """Displacements of both ends of every bore, by trial and joint, along the bore's x and y in the world."""
     found = []
     for row in range(len(trials)):
         its = []
@@ -84,7 +84,7 @@ def bores(system: MachineSystem, trials: Trials, k: int) -> list[list[tuple[Arra
 
 
 def loose(rng: np.random.Generator, flanks: int) -> Trials:
-    """Of three stages that all have play: thicknesses and run-outs in turn, then flanks."""
+    """Trials of three stages that all have play: thicknesses and run-outs in turn, then flanks."""
     found = Trials(rng.normal(0.0, 0.003, (SMALL, 9 + flanks)), {f"stage {k}": np.zeros(SMALL) for k in (1, 2, 3)})
     found.deviations[:, [0, 3, 6]] -= 0.06
     found.deviations[:, 9:] = np.where(rng.random((SMALL, flanks)) < 0.5, -1.0, 1.0)

@@ -207,7 +207,7 @@ def _simulation_of(scene: Scene, question: CompensationQuestion, overrides: Over
 
 
 def _of_gears(scene: Scene, simulation: Simulation) -> Simulation:
-    """Of a machine that of its gears, which are the same there: nothing else acts on their lost motions.
+    """The simulation of a machine's gears alone, whose lost motions are the same: nothing else acts on them.
 
     Raises:
         SceneError: the shafts of the gears lie in bores, which deviate too.

@@ -231,13 +231,10 @@ class Grammar:
         return any(each.name in names and names <= self._understood(each) for each in self.vocabularies)
 
     def _joining(self, names: Set[str]) -> str:
-        """The kinds of a vocabulary that understands some others and whose own are not there; or nothing."""
+        """The moves of a vocabulary that understands some others and whose own kinds are not there; or nothing."""
         joining = next((each for each in self.vocabularies if names <= self._understood(each)), None)
-        kinds: list[tuple[str, object]] = []
-        if joining is not None:
-            sections = ("moves",) if joining.moves else SECTIONS
-            kinds = [(section[:-1], kind_of(spec)) for section in sections for spec in joining.specs(section)]
-        return "join them by " + " or ".join(f"a {section} of kind {kind}" for section, kind in kinds) if kinds else ""
+        kinds = [kind_of(spec) for spec in joining.moves] if joining else []
+        return "join them by " + " or ".join(f"a move of kind {kind}" for kind in kinds) if kinds else ""
 
     def vocabularies_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
         """The vocabularies whose kinds a scene has, in the order of registration."""
