@@ -59,7 +59,9 @@ def calls(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
         (stand_ins / name).chmod(0o755)
     told = folder / "calls"
     environment = os.environ | {"PATH": f"{stand_ins}:{os.environ['PATH']}", "CALLS": str(told), "TMPDIR": str(folder)}
-    done = subprocess.run([tree / ".ci" / "run"], env=environment, capture_output=True, text=True, timeout=HANGS)
+    done = subprocess.run(
+        [tree / ".ci" / "run"], cwd=tree, env=environment, capture_output=True, text=True, timeout=HANGS
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == "3 passed in 1.00s"  # pytest's own summary
     assert [path.name for path in (tree / ".venv").iterdir()] == ["mine"]  # the caller's own
