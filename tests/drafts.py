@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import (
     Assembly,
     Contribution,
@@ -107,4 +108,4 @@ def moved_as_a_whole(assembly: Assembly, pose: Array) -> Assembly:
 
 def displacement(name: str, along: Vector, start: str) -> Measured:
     """How far a feature lies from another along a direction that is fixed in that one's part."""
-    return Measured("gap", (start, name), np.asarray(along, float))
+    return Measured(GapSpec.reads, (start, name), np.asarray(along, float))

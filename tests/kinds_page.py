@@ -1,11 +1,12 @@
 """Pages of docs/ that list kinds in tables, and the JSON schema that they are held to."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.schema import SECTIONS
 
 Definition = Mapping[str, Any]
@@ -24,6 +25,16 @@ class Table:
     section: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, tuple[str, ...]], ...]
+
+
+def row_of(spec: type[Entry], dimension: str, of_all: Set[str]) -> str:
+    """The row of a kind of measure, from its class: word, dimension, fields but those of all, and its docstring."""
+    fields = {field.alias or name: field for name, field in spec.model_fields.items() if name not in {"kind", *of_all}}
+    needed = [f"`{name}`" for name, field in fields.items() if field.is_required()]
+    others = ", ".join(f"`{name}`" for name, field in fields.items() if not field.is_required())
+    said = " ".join((spec.__doc__ or "").split()).removesuffix(".")
+    cells = (f"`{kind_of(spec)}`", dimension, ", ".join([*needed, *([f"[{others}]"] if others else [])]), said)
+    return f"| {' | '.join(cells)} |"
 
 
 def words(text: str) -> set[str]:

@@ -4,10 +4,12 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
-from kinds_page import KindsPage
+from kinds_page import KindsPage, row_of
 from places import ROOT
 
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, TimedSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.cycloid.mechanism import CYCLOID
 from tol3d.gearing.mechanism import GEARING
@@ -40,7 +42,12 @@ class MechanismPage:
     def kinds(self) -> KindsPage:
         """Its tables, and the schema of scenes of this mechanism."""
         schema = Grammar((self.mechanism,)).scene.model_json_schema()
-        return KindsPage((ROOT / "docs" / f"{self.name}.md").read_text("utf-8"), schema, self.common)
+        return KindsPage(self.path.read_text("utf-8"), schema, self.common)
+
+    @property
+    def path(self) -> Path:
+        """Where it is."""
+        return ROOT / "docs" / f"{self.name}.md"
 
     @property
     def quoted(self) -> list[str]:
@@ -90,3 +97,20 @@ PLANETARIES = MechanismPage(
     quotes=5,
     beside=frozenset({"tooth_thickness", "eccentricity", "clocking"}),
 )
+
+
+def measure_rows() -> str:
+    """The rows of docs/assemblies.md that list the kinds of measures: of every class its own, in the order of files."""
+    of_all = set(AssemblyMeasureSpec.model_fields) | set(TimedSpec.model_fields)
+    dimensions = {spec: spec.dimension if hasattr(spec, "reads") else "as both" for spec in ASSEMBLY.measures}
+    return "\n".join(row_of(spec, dimension, of_all) for spec, dimension in dimensions.items())
+
+
+def written(text: str) -> str:
+    """The page with these rows in the place of those that it has."""
+    head, rows, rest = re.split(r"(?<=\| what is read \|\n\|---\|---\|---\|---\|\n)((?:\|.*\n)*)", text, maxsplit=1)
+    return f"{head}{measure_rows()}\n{rest}" if rows else text
+
+
+if __name__ == "__main__":  # python tests/mechanism_pages.py: the page anew
+    ASSEMBLIES.path.write_text(written(ASSEMBLIES.path.read_text("utf-8")), "utf-8")

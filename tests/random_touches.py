@@ -13,6 +13,8 @@ from scipy.linalg import null_space
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
+from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Axis, Contact, Fix, Measured, Plane, Point, RoundPlane, Shape, Touch
 
 Array = NDArray[np.float64]
@@ -210,13 +212,14 @@ def _made(rng: np.random.Generator, kinds: tuple[str, ...]) -> RandomTouch:
     draft.feature("part.far", (30, -20, 25))
     draft.feature("base.zero", (0, 0, 0), deviates=False)
     measures = {
-        axis: Measured("gap", ("base.zero", "part.far"), own) for axis, own in zip("xyz", np.eye(3), strict=True)
+        axis: Measured(GapSpec.reads, ("base.zero", "part.far"), own)
+        for axis, own in zip("xyz", np.eye(3), strict=True)
     }
     draft.feature("base.side", frame((0, 0, 0), rng.normal(size=3)), Plane((50.0, 40.0)))
     for k, contact in enumerate(contacts):
         pair = (contact.target, contact.moving)
-        measures[f"gap {k}"] = Measured("surface_gap", pair)
-        measures[f"angle {k}"] = Measured("contact_angle", (*pair, "base.side"))
+        measures[f"gap {k}"] = Measured(SurfaceGapSpec.reads, pair)
+        measures[f"angle {k}"] = Measured(ContactAngleSpec.reads, (*pair, "base.side"))
     assembly = draft.assembly((Fix("fix", "base"), Touch("touch", "part", tuple(contacts))), measures)
     return RandomTouch(assembly, kinds)
 

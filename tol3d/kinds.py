@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.errors import InputError
 from tol3d.files import Files
+from tol3d.import_path import named
 from tol3d.scene import Grammar, Kinds, Scene, Vocabulary, read_scene
 from tol3d.scene.entry import kind_of
 from tol3d.scene.schema import SECTIONS
-from tol3d.system.mechanism import Mechanism, named
+from tol3d.system.mechanism import Mechanism
 
 if TYPE_CHECKING:
     from tol3d.runs.summary.kinds import SummaryKinds

@@ -5,6 +5,13 @@ import pytest
 from drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.angle import AngleSpec
+from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedFlatnessSpec,
+    InspectedOrientationSpec,
+    InspectedPositionSpec,
+)
 from tol3d.assembly.model import (
     Assembly,
     Axis,
@@ -95,10 +102,16 @@ def test_datum_frames_and_what_is_toleranced_to_them(simulator: Simulator) -> No
         for axis, along in zip("xyz", np.eye(3), strict=True):
             measures[f"{name} {axis}"] = displacement(f"part.point {name}", along, "part.zero")
         for feature in ("point", "axis", "face", "round"):
-            measures[f"{name} {feature}"] = Measured("position", (f"part.{feature} {name}",), frame=main)
-            measures[f"{name} {feature} in it"] = Measured("position", (f"part.{feature} {name}",), frame=parent)
+            measures[f"{name} {feature}"] = Measured(
+                InspectedPositionSpec.reads, (f"part.{feature} {name}",), frame=main
+            )
+            measures[f"{name} {feature} in it"] = Measured(
+                InspectedPositionSpec.reads, (f"part.{feature} {name}",), frame=parent
+            )
         for feature in ("axis", "face", "round"):
-            measures[f"{name} tilt of {feature}"] = Measured("orientation", (f"part.{feature} {name}",), frame=parent)
+            measures[f"{name} tilt of {feature}"] = Measured(
+                InspectedOrientationSpec.reads, (f"part.{feature} {name}",), frame=parent
+            )
     assembly = draft.assembly((Fix("fix", "part"),), measures)
     of_second_order(assembly, np.random.default_rng(1).normal(size=(40, assembly.width)) * 0.01)
 
@@ -153,13 +166,21 @@ def nested(points_on: str) -> Assembly:
         for part in ("lid", "cover"):
             if (after, part) != (1, "cover"):
                 measures |= {
-                    f"{part} {after} gap": Measured("gap", ("base.point", f"{part}.point"), along, after=after),
-                    f"{part} {after} back": Measured("gap", (f"{part}.axis", "base.face"), along, after=after),
-                    f"{part} {after} distance": Measured("distance", ("base.point", f"{part}.axis"), after=after),
-                    f"{part} {after} plane": Measured("point_plane", ("base.point", f"{part}.face"), after=after),
-                    f"{part} {after} angle": Measured("angle", ("base.axis", f"{part}.face"), after=after),
-                    f"{part} {after} sign": Measured("angle", ("base.axis", f"{part}.axis"), along, after=after),
-                    f"{part} {after} parallel": Measured("angle", ("lid.top", f"{part}.axis"), along, after=after),
+                    f"{part} {after} gap": Measured(GapSpec.reads, ("base.point", f"{part}.point"), along, after=after),
+                    f"{part} {after} back": Measured(GapSpec.reads, (f"{part}.axis", "base.face"), along, after=after),
+                    f"{part} {after} distance": Measured(
+                        DistanceSpec.reads, ("base.point", f"{part}.axis"), after=after
+                    ),
+                    f"{part} {after} plane": Measured(
+                        PointPlaneSpec.reads, ("base.point", f"{part}.face"), after=after
+                    ),
+                    f"{part} {after} angle": Measured(AngleSpec.reads, ("base.axis", f"{part}.face"), after=after),
+                    f"{part} {after} sign": Measured(
+                        AngleSpec.reads, ("base.axis", f"{part}.axis"), along, after=after
+                    ),
+                    f"{part} {after} parallel": Measured(
+                        AngleSpec.reads, ("lid.top", f"{part}.axis"), along, after=after
+                    ),
                 }
     return draft.assembly(moves, measures)
 
@@ -222,9 +243,9 @@ def test_flatness_and_near_points() -> None:
     draft.feature("part.axis 1", frame((0, 0, 0), (1, 1, 1)), Axis(40.0))
     draft.feature("part.axis 2", frame((9, 0, 0), (-1, -1, -1)), Axis(30.0))
     measures = {
-        "flatness": Measured("flatness", names, normal),
-        "near": Measured("distance", ("part.0", "part.near")),
-        "antiparallel": Measured("angle", ("part.axis 1", "part.axis 2")),
+        "flatness": Measured(InspectedFlatnessSpec.reads, names, normal),
+        "near": Measured(DistanceSpec.reads, ("part.0", "part.near")),
+        "antiparallel": Measured(AngleSpec.reads, ("part.axis 1", "part.axis 2")),
     }
     assembly = draft.assembly((Fix("fix", "part"),), measures)
     of_second_order(assembly, np.random.default_rng(5).normal(size=(40, assembly.width)) * 0.02)

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import pytest
 from fixtures import Command
 from kinds_page import words
-from mechanism_pages import ASSEMBLIES
+from mechanism_pages import ASSEMBLIES, written
 from places import ROOT, SCENES
 from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
@@ -151,6 +151,11 @@ def test_the_table_of_features_names_their_fields() -> None:
 def test_small_tables_have_every_value(head: str, expected: tuple[str, ...]) -> None:
     rows = [row.split("` (")[0] for row, _ in PAGE.table(WORDS, head).rows]
     assert sorted(word for row in rows for word in row.split("`, `")) == sorted(expected)
+
+
+def test_the_table_of_measures_is_that_of_their_classes() -> None:
+    """`python tests/mechanism_pages.py` writes it anew."""
+    assert written(DOCS) == DOCS
 
 
 def test_the_table_of_relations_has_every_kind() -> None:

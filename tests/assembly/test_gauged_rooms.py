@@ -9,6 +9,7 @@ from drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Floating, Gauges, Measured, Plane, Shape, Slot
 from tol3d.assembly.model.bonus import GaugeRoom
 from tol3d.assembly.model.statuses import OK
@@ -66,7 +67,7 @@ def gauged(
     for name, (where, shape) in MEASURED.items():
         draft.feature(f"p.{name}", where, shape)
         if floating is None:
-            measures[name] = Measured("position", (f"p.{name}",), frame=held, over_gauges=True)
+            measures[name] = Measured(InspectedPositionSpec.reads, (f"p.{name}",), frame=held, over_gauges=True)
     return draft, draft.assembly((Fix("fix", "p"),), measures)
 
 

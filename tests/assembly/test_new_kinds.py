@@ -3,7 +3,8 @@
 The measure is half of a size; the law puts an axis at one end of x in its zone, or the other.
 """
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -15,22 +16,41 @@ from toys.registered import known
 
 from tol3d import Overrides, load_scene, open_run, run_scene
 from tol3d.assembly.from_scene.zones import drawn_by
+from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.assembly.grammar.measures.angle import AngleSpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.grammar.tolerances import PositionSpec
 from tol3d.assembly.mechanism import ASSEMBLY
+from tol3d.assembly.model.measures import Measured, Reading
+from tol3d.assembly.placing import measuring as placing
+from tol3d.assembly.torsors import measures as torsors
 from tol3d.assembly.zones import Confined, Zone, catalogue
 from tol3d.assembly.zones.domain import Ratio, UnitLaw
+from tol3d.errors import InputError
 from tol3d.files import Files
+from tol3d.scene.entry import kind_of
+from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict
 from tol3d.system.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 
 
-class BoreSpec(InspectedSizeSpec):
-    """A size by another name."""
+class RadiusSpec(InspectedSizeSpec):
+    """Half of a size."""
 
-    kind: Literal["bore_size"]  # type: ignore[assignment]
+    reads = Reading("radius", f"{__name__}:half_placed", f"{__name__}:half_displaced", is_linear=True)
+
+    kind: Literal["radius"]  # type: ignore[assignment]
+
+
+def half_placed(measured: Measured, world: placing.World) -> Array:
+    return placing.size(measured, world) / 2
+
+
+def half_displaced(measured: Measured, world: torsors.World) -> Array:
+    return torsors.size(measured, world) / 2
 
 
 class TwoEndsSpec(Strict):
@@ -76,7 +96,7 @@ OWN = Mechanism(
     name="own",
     extends=("assembly",),
     tolerances=(TwoEndsPositionSpec,),
-    measures=(BoreSpec,),
+    measures=(RadiusSpec,),
     summary="tol3d.assembly.summary_types:SUMMARY_KINDS",
     presenter=ASSEMBLY.presenter,
 )
@@ -95,8 +115,28 @@ moves:
   machine: {kind: fix, part: plate}
 measures:
   x: {kind: gap, from: plate.upright, to: plate.bore, along: [1, 0, 0]}
-  diameter: {kind: bore_size, of: plate.bore}
+  radius: {kind: radius, of: plate.bore}
 """
+
+
+class WithoutSpec(AngleSpec):
+    """A measure that one road cannot read."""
+
+    reads = Reading("without", AngleSpec.reads.placing, "tol3d.assembly.torsors.measures:forgotten")
+
+    kind: Literal["without"]  # type: ignore[assignment]
+
+
+class UnreadSpec(FeatureMeasureSpec):
+    """A measure that no road reads."""
+
+    kind: Literal["unread"]
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        return ()
+
+
+NO_READING = "its reading by torsors: expected `package.module:function`, got '{}', where nothing is"
 
 
 @pytest.fixture
@@ -112,12 +152,26 @@ def test_a_law_that_nobody_registered_is_named_and_not_drawn_as_uniform() -> Non
         drawn_by(StrangeSpec(kind="strange"), catalogue.axis_section(0.1), {})
 
 
+@pytest.mark.parametrize(
+    ("spec", "lack"),
+    [(WithoutSpec, NO_READING.format(WithoutSpec.reads.torsors)), (UnreadSpec, "`reads`, how both roads read it")],
+    ids=lambda own: own.__name__ if isinstance(own, type) else "",
+)
+def test_a_measure_that_a_road_cannot_read_is_refused_as_it_is_registered(
+    spec: type[AssemblyMeasureSpec], lack: str
+) -> None:
+    own = Mechanism(name="own", extends=("assembly",), measures=(spec,))
+    with pytest.raises(InputError, match=rf"^own\.measures: {kind_of(spec)} lacks {re.escape(lack)}$"), known(own):
+        pass
+
+
 def test_a_measure_and_a_law_of_one_s_own_run_and_are_read_again(scene: Path, tmp_path: Path) -> None:
     run_scene(load_scene(scene), overrides=Overrides(trials=40), out=tmp_path / "run")
     run = open_run(tmp_path / "run")
     assert set(np.round(run.columns("geometric:x")["geometric:x"], 9)) == {-50.0, 50.0}
     assert run.summary["measures"]["x"]["laws"] == {"lies": "two ends in its zone"}
-    diameter = run.summary["measures"]["diameter"]
-    assert (diameter["kind"], diameter["of"]) == ("bore_size", ["plate.bore"])
-    sizes, drawn = (run.columns(name)[name] for name in ("geometric:diameter", "size [um]"))
-    assert sizes == pytest.approx(30_000 + drawn, abs=1e-6)
+    radius = run.summary["measures"]["radius"]
+    assert (radius["kind"], radius["of"]) == ("radius", ["plate.bore"])
+    drawn = run.columns("size [um]")["size [um]"]
+    for road in ("geometric", "analytic"):
+        assert run.columns(f"{road}:radius")[f"{road}:radius"] == pytest.approx(15_000 + drawn / 2, abs=1e-6)

@@ -9,6 +9,7 @@ import pytest
 from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, pair, part
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec
 from tol3d.assembly.model import Assembly, Fix, Measured, Move, Point, Rest, Weld
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
@@ -46,9 +47,9 @@ def stacked(rocking: Rocking | None, *, welded: bool = False) -> Assembly:
         moves = [Fix("base put", "base"), Fix("block put", "block"), Weld("one", "plate", ("block",)), laid]
         moves = [moves[0], Fix("plate put", "plate"), *moves[1:]]
     measures = {
-        "seen": Measured("gap", ("base.seen", "block.seen"), Z, rocking=rocking),
-        "over the plate": Measured("gap", ("plate.top 0", "block.middle"), Z, rocking=rocking),
-        "before": Measured("gap", ("base.seen", "plate.top 0"), Z, after=len(moves) - (1 if welded else 2)),
+        "seen": Measured(GapSpec.reads, ("base.seen", "block.seen"), Z, rocking=rocking),
+        "over the plate": Measured(GapSpec.reads, ("plate.top 0", "block.middle"), Z, rocking=rocking),
+        "before": Measured(GapSpec.reads, ("base.seen", "plate.top 0"), Z, after=len(moves) - (1 if welded else 2)),
     }
     parts = [part("base", base), part("plate", plate), part("block", block)]
     return assembly(columns, parts, moves, measures)
@@ -118,7 +119,9 @@ def test_of_a_distance_the_ends_of_the_rocking_are_read(rocking: Rocking) -> Non
     """Nominally 0, so that it is no linear measure: its amount at both ends."""
     trials = np.random.default_rng(12).normal(0, 0.05, (60, 8))
     welded = stacked(rocking, welded=True)
-    model = replace(welded, measures={"seen": replace(welded.measures["seen"], kind="distance", direction=None)})
+    model = replace(
+        welded, measures={"seen": replace(welded.measures["seen"], reads=DistanceSpec.reads, direction=None)}
+    )
     ends = np.abs([heights_over(SQUARE, row[:4], np.array([60.0, 25.0])) for row in trials])
     values = ends.min(axis=1) if rocking == "least" else ends.max(axis=1)
     found, codes = placing.values(model, trials, ["seen"])["seen"]

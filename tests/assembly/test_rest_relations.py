@@ -5,6 +5,7 @@ import pytest
 from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, pair, part
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Point, Relation, Rest
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors
@@ -32,7 +33,8 @@ def on_pads(relations: tuple[Relation, ...]) -> Assembly:
     pairs = tuple(pair(f"plate.{k}", f"base.{k}", Z) for k in range(4))
     move = Rest("rest", "plate", pairs, DOWN, np.array([10.0, -5.0, 0.0]), "fixture", relations)
     measures = {
-        name: Measured("gap", ("base.seen", "plate.seen"), axis) for name, axis in zip("xyz", np.eye(3), strict=True)
+        name: Measured(GapSpec.reads, ("base.seen", "plate.seen"), axis)
+        for name, axis in zip("xyz", np.eye(3), strict=True)
     }
     return assembly(columns, [part("base", base), part("plate", plate)], [Fix("put", "base"), move], measures)
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from random_touches import KINDS, RandomTouch, random_touch
 from rigid_parts import RigidParts
 
+from tol3d.assembly.grammar.measures.contact import SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Point
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import road as placing
@@ -78,7 +79,7 @@ def test_what_lies_in_the_middle_of_its_hole(inner: str) -> None:
     for name in ("base.hole", "part.inner"):
         draft.size(name)
     moves = (Fix("base fixed", "base"), Fix("part fixed", "part"))
-    assembly = draft.assembly(moves, {"gap": Measured("surface_gap", ("base.hole", "part.inner"))})
+    assembly = draft.assembly(moves, {"gap": Measured(SurfaceGapSpec.reads, ("base.hole", "part.inner"))})
     deviations = np.random.default_rng(3).normal(size=(200, assembly.width)) * 0.05
     z = np.array([1.0, 0.0, 2.0]) / np.sqrt(5.0)
     expected = []

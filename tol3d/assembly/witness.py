@@ -76,7 +76,7 @@ class FclWitness:
         values, status = {}, {}
         for name, (own, codes) in read.items():
             measured = self.assembly.measures[name]
-            found = own if measured.kind == "clearance" else self._gaps(measured, trials.deviations)
+            found = own if measured.reads.by_solids else self._gaps(measured, trials.deviations)
             values[name], status[name] = np.where(codes == 0, found, np.nan)[:, None], codes
         return Answers(values, status=status)
 

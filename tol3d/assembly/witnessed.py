@@ -9,7 +9,7 @@ def reads(assembly: Assembly, name: str) -> bool:
     measured = assembly.measures[name]
     if measured.minus is not None or measured.rocking is not None or measured.over_play is not None:
         return False
-    if measured.kind == "clearance":
+    if measured.reads.by_solids:
         return True
     shapes = (assembly.features[feature].shape for feature in measured.features)
     return measured.kind == "surface_gap" and not any(map(is_inner, shapes))

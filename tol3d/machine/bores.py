@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Measured, Point
 from tol3d.machine.nominal import HousedShaft
 
@@ -99,7 +100,9 @@ def bores_of(assembly: Assembly, shafts: Sequence[HousedShaft]) -> Bores:
                 actual = _end_of(actual, bore.end)
                 added[actual.part].append(actual)
             for direction, column in zip("xyz", (into[:3, :3] @ own.frame[:3, :3]).T, strict=True):
-                measures[reading_name(own.shaft, k, direction)] = Measured("gap", (twin.name, actual.name), column)
+                measures[reading_name(own.shaft, k, direction)] = Measured(
+                    GapSpec.reads, (twin.name, actual.name), column
+                )
     parts = tuple(replace(part, features=(*part.features, *added[part.name])) for part in assembly.parts)
     return Bores(replace(assembly, parts=parts, measures={**assembly.measures, **measures}), tuple(shafts))
 

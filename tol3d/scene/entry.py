@@ -24,6 +24,11 @@ class Entry(Strict, ABC):
 
     kind: str
 
+    @classmethod
+    def lacking(cls) -> Iterator[str]:
+        """What the kind names beside its words, such as code, and is not there: in words; a kind lacks nothing."""
+        return iter(())
+
     def references(self) -> tuple[Reference, ...]:
         """Every name that the entry uses; many use none."""
         return ()

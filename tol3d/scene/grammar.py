@@ -125,7 +125,7 @@ class Grammar:
     A shared kind is one of each vocabulary that has it.
 
     Raises:
-        InputError: a kind stands for two things, or a section has none.
+        InputError: a kind stands for two things or lacks a piece of its own, or a section has none.
     """
 
     vocabularies: tuple[Vocabulary, ...]
@@ -136,6 +136,10 @@ class Grammar:
             if not any(words.values()):
                 raise InputError(f"expected kinds of {section} in one vocabulary at least, found none")
             _refuse_ambiguity(f"a kind of its own in {section}", {}, words)
+            for each in self.vocabularies:
+                for spec in each.specs(section):
+                    for lack in spec.lacking():
+                        raise InputError(f"{each.name}.{section}: {kind_of(spec)} lacks {lack}")
         laws = {each.name: [str(word_of(law)) for law in each.distributions] for each in self.vocabularies}
         _refuse_ambiguity("a kind of its own in distributions", {str(word_of(law)): "tol3d" for law in SHIPPED}, laws)
         options = {each.name: [*each.options.model_fields] for each in self.vocabularies if each.options}

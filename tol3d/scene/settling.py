@@ -1,10 +1,10 @@
 """Scenes that leave numbers to solids, such as where a face lies: they are looked up when the scene is read."""
 
 from dataclasses import replace
-from importlib import import_module
 from typing import Protocol
 
 from tol3d.files import Files
+from tol3d.import_path import named
 from tol3d.scene.schema import Scene
 
 
@@ -39,8 +39,7 @@ def settled(scene: Scene, *, run_builders: bool, known: Files | None) -> Scene:
     origin = scene.origin
     for vocabulary in scene.grammar.vocabularies_of(scene):
         if vocabulary.settle:
-            module, _, name = vocabulary.settle.partition(":")
-            settle: Settle = getattr(import_module(module), name)
+            settle: Settle = named(vocabulary.settle)
             scene, found = settle(scene, run_builders=run_builders, known=known)
             origin = replace(origin, files={**origin.files, **found})
     return scene.read_from(origin)

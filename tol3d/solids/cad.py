@@ -3,7 +3,6 @@
 A kind of gear registers here what its own file does; a BuiltShape, of whatever mechanism, brings its builder along.
 """
 
-import importlib
 import itertools
 import os
 from collections.abc import Callable, Sequence
@@ -17,6 +16,7 @@ from OCP.gp import gp_Trsf
 
 from tol3d.errors import unwritable
 from tol3d.gears import BevelGear, Gear, InternalGear, SpurGear
+from tol3d.import_path import named
 from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, picking, spur_cad, swept_cad
@@ -66,8 +66,7 @@ def tessellate(shape: Gear | Body | BuiltShape, deflection: float) -> Arrays:
 
 
 def _builder_of(shape: BuiltShape) -> Callable[[BuiltShape], NamedSolid]:
-    module, _, name = shape.builder.partition(":")
-    found: Callable[[BuiltShape], NamedSolid] = getattr(importlib.import_module(module), name)
+    found: Callable[[BuiltShape], NamedSolid] = named(shape.builder)
     return found
 
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 from tol3d.errors import InputError
+from tol3d.import_path import named
 from tol3d.scene import Scene, Vocabulary
 from tol3d.system.faults import Origin, faults_of
 from tol3d.system.system import System
@@ -65,12 +65,6 @@ def brought(scene: Scene) -> Iterator[Any]:
 def _bringing(scene: Scene) -> Iterator[Mechanism]:
     """The mechanisms whose kinds a scene has and that bring something into the system of another one."""
     return (own for own in scene.grammar.vocabularies_of(scene) if isinstance(own, Mechanism) and own.links)
-
-
-def named(path: str) -> Any:
-    """What an import path `package.module:name` names."""
-    module, _, name = path.partition(":")
-    return getattr(import_module(module), name)
 
 
 def mechanism_of(scene: Scene) -> Mechanism:

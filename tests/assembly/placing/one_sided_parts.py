@@ -8,6 +8,7 @@ from assembly.placing.built_by_numbers import Columns, assembly, feature, frame,
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Measured, Point, Rest
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.moves import PointsOn
@@ -56,7 +57,7 @@ class Contacts:
         for k, (at, along) in enumerate(seen):
             base.append(feature(f"base.seen {k}", Point(), frame(at)))
             moving.append(feature(f"part.seen {k}", Point(), frame(back[:3, :3] @ at + back[:3, 3])))
-            measures[str(k)] = Measured("gap", (f"base.seen {k}", f"part.seen {k}"), along, rocking=rocking)
+            measures[str(k)] = Measured(GapSpec.reads, (f"base.seen {k}", f"part.seen {k}"), along, rocking=rocking)
         at = back[:3, :3] @ self.at + back[:3, 3]
         move = Rest("rest", "part", tuple(pairs), self.force, at, points_on)
         return assembly(

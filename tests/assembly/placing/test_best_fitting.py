@@ -10,6 +10,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
+from tol3d.assembly.grammar.measures.gap import DistanceSpec
 from tol3d.assembly.model import Assembly, BestFit, Fit, Fix, Measured, Move, Point
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.road import placed, values
@@ -34,7 +35,7 @@ def fitted(
     weights = np.ones(len(points)) if weights is None else weights
     fits = tuple(Fit(f"plate.{k}", f"base.{k}", float(weight), directions) for k, weight in enumerate(weights))
     moves: list[Move] = [Fix("base", "base"), BestFit("fit", "plate", fits, criterion)]
-    measures = {str(k): Measured("distance", (f"base.{k}", f"plate.{k}")) for k in range(len(points))}
+    measures = {str(k): Measured(DistanceSpec.reads, (f"base.{k}", f"plate.{k}")) for k in range(len(points))}
     return assembly(columns, [part("base", base), part("plate", plate, pose=pose)], moves, measures)
 
 

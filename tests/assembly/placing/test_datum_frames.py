@@ -8,6 +8,8 @@ from assembly.placing.built_by_numbers import Columns, assembly, feature, frame,
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Fix, Measured, Plane, Point, Shape
 from tol3d.assembly.placing.road import placed, values
 from tol3d.errors import InputError
@@ -22,7 +24,7 @@ def displacement(features: Sequence[Feature], columns: Columns, datums: Sequence
     carried = [feature(f"p.tip {k}", Point(), frame(tip), (), "p|ABC") for k, tip in enumerate(tips)]
     nothing = feature("p.origin", Point(), frame((0, 0, 0)))
     axes = [(k, axis) for k in range(4) for axis in range(3)]
-    gaps = {f"{k}{axis}": Measured("gap", ("p.origin", f"p.tip {k}"), np.eye(3)[axis]) for k, axis in axes}
+    gaps = {f"{k}{axis}": Measured(GapSpec.reads, ("p.origin", f"p.tip {k}"), np.eye(3)[axis]) for k, axis in axes}
     made = assembly(columns, [part("p", [*features, *carried, nothing], [frame_of])], [Fix("p", "p")], gaps)
     read = values(made, row[None], list(gaps))
     at = np.array([[read[f"{k}{axis}"][0][0] for axis in range(3)] for k in range(4)])
@@ -104,7 +106,7 @@ def test_a_tilted_plane_in_a_flat_zone_shifts_its_frame_by_its_simulator(
         feature("p.tip", Point(), frame((100, 0, 20)), (), "p|ABC"),
     ]
     order = [Datum(("p.A",)), *(Datum((f"p.{name}",), simulator) for name in place)]  # type: ignore[arg-type]
-    tip = Measured("gap", ("p.origin", "p.tip"), np.array([0.0, -1.0, 0.0]))
+    tip = Measured(GapSpec.reads, ("p.origin", "p.tip"), np.array([0.0, -1.0, 0.0]))
     made = assembly(
         columns, [part("p", features, [DatumFrame("p|ABC", "p", tuple(order))])], [Fix("p", "p")], {"tip": tip}
     )
@@ -131,7 +133,7 @@ def test_position_in_a_frame_of_targets_as_by_plane_geometry() -> None:
         Datum(("p.B",), "targets", np.array([[-80.0, 0, 0], [80.0, 0, 0]])),
         Datum(("p.C",), "targets", np.array([[0.0, 0, 0]])),
     )
-    position = Measured("position", ("p.hole",), np.array([0.0, 0, 1]), "p|ABC")
+    position = Measured(InspectedPositionSpec.reads, ("p.hole",), np.array([0.0, 0, 1]), "p|ABC")
     made = assembly(columns, [part("p", features, [DatumFrame("p|ABC", "p", datums)])], (), {"position": position})
     rows = np.random.default_rng(2).normal(0, 1.0, (100, 5)) * (0.3, 0.3, 0.2, 0.4, 0.4)
     found, codes = values(made, rows, ["position"])["position"]
@@ -157,7 +159,7 @@ def test_position_out_of_tolerance_as_often_as_by_quadrature() -> None:
         feature("p.hole", Point(), frame((150, 60, 0)), [columns(np.eye(3)[:, :2])]),
     ]
     datums = (Datum(("p.A",)), Datum(("p.B",), "fitted"), Datum(("p.C",), "fitted"))
-    position = Measured("position", ("p.hole",), np.array([0.0, 0, 1]), "p|ABC")
+    position = Measured(InspectedPositionSpec.reads, ("p.hole",), np.array([0.0, 0, 1]), "p|ABC")
     made = assembly(columns, [part("p", features, [DatumFrame("p|ABC", "p", datums)])], (), {"position": position})
     n = 200_000
     rows = np.random.default_rng(3).normal(0, 1.0, (n, 5)) * (0.03, 0.03, 0.02, 0.04, 0.04)

@@ -17,6 +17,7 @@ from assembly.placing.built_by_numbers import (
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Point
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import OK, SINGULAR
@@ -50,7 +51,7 @@ def nest(points_on: PointsOn, locators: Any = NEST) -> Assembly:
     fixture.append(feature("fixture.corner", Point(), frame((200, 100, 40))))
     box.append(feature("box.corner", Point(), frame((200, 100, 40))))
     moves: list[Move] = [Fix("fixture", "fixture"), Locate("box", "box", tuple(pairs), points_on)]
-    corner = Measured("gap", ("fixture.corner", "box.corner"), np.array([0.0, 1.0, 0.0]))
+    corner = Measured(GapSpec.reads, ("fixture.corner", "box.corner"), np.array([0.0, 1.0, 0.0]))
     return assembly(columns, [part("fixture", fixture), part("box", box)], moves, {"corner": corner})
 
 

@@ -28,6 +28,7 @@ from assembly.placing.mated_parts import (
 from assembly.placing.rigid_search import solved_pose
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec, PointPlaneSpec
 from tol3d.assembly.model import (
     Assembly,
     Axis,
@@ -192,7 +193,7 @@ def test_a_cylinder_lies_on_a_plane_by_the_radius_of_its_trial() -> None:
     bar[1] = type(bar[1])(bar[1].name, "bar", bar[1].shape, bar[1].frame, size_by=(size,))
     relations = (Relation("coincident", "bar.end", "base.wall"), Relation("tangent", "bar.axis", "base.floor"))
     moves: list[Move] = [Fix("base", "base"), Mate("lay", "bar", relations)]
-    height = {"height": Measured("point_plane", ("bar.axis", "base.floor"))}
+    height = {"height": Measured(PointPlaneSpec.reads, ("bar.axis", "base.floor"))}
     made = assembly(columns, [part("base", base), part("bar", bar)], moves, height)
     found, codes = values(made, np.array([[0.3, 0, 0, 0], [-0.2, 0.1, 0, 0.6]]), ["height"])["height"]
     np.testing.assert_array_equal(codes, 0)
@@ -268,7 +269,7 @@ def test_a_point_that_cannot_be_reached_is_no_contact() -> None:
         for own, target in (("under", "floor"), ("hole", "pin"), ("tip", "wall"))
     )
     moves: list[Move] = [Fix("base", "base"), Mate("swing", "arm", relations)]
-    reach = {"x": Measured("gap", ("base.pin", "arm.tip"), np.array([1.0, 0, 0]))}
+    reach = {"x": Measured(GapSpec.reads, ("base.pin", "arm.tip"), np.array([1.0, 0, 0]))}
     made = assembly(columns, [part("base", base), part("arm", arm)], moves, reach)
     found, codes = values(made, np.array([[0.0], [-10.0], [40.0], [5.0]]), ["x"])["x"]
     np.testing.assert_array_equal(codes, [OK, OK, NO_CONTACT, OK])

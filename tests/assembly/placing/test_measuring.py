@@ -10,6 +10,14 @@ from of_kind import of_kind
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
+from tol3d.assembly.grammar.measures.angle import AngleSpec
+from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedFlatnessSpec,
+    InspectedOrientationSpec,
+    InspectedPositionSpec,
+)
+from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.model import (
     Assembly,
     Axis,
@@ -27,7 +35,7 @@ from tol3d.assembly.model import (
     RoundPlane,
     Weld,
 )
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import Reading
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing.road import placed, values
 from tol3d.errors import InputError
@@ -78,13 +86,13 @@ def by_hand(made: Assembly, row: Array, name: str) -> tuple[Array, Array]:
 def test_measures_between_two_parts() -> None:
     about = np.array([2.0, -1, 0.5]) / np.linalg.norm([2.0, -1, 0.5])
     measures = {
-        "distance": Measured("distance", ("a.point", "b.axis")),
-        "gap": Measured("gap", ("a.point", "b.axis"), about),
-        "height": Measured("point_plane", ("b.point", "a.plane")),
-        "angle": Measured("angle", ("a.plane", "b.axis")),
-        "signed": Measured("angle", ("a.plane", "b.axis"), about),
+        "distance": Measured(DistanceSpec.reads, ("a.point", "b.axis")),
+        "gap": Measured(GapSpec.reads, ("a.point", "b.axis"), about),
+        "height": Measured(PointPlaneSpec.reads, ("b.point", "a.plane")),
+        "angle": Measured(AngleSpec.reads, ("a.plane", "b.axis")),
+        "signed": Measured(AngleSpec.reads, ("a.plane", "b.axis"), about),
     }
-    measures["difference"] = Measured("gap", ("a.point", "b.axis"), about, minus=measures["angle"])
+    measures["difference"] = Measured(GapSpec.reads, ("a.point", "b.axis"), about, minus=measures["angle"])
     made, row, (pose, _) = two_parts(measures)
     found = read(made, row)
     a, z_a = by_hand(made, row, "a.plane")
@@ -101,15 +109,15 @@ def test_measures_between_two_parts() -> None:
 
 def test_where_an_assembly_lies_changes_no_measure() -> None:
     measures = {
-        kind: Measured(kind, ("a.point", "b.plane"), direction)  # type: ignore[arg-type]
-        for kind, direction in (("distance", None), ("gap", Y), ("point_plane", None), ("angle", X))
+        spec.reads.name: Measured(spec.reads, ("a.point", "b.plane"), direction)
+        for spec, direction in ((DistanceSpec, None), (GapSpec, Y), (PointPlaneSpec, None), (AngleSpec, X))
     }
     made, row, _ = two_parts(measures)
     elsewhere = read(moved_as_a_whole(made, posed((1.2, 0.3, -2.0), (500, 20, -70))), row)
     assert elsewhere == pytest.approx(read(made, row), abs=1e-12)
 
 
-KINDS: tuple[MeasureKind, ...] = ("position", "orientation")
+KINDS: tuple[Reading, ...] = (InspectedPositionSpec.reads, InspectedOrientationSpec.reads)
 
 
 def inspected(shape: Axis | Plane | RoundPlane | Point, size: int) -> tuple[Assembly, Array]:
@@ -122,9 +130,9 @@ def inspected(shape: Axis | Plane | RoundPlane | Point, size: int) -> tuple[Asse
     ]
     both = {"": "", " in A": "p|A"}
     measures = {
-        f"{kind}{words}": Measured(kind, ("p.it",), None, name) for kind in KINDS for words, name in both.items()
+        f"{kind.name}{words}": Measured(kind, ("p.it",), None, name) for kind in KINDS for words, name in both.items()
     }
-    measures["across"] = Measured("position", ("p.it",), X)
+    measures["across"] = Measured(InspectedPositionSpec.reads, ("p.it",), X)
     plate = part("p", features, [DatumFrame("p|A", "p", (Datum(("p.A",)),))])
     return assembly(columns, [plate], (), measures), at
 
@@ -184,7 +192,7 @@ def test_inspected_features(shape: Axis | Plane | RoundPlane | Point, size: int)
 def test_size_is_nominal_size_and_its_deviations() -> None:
     columns = Columns()
     bore = Feature("p.bore", "p", Axis(10.0, 20.0, inner=True), np.eye(4), size_by=(columns(np.ones((1, 1))),))
-    made = assembly(columns, [part("p", [bore])], (), {"size": Measured("size", ("p.bore",))})
+    made = assembly(columns, [part("p", [bore])], (), {"size": Measured(InspectedSizeSpec.reads, ("p.bore",))})
     found, _ = values(made, np.array([[0.02], [-0.01]]), ["size"])["size"]
     np.testing.assert_allclose(found, [20.02, 19.99], atol=1e-14)
 
@@ -193,7 +201,7 @@ def flat_points(points: Array) -> Assembly:
     """Points of a part that deviate, and their flatness."""
     columns = Columns()
     features = [feature(f"p.{k}", Point(), frame(point), [columns(count=3)]) for k, point in enumerate(points)]
-    flat = Measured("flatness", tuple(f"p.{k}" for k in range(len(points))), Z)
+    flat = Measured(InspectedFlatnessSpec.reads, tuple(f"p.{k}" for k in range(len(points))), Z)
     return assembly(columns, [part("p", features)], (), {"flat": flat})
 
 
@@ -258,7 +266,7 @@ def subassembly(after: int) -> Assembly:
         Weld("weld", "box", ("lid",)),
         Locate("load", "box", pairs),
     ]
-    height = Measured("gap", ("nest.origin", "lid.tip"), Z, after=after)
+    height = Measured(GapSpec.reads, ("nest.origin", "lid.tip"), Z, after=after)
     return assembly(columns, [part("nest", ground), part("box", box), part("lid", lid)], moves, {"tip": height})
 
 
@@ -307,11 +315,11 @@ def test_a_measure_fails_with_the_moves_that_placed_what_it_reads_and_no_others(
     parts.append(part("rider", rider))
     moves.append(Mate("ride", "rider", (Relation("coincident", "rider.foot", "two.tip"),)))
     measures = {
-        name: Measured("gap", ("base.floor", f"{name}.{at}"), Y)
+        name: Measured(GapSpec.reads, ("base.floor", f"{name}.{at}"), Y)
         for name, at in (("one", "tip"), ("two", "tip"), ("rider", "foot"))
     }
-    measures["both"] = Measured("gap", ("one.tip", "rider.foot"), Y)
-    measures["own"] = Measured("position", ("rider.foot",))
+    measures["both"] = Measured(GapSpec.reads, ("one.tip", "rider.foot"), Y)
+    measures["own"] = Measured(InspectedPositionSpec.reads, ("rider.foot",))
     made = assembly(columns, [part("base", base), *parts], moves, measures)
     rows = np.zeros((3, columns.width))
     rows[1, 0], rows[2, 1] = 40.0, 40.0  # the first wall too far, the second
@@ -324,7 +332,7 @@ def test_a_measure_fails_with_the_moves_that_placed_what_it_reads_and_no_others(
 
 
 def test_a_measure_of_a_part_that_no_move_places_is_refused() -> None:
-    made, _, _ = two_parts({"gap": Measured("gap", ("a.point", "b.point"), X)})
+    made, _, _ = two_parts({"gap": Measured(GapSpec.reads, ("a.point", "b.point"), X)})
     loose = assembly(Columns(), made.parts, made.moves[:1], made.measures)
     with pytest.raises(InputError, match=r"measures\.gap: b is not placed"):
         values(loose, np.zeros((1, made.width)), ["gap"])

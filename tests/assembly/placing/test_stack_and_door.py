@@ -7,6 +7,7 @@ import pytest
 from assembly.placing.built_by_numbers import Columns, assembly, feature, frame, pair, part, posed
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Mate, Measured, Move, Plane, Point, Relation
 from tol3d.assembly.placing.road import placed, values
 
@@ -32,7 +33,7 @@ def stack() -> Assembly:
         parts.append(part(f"block {k}", faces, pose=posed((0, 0, 0), (0, 0, 10.0 * k))))
         moves.append(Mate(f"lay {k}", f"block {k}", (Relation("coincident", f"block {k}.under", below),)))
         below = f"block {k}.top"
-    return assembly(columns, parts, moves, {"gap": Measured("gap", (below, "cavity.lid"), Z)})
+    return assembly(columns, parts, moves, {"gap": Measured(GapSpec.reads, (below, "cavity.lid"), Z)})
 
 
 def test_a_stack_closes_as_often_as_irwin_and_hall_say() -> None:
@@ -78,12 +79,12 @@ def door() -> Assembly:
         body.append(feature(f"body.{name}", Point(), frame(at), [columns(count=3)]))
         leaf.append(feature(f"door.{name}", Point(), frame(at)))
     gaps = {
-        f"{name} {axis}": Measured("gap", (f"body.{name}", f"door.{name}"), along)
+        f"{name} {axis}": Measured(GapSpec.reads, (f"body.{name}", f"door.{name}"), along)
         for name in EDGE
         for axis, along in zip("xyz", (X, Y, Z), strict=True)
     }
     tapers = {
-        f"taper {axis}": Measured("gap", ("body.R1", "door.R1"), along, minus=gaps[f"R2 {axis}"])
+        f"taper {axis}": Measured(GapSpec.reads, ("body.R1", "door.R1"), along, minus=gaps[f"R2 {axis}"])
         for axis, along in (("x", X), ("y", Y))
     }
     moves: list[Move] = [Fix("body", "body"), Locate("hang", "door", tuple(pairs))]

@@ -7,6 +7,8 @@ import pytest
 from drafts import Draft, displacement, frame
 from numpy.typing import NDArray
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Measured, Plane, RoundPlane
 from tol3d.assembly.model.datum_frame import Simulator
 from tol3d.assembly.torsors.road import slopes, values
@@ -31,7 +33,7 @@ def test_a_hole_inspected_on_varying_datums_moves_against_them() -> None:
     hole = draft.feature("plate.hole", frame((150, 60, 0)), Axis(20))
     side = Datum(("plate.side",), "targets", np.array([[-80, 0, 0], [80, 0, 0]], float))
     name = draft.datum_frame("plate", Datum(("plate.bottom",)), side, Datum(("plate.end",), "fitted"))
-    assembly = draft.assembly((), {"position": Measured("position", (hole,), frame=name)})
+    assembly = draft.assembly((), {"position": Measured(InspectedPositionSpec.reads, (hole,), frame=name)})
     b1, b2, c, ex, ey = 0.03, 0.07, 0.02, 0.01, -0.005  # b and c into the material: heights are their opposites
     given = {"plate.side offset": -(b1 + b2) / 2, "plate.side rise x": -(b2 - b1) / 2, "plate.end offset": -c}
     given |= {f"plate.hole {end} {axis}": e for end in ("start", "end") for axis, e in (("x", ex), ("y", ey))}
@@ -152,7 +154,9 @@ def test_a_pattern_of_two_holes_is_a_line_through_both_centres() -> None:
     name = draft.datum_frame("plate", Datum((face,)), Datum(tuple(holes)))
     draft.feature("plate.zero", (0, 0, 0), deviates=False)
     draft.feature("plate.far", (120, 90, 0), parent=name, deviates=False)
-    assembly = draft.assembly((), {a: Measured("gap", ("plate.zero", "plate.far"), n) for a, n in (("x", X), ("y", Y))})
+    assembly = draft.assembly(
+        (), {a: Measured(GapSpec.reads, ("plate.zero", "plate.far"), n) for a, n in (("x", X), ("y", Y))}
+    )
     given = {"plate.hole 0 start y": 0.02, "plate.hole 0 end y": 0.04, "plate.hole 1 end y": 0.02}
     given |= {"plate.hole 1 start x": 7.0, "plate.hole 1 end x": 7.0}
     found = values(assembly, draft.trial(given), ["x", "y"])
@@ -169,7 +173,7 @@ def test_a_second_hole_turns_the_frame_whatever_its_distance() -> None:
     holes = [draft.feature(f"plate.hole {k}", frame((x, 40, 5)), Axis(10)) for k, x in enumerate((20, 120))]
     name = draft.datum_frame("plate", Datum((face,)), *(Datum((hole,)) for hole in holes))
     slot = draft.feature("plate.slot", frame((20, 140, 5)), Axis(10))
-    assembly = draft.assembly((), {"slot": Measured("position", (slot,), frame=name)})
+    assembly = draft.assembly((), {"slot": Measured(InspectedPositionSpec.reads, (slot,), frame=name)})
     given = {"plate.hole 1 start y": 0.05, "plate.hole 1 end y": 0.05, "plate.hole 1 start x": 3.0}
     given |= {"plate.hole 1 end x": 3.0, "plate.hole 0 start y": 0.01, "plate.hole 0 end y": 0.01}
     turn = (0.05 - 0.01) / 100.0
@@ -184,6 +188,6 @@ def test_a_datum_that_takes_nothing_is_refused() -> None:
     for name, height in (("a", 0), ("b", 20)):
         draft.feature(f"plate.{name}", frame((0, 0, height)), Plane((40, 30)))
     draft.datum_frame("plate", Datum(("plate.a",)), Datum(("plate.b",)))
-    measured = Measured("position", ("plate.a",), frame="plate|a|b")
+    measured = Measured(InspectedPositionSpec.reads, ("plate.a",), frame="plate|a|b")
     with pytest.raises(InputError, match=r"datum frame plate\|a\|b: plate\.b takes no freedom"):
         values(draft.assembly((), {"position": measured}), np.zeros((1, 6)), ["position"])

@@ -11,6 +11,7 @@ from drafts import Draft, Vector, displacement, frame, moved_as_a_whole, turned
 from numpy.typing import NDArray
 from rigid_parts import RigidParts, directional
 
+from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Pair, Weld
 from tol3d.assembly.torsors.road import slopes, values
 from tol3d.errors import InputError
@@ -105,7 +106,7 @@ def test_the_taper_of_a_door_is_no_root_sum_square_of_its_gaps() -> None:
     for name, at in (("upper", (1000, 0, 800)), ("lower", (1000, 0, 200))):
         draft.feature(f"block.{name}", at, deviates=False)
         draft.feature(f"nest.{name}", at)
-    gaps = [Measured("gap", (f"nest.{name}", f"block.{name}"), X) for name in ("upper", "lower")]
+    gaps = [Measured(GapSpec.reads, (f"nest.{name}", f"block.{name}"), X) for name in ("upper", "lower")]
     measures = {"gap": gaps[0], "taper": replace(gaps[0], minus=gaps[1])}
     assembly = draft.assembly(found.assembly.moves, measures)
     sigmas = np.zeros(assembly.width)
@@ -228,9 +229,9 @@ def test_a_body_of_welded_parts_is_placed_by_features_of_any_of_them() -> None:
         Locate("again", "block", tuple(contacts)),
     )
     measures = {
-        "block": Measured("gap", ("nest.zero", "block.target"), Y),
-        "top": Measured("gap", ("nest.zero", "top.target"), Y),
-        "block first": Measured("gap", ("nest.zero", "block.target"), Y, after=1),
+        "block": Measured(GapSpec.reads, ("nest.zero", "block.target"), Y),
+        "top": Measured(GapSpec.reads, ("nest.zero", "top.target"), Y),
+        "block first": Measured(GapSpec.reads, ("nest.zero", "block.target"), Y, after=1),
     }
     assembly = draft.assembly(moves, measures)
     first = coefficients(assembly, "block first")

@@ -8,6 +8,7 @@ from drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 from rigid_parts import Poses, RigidParts, directional
 
+from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Mate, Measured, Plane, Relation
 from tol3d.assembly.torsors.road import slopes, values
 from tol3d.errors import InputError
@@ -246,7 +247,7 @@ def test_relations_that_take_nothing_or_make_no_sense_are_refused() -> None:
         ((Relation("tangent", "lid.axis", "base.face"),), "lay: lid.axis has no diameter; expected one"),
     ):
         moves = (Fix("fix", "base"), Mate("lay", "lid", relations))
-        assembly = draft.assembly(moves, {"size": Measured("size", ("lid.axis",))})
+        assembly = draft.assembly(moves, {"size": Measured(InspectedSizeSpec.reads, ("lid.axis",))})
         with pytest.raises(InputError, match=message):
             values(assembly, np.zeros((1, assembly.width)), ["size"])
 

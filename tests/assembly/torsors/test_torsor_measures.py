@@ -12,6 +12,14 @@ from numpy.typing import NDArray
 from rigid_parts import Poses, RigidParts, directional
 from scipy.optimize import linprog
 
+from tol3d.assembly.grammar.measures.angle import AngleSpec
+from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedFlatnessSpec,
+    InspectedOrientationSpec,
+    InspectedPositionSpec,
+)
+from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Locate, Measured, Move, Pair, Plane, RoundPlane
 from tol3d.assembly.torsors.first_order import first_order
 from tol3d.assembly.torsors.road import slopes, values
@@ -60,41 +68,43 @@ def unit(vector: Array) -> Array:
 ALONG = unit(np.array([0.3, -0.5, 0.8]))
 EXACT: dict[str, tuple[Measured, Callable[[RigidParts, Poses], float]]] = {
     "distance": (
-        Measured("distance", ("base.point", "lid.axis")),
+        Measured(DistanceSpec.reads, ("base.point", "lid.axis")),
         lambda parts, poses: float(np.linalg.norm(parts.origin("lid.axis", poses) - parts.origin("base.point", poses))),
     ),
     "gap": (
-        Measured("gap", ("base.axis", "lid.plane"), ALONG),
+        Measured(GapSpec.reads, ("base.axis", "lid.plane"), ALONG),
         lambda parts, poses: float(
             (parts.origin("lid.plane", poses) - parts.origin("base.axis", poses)) @ poses["base"][:3, :3] @ ALONG
         ),
     ),
     "gap along a direction of the part that moves": (
-        Measured("gap", ("lid.point", "base.axis"), ALONG),
+        Measured(GapSpec.reads, ("lid.point", "base.axis"), ALONG),
         lambda parts, poses: float(
             (parts.origin("base.axis", poses) - parts.origin("lid.point", poses)) @ poses["lid"][:3, :3] @ ALONG
         ),
     ),
     "point over a plane": (
-        Measured("point_plane", ("base.point", "lid.plane")),
+        Measured(PointPlaneSpec.reads, ("base.point", "lid.plane")),
         lambda parts, poses: float(
             (parts.origin("base.point", poses) - parts.origin("lid.plane", poses)) @ parts.z("lid.plane", poses)
         ),
     ),
     "angle": (
-        Measured("angle", ("base.axis", "lid.plane")),
+        Measured(AngleSpec.reads, ("base.axis", "lid.plane")),
         lambda parts, poses: math.acos(float(parts.z("base.axis", poses) @ parts.z("lid.plane", poses))),
     ),
     "signed angle": (
-        Measured("angle", ("lid.axis", "base.plane"), ALONG),
+        Measured(AngleSpec.reads, ("lid.axis", "base.plane"), ALONG),
         lambda parts, poses: math.atan2(
             poses["lid"][:3, :3] @ ALONG @ np.cross(parts.z("lid.axis", poses), parts.z("base.plane", poses)),
             float(parts.z("lid.axis", poses) @ parts.z("base.plane", poses)),
         ),
     ),
-    "size": (Measured("size", ("lid.axis",)), lambda parts, poses: parts.size("lid.axis")),
+    "size": (Measured(InspectedSizeSpec.reads, ("lid.axis",)), lambda parts, poses: parts.size("lid.axis")),
     "difference": (
-        Measured("gap", ("base.point", "lid.point"), X, minus=Measured("gap", ("base.point", "lid.axis"), Y)),
+        Measured(
+            GapSpec.reads, ("base.point", "lid.point"), X, minus=Measured(GapSpec.reads, ("base.point", "lid.axis"), Y)
+        ),
         lambda parts, poses: float(
             (parts.origin("lid.point", poses) - parts.origin("base.point", poses)) @ poses["base"][:3, 0]
             - (parts.origin("lid.axis", poses) - parts.origin("base.point", poses)) @ poses["base"][:3, 1]
@@ -129,9 +139,11 @@ def test_points_that_nominally_coincide_are_as_far_apart_as_their_displacements(
     draft.feature("part.feature", (5, 5, 5))
     draft.feature("part.zero", (5, 5, 5), deviates=False)
     draft.feature("part.beside", (5.3, 5, 5), deviates=False)
-    measured = Measured("distance", ("part.zero", "part.feature"))
+    measured = Measured(DistanceSpec.reads, ("part.zero", "part.feature"))
     assert one(draft, measured, x=0.03, y=-0.04) == pytest.approx(0.05, abs=1e-15)
-    assert one(draft, Measured("distance", ("part.beside", "part.feature")), y=0.4) == pytest.approx(0.5, abs=1e-15)
+    assert one(draft, Measured(DistanceSpec.reads, ("part.beside", "part.feature")), y=0.4) == pytest.approx(
+        0.5, abs=1e-15
+    )
 
 
 def test_axes_that_are_nominally_parallel_make_the_angle_of_their_tilts() -> None:
@@ -142,7 +154,7 @@ def test_axes_that_are_nominally_parallel_make_the_angle_of_their_tilts() -> Non
     draft.feature("part.down", frame((30, 0, 0), -Z), Axis(40.0), deviates=False)
     tilt = math.hypot(0.3, 0.4) / 40.0
     for name, expected in (("up", tilt), ("down", math.pi - tilt)):
-        found = one(draft, Measured("angle", (f"part.{name}", "part.feature")), end_x=0.3, end_y=0.4)
+        found = one(draft, Measured(AngleSpec.reads, (f"part.{name}", "part.feature")), end_x=0.3, end_y=0.4)
         assert found == pytest.approx(expected, abs=1e-15)
 
 
@@ -170,8 +182,12 @@ def test_positions_are_twice_the_largest_distance_and_orientations_ranges(
     draft = Draft()
     draft.part("part")
     draft.feature("part.feature", frame((7, -4, 20), (1, 2, 3)), shape)
-    assert one(draft, Measured("position", ("part.feature",)), **given) == pytest.approx(position, abs=1e-13)
-    assert one(draft, Measured("orientation", ("part.feature",)), **given) == pytest.approx(orientation, abs=1e-13)
+    assert one(draft, Measured(InspectedPositionSpec.reads, ("part.feature",)), **given) == pytest.approx(
+        position, abs=1e-13
+    )
+    assert one(draft, Measured(InspectedOrientationSpec.reads, ("part.feature",)), **given) == pytest.approx(
+        orientation, abs=1e-13
+    )
 
 
 def test_a_point_is_inspected_in_space_or_across_a_direction() -> None:
@@ -179,8 +195,10 @@ def test_a_point_is_inspected_in_space_or_across_a_direction() -> None:
     draft.part("part")
     draft.feature("part.feature", frame((7, -4, 20), Z, X))
     given = {"x": 0.02, "y": -0.03, "z": 0.06}
-    assert one(draft, Measured("position", ("part.feature",)), **given) == pytest.approx(2 * 0.07, abs=1e-15)
-    across = Measured("position", ("part.feature",), Y)
+    assert one(draft, Measured(InspectedPositionSpec.reads, ("part.feature",)), **given) == pytest.approx(
+        2 * 0.07, abs=1e-15
+    )
+    across = Measured(InspectedPositionSpec.reads, ("part.feature",), Y)
     assert one(draft, across, **given) == pytest.approx(2 * math.hypot(0.02, 0.06), abs=1e-15)
 
 
@@ -191,8 +209,10 @@ def test_what_is_toleranced_to_a_datum_frame_is_inspected_in_it_without_its_devi
     draft.feature("part.bore", frame((10, 20, 5), Z), Axis(10.0))
     name = draft.datum_frame("part", Datum(("part.a",)), Datum(("part.bore",)))
     draft.feature("part.feature", frame((60, 30, 8), (0, 1, 1)), Axis(30.0), parent=name)
-    measured = Measured("position", ("part.feature",), frame=name)
-    assembly = draft.assembly((), {"value": measured, "in the part": Measured("position", ("part.feature",))})
+    measured = Measured(InspectedPositionSpec.reads, ("part.feature",), frame=name)
+    assembly = draft.assembly(
+        (), {"value": measured, "in the part": Measured(InspectedPositionSpec.reads, ("part.feature",))}
+    )
     rng = np.random.default_rng(3)
     trials = rng.normal(size=(20, assembly.width)) * 0.1
     own = trials[:, draft.columns.index("part.feature start x") :][:, :4]
@@ -217,7 +237,7 @@ def test_flatness_is_the_least_width_between_parallel_planes(places: list[tuple[
     normal = np.array([0.0, -0.6, 0.8])
     base = frame((10, 0, 0), normal)
     names = tuple(draft.feature(f"part.{k}", base @ frame((x, y, 0))) for k, (x, y) in enumerate(places))
-    assembly = draft.assembly((), {"flatness": Measured("flatness", names, normal)})
+    assembly = draft.assembly((), {"flatness": Measured(InspectedFlatnessSpec.reads, names, normal)})
     heights = np.random.default_rng(4).normal(size=(25, len(places))) * 0.05
     deviations = np.zeros((25, assembly.width))
     deviations[:, 2::3] = heights
@@ -237,7 +257,7 @@ def test_points_that_are_drawn_off_their_plane_have_a_flatness_nominally() -> No
     draft.part("part")
     places = [(-50, -30, 0.02), (50, -30, 0), (50, 30, 0), (-50, 30, 0)]
     names = tuple(draft.feature(f"part.{k}", place) for k, place in enumerate(places))
-    assembly = draft.assembly((), {"flatness": Measured("flatness", names, Z)})
+    assembly = draft.assembly((), {"flatness": Measured(InspectedFlatnessSpec.reads, names, Z)})
     found = values(assembly, draft.trial({"part.2 z": 0.06}), ["flatness"])["flatness"][0]
     assert found == pytest.approx((0.02 + 0.06) / 2, abs=1e-15)
 
@@ -250,8 +270,8 @@ def test_a_direction_is_fixed_in_a_datum_frame_of_the_trial() -> None:
     name = draft.datum_frame("part", Datum(("part.a",)))
     draft.feature("part.zero", (0, 0, 0), deviates=False)
     draft.feature("part.far", (40, 0, 30), deviates=False)
-    gaps = {"in it": Measured("gap", ("part.zero", "part.far"), Z, frame=name)}
-    gaps["in the part"] = Measured("gap", ("part.zero", "part.far"), Z)
+    gaps = {"in it": Measured(GapSpec.reads, ("part.zero", "part.far"), Z, frame=name)}
+    gaps["in the part"] = Measured(GapSpec.reads, ("part.zero", "part.far"), Z)
     assembly = draft.assembly((), gaps)
     found = values(assembly, draft.trial({"part.a rise x": 0.1}), list(gaps))
     assert found["in it"][0] == pytest.approx(30.0 - 40 * 0.1 / 50, abs=1e-12)
@@ -273,7 +293,7 @@ def test_flatness_of_too_many_points_is_refused() -> None:
     draft.part("part")
     names = tuple(draft.feature(f"part.{k}", (k, k * k, 0)) for k in range(21))
     with pytest.raises(InputError, match="flatness of 21 points; expected 20 at most"):
-        first_order(draft.assembly((), {"flatness": Measured("flatness", names, Z)}))
+        first_order(draft.assembly((), {"flatness": Measured(InspectedFlatnessSpec.reads, names, Z)}))
 
 
 # slopes ---------------------------------------------------------------------------------------------
@@ -285,7 +305,7 @@ def test_slopes_say_what_is_not_linear_and_by_which_vectors() -> None:
     draft.part("part")
     draft.feature("part.feature", frame((7, -4, 20), Z, X))
     draft.feature("part.zero", (0, 0, 0), deviates=False)
-    one = Measured("position", ("part.feature",), Z)
+    one = Measured(InspectedPositionSpec.reads, ("part.feature",), Z)
     shift = displacement("part.feature", X, "part.zero")
     assembly = draft.assembly((), {"difference": replace(one, minus=shift), "one": one})
     means, sigmas = np.array([0.3, 0.0, 0.0]), np.array([0.1, 0.4, 0.2])
@@ -328,7 +348,7 @@ def test_a_position_in_a_datum_frame_that_is_touched_by_a_corner_bends_twice() -
     draft.feature("part.feature", frame((0, 0, 10), -Y, X), Plane((80, 20)))
     name = draft.datum_frame("part", Datum(("part.a",)), Datum(("part.feature",)))
     draft.feature("part.far", (0, 50, 0), deviates=False)
-    measured = Measured("position", ("part.far",), frame=name)
+    measured = Measured(InspectedPositionSpec.reads, ("part.far",), frame=name)
     for offset, rise in ((0.02, 0.03), (0.02, -0.03), (-0.05, 0.03), (-0.01, -0.03)):
         expected = 2 * abs(offset + abs(rise))
         assert one(draft, measured, offset=offset, rise_y=rise) == pytest.approx(expected, abs=1e-15)
@@ -358,7 +378,7 @@ def test_an_assembly_without_deviations_has_its_nominal_values() -> None:
     draft.feature("part.a", (0, 0, 0), deviates=False)
     draft.feature("part.b", (3, 4, 0), Axis(10.0, 5.0), deviates=False)
     measures = {"distance": ("part.a", "part.b"), "none": ("part.a", "part.a")}
-    own = first_order(draft.assembly((), {name: Measured("distance", of) for name, of in measures.items()}))
+    own = first_order(draft.assembly((), {name: Measured(DistanceSpec.reads, of) for name, of in measures.items()}))
     found = own.values(np.zeros((2, 0)), ["distance", "none"])
     np.testing.assert_array_equal([found["distance"], found["none"]], [[5.0, 5.0], [0.0, 0.0]])
     assert own.values(np.zeros((2, 0)), []) == {}
@@ -368,8 +388,8 @@ def test_an_assembly_without_deviations_has_its_nominal_values() -> None:
 
 def test_a_measure_after_a_move_sees_the_parts_as_it_left_them() -> None:
     draft, moves = lid_on_base()
-    last = Measured("gap", ("base.point", "lid.point"), X)
-    before = Measured("gap", ("base.point", "lid.point"), X, after=0)
+    last = Measured(GapSpec.reads, ("base.point", "lid.point"), X)
+    before = Measured(GapSpec.reads, ("base.point", "lid.point"), X, after=0)
     assembly: Assembly = draft.assembly(moves, {"last": last, "before": before, "no move": last})
     found = {name: slopes(assembly, name, *np.zeros((2, assembly.width))).coefficients for name in ("last", "before")}
     locators = [draft.columns.index(f"lid.{k} x") for k in range(6)]

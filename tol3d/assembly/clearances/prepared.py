@@ -26,7 +26,7 @@ WITNESS = "tol3d.assembly.witness"
 
 def clearances_of(assembly: Assembly) -> Mapping[str, Measured]:
     """The clearances of whole parts among the measures of an assembly."""
-    return {name: own for name, own in assembly.measures.items() if own.kind == "clearance"}
+    return {name: own for name, own in assembly.measures.items() if own.reads.by_solids}
 
 
 def with_facing(assembly: Assembly, torsors: Torsors) -> Assembly:

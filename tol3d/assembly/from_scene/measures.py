@@ -12,29 +12,21 @@ from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.from_scene.projected import projected, projected_name
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features.nominal_frame import unit as unit_vector
 from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
-    ClearanceSpec,
     DifferenceSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
-    OrientationErrorSpec,
     PoseErrorSpec,
-    SlackSpec,
 )
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, OverPlaySpec, TimedSpec
+from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, TimedSpec
 from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.bonus import MaterialBonus
-from tol3d.assembly.model.measures import MeasureKind
 from tol3d.scene import Scene
-from tol3d.system.measure import Worse
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
 Array = NDArray[np.float64]
-
-WORSE_HIGH: frozenset[MeasureKind] = frozenset(("position", "orientation", "flatness", "pattern", "turn"))
 
 
 def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:
@@ -46,48 +38,37 @@ def _measured(scene: Scene, spec: AssemblyMeasureSpec, drawing: Drawing, frames:
     if isinstance(spec, DifferenceSpec):
         own, less = (_measured(scene, _named(scene, name), drawing, frames) for name in (spec.of, spec.minus))
         return replace(own, minus=less, rocking=spec.rocking)
-    if isinstance(spec, SlackSpec):
-        return Measured("slack", (), of_move=list(scene.moves).index(spec.of))
-    after = _after(scene, spec)
-    if isinstance(spec, ClearanceSpec):
-        parts = (spec.from_, spec.to)
-        return Measured("clearance", (), after=after, rocking=spec.rocking, parts=parts, chord_error=spec.error)
-    if isinstance(spec, PoseErrorSpec):
-        along = {"x": 0, "y": 1, "z": 2}
-        direction = np.eye(3)[along[spec.component]] if spec.component != "size" else None
-        length: MeasureKind = "distance" if direction is None else "gap"
-        kind: MeasureKind = "turn" if isinstance(spec, OrientationErrorSpec) else length
-        return Measured(kind, (twin_name(spec), spec.of), direction, after=after, rocking=spec.rocking)
-    assert isinstance(spec, FeatureMeasureSpec)
-    features = tuple(name for _, name, _ in spec.named())
+    found = spec.measured(list(scene.moves))
+    if isinstance(spec, TimedSpec):
+        found = replace(found, after=_after(scene, spec), rocking=spec.rocking)
+    return _inspected(scene, spec, drawing, frames, found) if isinstance(spec, FeatureMeasureSpec) else found
+
+
+def _inspected(
+    scene: Scene, spec: FeatureMeasureSpec, drawing: Drawing, frames: DatumFrames, found: Measured
+) -> Measured:
+    """A measure of features with its datum frame, its bonuses, and what gauges may do."""
+    features = found.features
     bonuses = _bonuses(scene, drawing, spec, features)
     if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
-    direction = None if spec.along is None else unit_vector(spec.along)
     frame = frames.named(part_of(features[0]), spec.named_datums)
     room = room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
     over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
-    over = spec.over_play if isinstance(spec, OverPlaySpec) else None
-    found = Measured(spec.reads, features, direction, frame, after, bonuses, gauge, room, rocking=spec.rocking)
-    return replace(found, over_play=over, over_gauges=over_gauges)
+    found = replace(found, features=features, frame=frame, bonuses=bonuses)
+    return replace(found, gauge=gauge, room=room, over_gauges=over_gauges)
 
 
-def _after(scene: Scene, spec: AssemblyMeasureSpec) -> int:
+def _after(scene: Scene, spec: TimedSpec) -> int:
     """Index of the move after which a measure is read; -1 for the end."""
-    named = spec.after if isinstance(spec, TimedSpec) else None
-    return -1 if named is None else list(scene.moves).index(named)
-
-
-def twin_name(spec: PoseErrorSpec) -> str:
-    """The feature that lies nominally where another one does, on the part that sees it."""
-    return f"{spec.of} nominal in {spec.from_}"
+    return -1 if spec.after is None else list(scene.moves).index(spec.after)
 
 
 def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Array]) -> None:
     """Add to parts features that lie where others do, whose errors they see, where parts lie at some poses (4, 4)."""
     for spec in scene.measures.values():
-        if isinstance(spec, PoseErrorSpec) and (name := twin_name(spec)) not in features:
+        if isinstance(spec, PoseErrorSpec) and (name := spec.twin) not in features:
             own = features[spec.of]
             frame = np.linalg.inv(poses[spec.from_]) @ poses[own.part] @ own.frame
             features[name] = Feature(name, spec.from_, Point(), frame, is_named=False)
@@ -123,24 +104,10 @@ def shown_measures(scene: Scene, read: Mapping[str, Measured]) -> tuple[PlainMea
     found = []
     for own in measures_of(scene):
         unit, per_unit = UNITS[dimension_of(scene, own.name)]
-        worse: Worse = "high" if read[own.name].kind in WORSE_HIGH else "low"
-        found.append(replace(own, worse=worse, unit=unit, per_internal=1.0 / per_unit))
+        found.append(replace(own, worse=read[own.name].reads.worse, unit=unit, per_internal=1.0 / per_unit))
     return tuple(found)
 
 
 def named_by(scene: Scene) -> dict[str, tuple[str, ...]]:
     """The features that each measure names, or the measures of a difference."""
-    found: dict[str, tuple[str, ...]] = {}
-    for name in scene.measures:
-        spec = _named(scene, name)
-        if isinstance(spec, DifferenceSpec):
-            found[name] = (spec.of, spec.minus)
-        elif isinstance(spec, SlackSpec):
-            found[name] = (spec.of,)
-        elif isinstance(spec, PoseErrorSpec):
-            found[name] = (spec.of, spec.from_)
-        elif isinstance(spec, ClearanceSpec):
-            found[name] = (spec.from_, spec.to)
-        elif isinstance(spec, FeatureMeasureSpec):
-            found[name] = tuple(feature for _, feature, _ in spec.named())
-    return found
+    return {name: (*_named(scene, name).of_what,) for name in scene.measures}

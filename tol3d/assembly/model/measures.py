@@ -1,63 +1,51 @@
 """What is measured of an assembly: features, a direction, when."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.facing import Facing
+from tol3d.import_path import is_named
+from tol3d.system.measure import Worse
 
 Array = NDArray[np.float64]
 
-MeasureKind = Literal[
-    "distance",
-    "gap",
-    "point_plane",
-    "angle",
-    "size",
-    "position",
-    "orientation",
-    "flatness",
-    "virtual_clearance",
-    "pattern",
-    "contact_angle",
-    "surface_gap",
-    "slack",
-    "clearance",
-    "turn",
-]
-"""What is read, of features' origins and z directions as they are in the trial (p, z), in the world:
+PLACING: Final = "tol3d.assembly.placing.measuring"
+TORSORS: Final = "tol3d.assembly.torsors.measures"
+"""Where each road has the readings of the kinds that tol3d ships."""
 
-- distance: |p_to - p_from|; with a direction along it only, see gap.
-- gap (and flush, where `to` stands proud): (p_to - p_from) . n, n the direction as it is fixed in the part of `from`,
-  or in a datum frame of it.
-- point_plane: (p_point - p_plane) . z_plane; features: the point, the plane.
-- angle: from z_from to z_to [rad], 0 to pi; with a direction n, fixed as for gap, signed about it: atan2(n . (z_from x
-  z_to), z_from . z_to).
-- size: nominal size and its deviation.
-- position: twice the largest distance of the feature's ends from where `frame` has them nominally: of an axis across
-  the nominal axis, of a plane along the nominal normal, of a point in space; across the direction if there is one,
-  which is fixed in that frame. With a bonus less that of the feature's size: what is judged against the zone at its
-  material condition, for 2 distance <= t0 + bonus.
-- orientation: width of the zone that holds the feature and is oriented nominally in `frame`: of a plane the range of
-  its ends' heights along the nominal normal, of an axis how far its ends lie apart across the nominal axis.
-- flatness: smallest distance of two parallel planes with all the points between them, of points of one part that lie
-  nominally on a plane with normal `direction`, in the part's frame.
-- virtual_clearance: diameter of the largest straight bolt through all holes, along the nominal axis of the first as its
-  part or `frame` carries it.
-- pattern: the largest of several positions (less bonuses) at the best pose of their nominal places, which may shift
-  across the nominal axis of the first, or also turn about it.
-- surface_gap: how far the surfaces of two features are apart, at least one of them round: as contacts of a touch ask,
-  0 where they touch; negative where they overlap.
-- contact_angle: between the normal of such a contact, from the first feature's axis, centre or plane towards the
-  second's, and the z of a third feature or a direction that is fixed as for gap [rad], 0 to pi.
-- slack: of the move `of_move`, an Engage; no features.
-- turn: of the rotation vector that turns the first feature's frame into the second's, the component along a direction,
-  which is fixed in the part of the first, or its length without one [rad].
-- clearance: least distance of the solids of two parts as they stand, within a chord error; no features.
-"""
+
+@dataclass(frozen=True)
+class Reading:
+    """How a kind of measure is read: by each road's own function, named by an import path `package.module:function`.
+
+    Args:
+        name: in messages; of one kind, or of several that are read alike.
+        placing: of a Measured and a World of placed parts to values (n,) or (1,) [mm or rad].
+        torsors: of a Measured and a World of torsors to a row over their columns (columns,) [mm or rad].
+        is_linear: whether the row makes no term.
+        of_part: whether it is of a part alone, wherever that is and before it is placed.
+        worse: which end is the worse one where there is no limit.
+        by_solids: whether `placing` names a SolidReader instead: values with codes, of the solids of two parts.
+    """
+
+    name: str
+    placing: str
+    torsors: str
+    is_linear: bool = False
+    of_part: bool = False
+    worse: Worse = "low"
+    by_solids: bool = False
+
+    def lacking(self) -> Iterator[str]:
+        """What it names and is not there."""
+        for road, path in (("placing", self.placing), ("torsors", self.torsors)):
+            if not is_named(path):
+                yield f"its reading by {road}: expected `package.module:function`, got {path!r}, where nothing is"
 
 
 Rocking = Literal["least", "middle", "largest"]
@@ -72,10 +60,10 @@ OverPlay = Literal["least", "largest"]
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What a measure reads; see each kind.
+    """What a measure reads.
 
     Args:
-        kind: which formula.
+        reads: by which formula.
         features: names, in the order of the kind: from, to.
         direction: (3,), of unit length, nominally in the frame of the first feature's part.
         frame: name of a datum frame of that part in which the direction is fixed, or to which a position or an
@@ -94,7 +82,7 @@ class Measured:
         rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
     """
 
-    kind: MeasureKind
+    reads: Reading
     features: tuple[str, ...]
     direction: Array | None = None
     frame: str = ""
@@ -110,3 +98,8 @@ class Measured:
     parts: tuple[str, ...] = ()
     chord_error: float = 0.0
     facing: Facing | None = None
+
+    @property
+    def kind(self) -> str:
+        """Name of its reading."""
+        return self.reads.name

@@ -123,15 +123,11 @@ def ordered(causes: Iterable[Cause]) -> tuple[Cause, ...]:
 
 
 def _causes(measured: Measured, name: str, moments: tuple[Causes, ...]) -> frozenset[Cause]:
-    if measured.kind == "slack":
+    if measured.of_move >= 0:
         return moments[measured.of_move].before(moments[0].assembly.moves[measured.of_move])
     causes = moments[-1] if measured.after < 0 else moments[measured.after + 1]
     found = causes.of_frame(measured.frame).union(*(causes.of_feature(feature) for feature in measured.features))
-    if measured.kind not in ON_PART:
+    if not measured.reads.of_part:
         parts = {*measured.parts, *(causes.assembly.features[feature].part for feature in measured.features)}
         found = found.union(*(causes.of_part(part, f"measures.{name}") for part in parts))
     return found | (_causes(measured.minus, name, moments) if measured.minus is not None else frozenset())
-
-
-ON_PART = frozenset(["size", "position", "orientation", "flatness"])
-"""Kinds of measures of a part alone, wherever it is."""

@@ -1,24 +1,23 @@
 """Measures of features as they lie in their trials."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
-from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.gauged_positions import position_on_gauges
-from tol3d.assembly.placing.patterns import bonuses, pattern
+from tol3d.assembly.placing.patterns import bonuses
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector
-from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, surface_gap
-from tol3d.assembly.placing.virtual_clearance import virtual_clearance
+from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
+from tol3d.import_path import named
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,8 @@ def reading(measured: Measured, worlds: Sequence[World]) -> Array:
         measured: what.
         worlds: before the first move, and after each.
     """
-    values = READINGS[measured.kind](measured, worlds[-1] if measured.after < 0 else worlds[measured.after + 1])
+    world = worlds[-1] if measured.after < 0 else worlds[measured.after + 1]
+    values: Array = named(measured.reads.placing)(measured, world)
     return values if measured.minus is None else values - reading(measured.minus, worlds)
 
 
@@ -48,7 +48,7 @@ def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_
         codes: what became of moves, by their places.
     """
     lacks = np.array([measured.room is not None or measured.over_gauges])
-    if measured.kind == "slack":
+    if measured.of_move >= 0:
         lacks = lacks | (codes[measured.of_move] != OK)
     return lacks if measured.minus is None else lacks | may_lack(measured.minus, codes)
 
@@ -74,20 +74,27 @@ def _apart(measured: Measured, world: World) -> Array:
     return end.origin - start.origin
 
 
-def _distance(measured: Measured, world: World) -> Array:
-    return _length(_apart(measured, world)) if measured.direction is None else _gap(measured, world)
+def distance(measured: Measured, world: World) -> Array:
+    """|p_to - p_from| of the features' origins p in the world; with a direction along it only, see `gap`."""
+    return _length(_apart(measured, world)) if measured.direction is None else gap(measured, world)
 
 
-def _gap(measured: Measured, world: World) -> Array:
+def gap(measured: Measured, world: World) -> Array:
+    """(p_to - p_from) . n, n the direction as it is fixed in the part of `from`, or in a datum frame of it."""
     return dot(_apart(measured, world), _direction(measured, world))
 
 
-def _point_plane(measured: Measured, world: World) -> Array:
+def point_plane(measured: Measured, world: World) -> Array:
+    """(p_point - p_plane) . z_plane; features: the point, the plane."""
     point, plane = (world.placed(name) for name in measured.features)
     return dot(point.origin - plane.origin, plane.direction)
 
 
-def _angle(measured: Measured, world: World) -> Array:
+def angle(measured: Measured, world: World) -> Array:
+    """From z_from to z_to [rad], 0 to pi; with a direction n, fixed as for `gap`, signed about it.
+
+    That is atan2(n . (z_from x z_to), z_from . z_to).
+    """
     start, end = (world.placed(name).direction for name in measured.features)
     across, along = cross(start, end), dot(start, end)
     if measured.direction is None:
@@ -114,7 +121,8 @@ def _nominal_directions(measured: Measured, assembly: Assembly) -> tuple[Array, 
     return start, end
 
 
-def _size(measured: Measured, world: World) -> Array:
+def size(measured: Measured, world: World) -> Array:
+    """Nominal size and its deviation."""
     return actual_size(world.assembly.features[measured.features[0]], world.columns)
 
 
@@ -125,7 +133,13 @@ def _inspected(measured: Measured, world: World) -> tuple[ActualFeature, Array]:
     return world.on_part(name).moved(displacement.inverse), world.assembly.features[name].frame
 
 
-def _position(measured: Measured, world: World) -> Array:
+def position(measured: Measured, world: World) -> Array:
+    """Twice the largest distance of the feature's ends from where `frame` has them nominally.
+
+    Of an axis across the nominal axis, of a plane along the nominal normal, of a point in space; across the direction
+    if there is one, which is fixed in that frame. With a bonus less that of the feature's size: what is judged against
+    the zone at its material condition, for 2 distance <= t0 + bonus.
+    """
     actual, frame = _inspected(measured, world)
     if measured.room is not None:
         into = world.own[world.part_of(measured.features[0])].displacement(measured.frame).inverse
@@ -166,7 +180,12 @@ def _across(vector: Array, direction: Array) -> Array:
     return vector - dot(vector, direction) * direction
 
 
-def _orientation(measured: Measured, world: World) -> Array:
+def orientation(measured: Measured, world: World) -> Array:
+    """Width of the zone that holds the feature and is oriented nominally in `frame`.
+
+    Of a plane the range of its ends' heights along the nominal normal, of an axis how far its ends lie apart across the
+    nominal axis.
+    """
     actual, frame = _inspected(measured, world)
     z = column(frame[:3, 2])
     if isinstance(actual.feature.shape, (Plane, RoundPlane)):
@@ -174,16 +193,29 @@ def _orientation(measured: Measured, world: World) -> Array:
     return 2.0 * _length(_across(actual.spans[0], z)) if actual.spans else np.zeros(1)
 
 
-def _flatness(measured: Measured, world: World) -> Array:
+def flatness(measured: Measured, world: World) -> Array:
+    """Smallest distance of two parallel planes with all the points between them.
+
+    The points are of one part and lie nominally on a plane with normal `direction`, in the part's frame.
+    """
     return widths([world.on_part(name).origin for name in measured.features])
 
 
-def _surface_gap(measured: Measured, world: World) -> Array:
+def surface_gap(measured: Measured, world: World) -> Array:
+    """How far the surfaces of two features are apart, at least one of them round: 0 where they touch.
+
+    As contacts of a touch ask; negative where they overlap.
+    """
     start, end = (world.placed(name) for name in measured.features)
-    return surface_gap(start, end, world.columns, parallel=_parallel(measured, world.assembly))
+    return gap_of(start, end, world.columns, parallel=_parallel(measured, world.assembly))
 
 
-def _contact_angle(measured: Measured, world: World) -> Array:
+def contact_angle(measured: Measured, world: World) -> Array:
+    """Angle of the normal of such a contact to the z of a third feature or to a direction [rad], 0 to pi.
+
+    The normal points from the first feature's axis, centre or plane towards the second's; a direction is fixed as for
+    `gap`.
+    """
     start, end, *against = (world.placed(name) for name in measured.features)
     normal, _ = common_normal(start, end, parallel=_parallel(measured, world.assembly))
     direction = against[0].direction if against else _direction(measured, world)
@@ -196,29 +228,16 @@ def _parallel(measured: Measured, assembly: Assembly) -> bool:
     return bool(np.linalg.norm(np.cross(start, end)) < PARALLEL)
 
 
-def _turn(measured: Measured, world: World) -> Array:
+def turn(measured: Measured, world: World) -> Array:
+    """Of the rotation vector that turns the first feature's frame into the second's, the component along a direction.
+
+    The direction is fixed in the part of the first; without one it is the vector's length [rad].
+    """
     start, end = (world.placed(name).pose.turn for name in measured.features)
     vector = rotation_vector(product(end, np.swapaxes(start, 0, 1)))
     return _length(vector) if measured.direction is None else dot(vector, _direction(measured, world))
 
 
-def _slack(measured: Measured, world: World) -> Array:
+def slack(measured: Measured, world: World) -> Array:
+    """The slack of the move `of_move`, an Engage; no features."""
     return np.asarray(world.slacks[world.assembly.moves[measured.of_move].name])
-
-
-READINGS: Mapping[MeasureKind, Callable[[Measured, World], Array]] = {
-    "distance": _distance,
-    "gap": _gap,
-    "point_plane": _point_plane,
-    "angle": _angle,
-    "size": _size,
-    "position": _position,
-    "orientation": _orientation,
-    "flatness": _flatness,
-    "virtual_clearance": virtual_clearance,
-    "pattern": pattern,
-    "surface_gap": _surface_gap,
-    "contact_angle": _contact_angle,
-    "slack": _slack,
-    "turn": _turn,
-}

@@ -38,7 +38,7 @@ def is_inside(start: Shape, end: Shape) -> bool:
     return is_inner(start) or is_inner(end)
 
 
-def surface_gap(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
+def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
     """How far two surfaces are apart (n,) [mm]; negative where they overlap. See `common_normal`."""
     gap = common_normal(start, end, parallel=parallel)[1] - touching_distance(start, end, columns)
     return -gap if is_inside(start.feature.shape, end.feature.shape) else gap

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
-from tol3d.assembly.model.measures import MeasureKind
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
@@ -21,8 +20,6 @@ from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
 
-LINEAR: frozenset[MeasureKind] = frozenset(("gap", "point_plane", "size", "slack", "turn"))
-"""Measures whose reading makes no term."""
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""
 TOGETHER = 4096
@@ -215,5 +212,5 @@ def _room(assembly: Assembly) -> int:
 
 
 def _readings(measured: Measured) -> int:
-    own = 1 if measured.kind in LINEAR else 10  # where a part may rock, the ends of a linear one are a term
+    own = 1 if measured.reads.is_linear else 10  # where a part may rock, the ends of a linear one are a term
     return own + (0 if measured.minus is None else _readings(measured.minus))

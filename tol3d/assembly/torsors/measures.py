@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.shape import nominal_size
-from tol3d.assembly.torsors.clearance import clearance
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.flatness import balances
@@ -19,6 +18,7 @@ from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Width
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
+from tol3d.import_path import named
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def reading(measured: Measured, worlds: list[World]) -> Array:
         worlds: before the first move, and as each leaves it.
     """
     world = worlds[-1] if measured.after < 0 else worlds[measured.after + 1]
-    row = _READINGS[measured.kind](measured, world)
+    row: Array = named(measured.reads.torsors)(measured, world)
     return row if measured.minus is None else row - reading(measured.minus, worlds)
 
 
@@ -75,23 +75,26 @@ def _length(nominal: Array, varying: Array, world: World) -> Array:
     return world.columns.largest((varying + world.columns.constants(nominal))[None])
 
 
-def _distance(measured: Measured, world: World) -> Array:
+def distance(measured: Measured, world: World) -> Array:
+    """Linear, but of points that nominally coincide the length of a short vector."""
     nominal, varying = _apart(measured, world)
     if measured.direction is not None:
-        return _gap(measured, world)
+        return gap(measured, world)
     length = float(np.linalg.norm(nominal))
     if length < NEAR:
         return _length(nominal, varying, world)
     return _constant(world, length) + nominal / length @ varying
 
 
-def _gap(measured: Measured, world: World) -> Array:
+def gap(measured: Measured, world: World) -> Array:
+    """As the direction turns with its part or datum frame."""
     apart, varying = _apart(measured, world)
     normal, turning = _fixed_in(measured, world)
     return _constant(world, float(normal @ apart)) + normal @ varying + apart @ turning
 
 
-def _point_plane(measured: Measured, world: World) -> Array:
+def point_plane(measured: Measured, world: World) -> Array:
+    """As the plane tilts."""
     point, plane = measured.features
     at, normal = world.origin(point), world.axis(plane)
     height = height_at(at, normal) @ (world.placed(point) - world.placed(plane))
@@ -99,7 +102,8 @@ def _point_plane(measured: Measured, world: World) -> Array:
     return row
 
 
-def _angle(measured: Measured, world: World) -> Array:
+def angle(measured: Measured, world: World) -> Array:
+    """Linear, but of directions nominally in line the length of a short vector."""
     axes = [world.axis(name) for name in measured.features]
     turning = [_turned(axis, world.placed(name)) for axis, name in zip(axes, measured.features, strict=True)]
     (start, end), (start_varies, end_varies) = axes, turning
@@ -123,7 +127,8 @@ def _angle(measured: Measured, world: World) -> Array:
     return length if along > 0.0 else _constant(world, math.pi) - length
 
 
-def _size(measured: Measured, world: World) -> Array:
+def size(measured: Measured, world: World) -> Array:
+    """Linear."""
     (name,) = measured.features
     return _constant(world, nominal_size(world.assembly.features[name].shape) or 0.0) + world.size(name)
 
@@ -175,7 +180,8 @@ def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
     return row
 
 
-def _position(measured: Measured, world: World) -> Array:
+def position(measured: Measured, world: World) -> Array:
+    """The largest over ends, less what a size adds; over the room of gauges where datums leave one."""
     if measured.room is not None:
         return _in_room(measured, measured.room, world)
     if measured.over_gauges:
@@ -208,7 +214,8 @@ def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
     return row
 
 
-def _orientation(measured: Measured, world: World) -> Array:
+def orientation(measured: Measured, world: World) -> Array:
+    """The largest over pairs of ends, or over the rim of a round face."""
     feature = world.assembly.features[measured.features[0]]
     rotation = feature.frame[:3, :3]
     match feature.shape:
@@ -222,7 +229,8 @@ def _orientation(measured: Measured, world: World) -> Array:
     return world.columns.largest(np.array([one - other for one, other in combinations(ends, 2)]))
 
 
-def _flatness(measured: Measured, world: World) -> Array:
+def flatness(measured: Measured, world: World) -> Array:
+    """The width over all balances of the points."""
     assert measured.direction is not None
     own = world.own[world.part_of(measured.features[0])]
     points = np.array([world.assembly.features[name].frame[:3, 3] for name in measured.features])
@@ -239,8 +247,8 @@ def _flatness(measured: Measured, world: World) -> Array:
     return row
 
 
-def _virtual_clearance(measured: Measured, world: World) -> Array:
-    """See Measured; the bolt's direction turns with the first hole's part or with its datum frame."""
+def virtual_clearance(measured: Measured, world: World) -> Array:
+    """The bolt's direction turns with the first hole's part or with its datum frame."""
     first = measured.features[0]
     part = world.part_of(first)
     sides = world.frame(first)[:3, :2].T
@@ -252,7 +260,7 @@ def _virtual_clearance(measured: Measured, world: World) -> Array:
     for name in measured.features:
         frame, torsor = world.frame(name), world.placed(name)
         shape = world.assembly.features[name].shape
-        radius = 0.5 * _size(replace(measured, kind="size", features=(name,)), world)
+        radius = 0.5 * size(replace(measured, features=(name,)), world)
         assert isinstance(shape, Axis)
         for end in shape.ends @ frame[:3, :3].T + frame[:3, 3]:
             apart, varying = end - start, shift_at(end) @ torsor - start_varies
@@ -262,12 +270,14 @@ def _virtual_clearance(measured: Measured, world: World) -> Array:
     return row
 
 
-def _surface_gap(measured: Measured, world: World) -> Array:
+def surface_gap(measured: Measured, world: World) -> Array:
+    """Along the nominal common normal."""
     start, end = measured.features
     return Surfaces(world, start, end).gap()
 
 
-def _contact_angle(measured: Measured, world: World) -> Array:
+def contact_angle(measured: Measured, world: World) -> Array:
+    """As the normal and what it is held against turn."""
     start, end, *against = measured.features
     normal, normal_varies = Surfaces(world, start, end).turning_normal()
     if against:
@@ -285,8 +295,8 @@ def _contact_angle(measured: Measured, world: World) -> Array:
     return length if along > 0.0 else _constant(world, math.pi) - length
 
 
-def _pattern(measured: Measured, world: World) -> Array:
-    """See Measured; nominal places turn about their middle. Ends that deviate alike are one place."""
+def pattern(measured: Measured, world: World) -> Array:
+    """Nominal places turn about their middle. Ends that deviate alike are one place."""
     features = [world.assembly.features[name] for name in measured.features]
     sides = features[0].frame[:3, :2].T
     places = np.array([sides @ feature.frame[:3, 3] for feature in features])
@@ -305,30 +315,13 @@ def _pattern(measured: Measured, world: World) -> Array:
     return row
 
 
-def _turn(measured: Measured, world: World) -> Array:
+def turn(measured: Measured, world: World) -> Array:
+    """Of torsors at nominally equal frames."""
     start, end = measured.features
     turned = (world.placed(end) - world.placed(start))[3:]  # nominally both frames are one
     return _length(np.zeros(3), turned, world) if measured.direction is None else _fixed_in(measured, world)[0] @ turned
 
 
-def _slack(measured: Measured, world: World) -> Array:
+def slack(measured: Measured, world: World) -> Array:
+    """As the move has left it."""
     return world.slacks[world.assembly.moves[measured.of_move].name]
-
-
-_READINGS = {
-    "distance": _distance,
-    "gap": _gap,
-    "point_plane": _point_plane,
-    "angle": _angle,
-    "size": _size,
-    "position": _position,
-    "orientation": _orientation,
-    "flatness": _flatness,
-    "virtual_clearance": _virtual_clearance,
-    "pattern": _pattern,
-    "surface_gap": _surface_gap,
-    "contact_angle": _contact_angle,
-    "slack": _slack,
-    "turn": _turn,
-    "clearance": clearance,
-}

@@ -11,6 +11,7 @@ from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.distributions.constant import Constant
 from tol3d.gearing.grammar.moves import TrainSpec
+from tol3d.import_path import named
 from tol3d.machine.either_side import EitherSide
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
@@ -19,7 +20,6 @@ from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Scalar
-from tol3d.system.mechanism import named
 from tol3d.system.plain import UNITS, PlainContributor
 from tol3d.units import Of, Quantity
 

@@ -2,18 +2,20 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 from pydantic import Field
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves.forgotten import MoveReference
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.measures import MeasureKind, OverPlay, Rocking
+from tol3d.assembly.model.measures import Measured, OverPlay, Reading, Rocking
 from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
@@ -23,9 +25,13 @@ from tol3d.units import Dimension
 
 
 class AssemblyMeasureSpec(MeasureEntry):
-    """A measure of an assembly: one number a trial, of features as they lie in it."""
+    """A measure of an assembly: one number a trial, of features as they lie in it.
+
+    A kind declares here all that is its own: its fields, `reads`, how both roads read it, and by `measured` what.
+    """
 
     words: ClassVar[str] = "a measure of an assembly"
+    reads: ClassVar[Reading]
     dimension: ClassVar[Dimension] = "length"
     gives_curve: ClassVar[bool] = False
     several_positions: ClassVar[bool] = False
@@ -36,6 +42,27 @@ class AssemblyMeasureSpec(MeasureEntry):
         default=None,
         description="which value it has where a part may rock on its contacts; without one it then has no value",
     )
+
+    @classmethod
+    def lacking(cls) -> Iterator[str]:
+        """See Entry."""
+        if hasattr(cls, "reads"):
+            yield from cls.reads.lacking()
+        else:
+            yield "`reads`, how both roads read it"
+
+    @property
+    @abstractmethod
+    def of_what(self) -> Sequence[str]:
+        """Names of what it is of, as summary.json has them."""
+
+    @abstractmethod
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """What is read, but for datum frames, bonuses and when.
+
+        Args:
+            moves: names of the scene's moves, in order.
+        """
 
 
 class TimedSpec(AssemblyMeasureSpec):
@@ -62,8 +89,6 @@ class TimedSpec(AssemblyMeasureSpec):
 class FeatureMeasureSpec(TimedSpec):
     """A measure of features."""
 
-    reads: ClassVar[MeasureKind]
-
     @property
     def along(self) -> Direction | None:
         """The direction in which it is read, in the frame of the first feature's part; None where there is none."""
@@ -77,6 +102,15 @@ class FeatureMeasureSpec(TimedSpec):
     @abstractmethod
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         """Its features with their fields, and the kinds that they may be; from, to."""
+
+    @property
+    def of_what(self) -> Sequence[str]:
+        """Its features."""
+        return tuple(name for _, name, _ in self.named())
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """Its features, along its direction."""
+        return Measured(self.reads, (*self.of_what,), None if self.along is None else unit(self.along))
 
     def references(self) -> tuple[Reference, ...]:
         """Parts, and the move after which it is read."""
@@ -124,3 +158,7 @@ class OverPlaySpec(BetweenSpec):
         default=None,
         description="least or largest value over the play of parts in the trial; as `float` says if not given",
     )
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """With what is asked of play."""
+        return replace(super().measured(moves), over_play=self.over_play)

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.model.measures import Measured, Reading
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
 from tol3d.scene.reference import Reference
@@ -17,9 +18,18 @@ CHORD_ERROR: Final = 2e-3
 
 
 class ClearanceSpec(TimedSpec):
-    """The least distance of two parts as they stand, by their solids."""
+    """How far two parts with solids are apart where they are nearest, within the `chord_error`.
+
+    That is 2 um if not given.
+    """
 
     requires: ClassVar[tuple[str, ...]] = ("python-fcl", "cadquery")
+    reads: ClassVar[Reading] = Reading(
+        "clearance",
+        "tol3d.assembly.clearances.distances:SolidDistances",
+        "tol3d.assembly.torsors.clearance:clearance",
+        by_solids=True,
+    )
 
     kind: Literal["clearance"]
     from_: Name = Field(alias="from", description="a part with a solid")
@@ -37,6 +47,15 @@ class ClearanceSpec(TimedSpec):
     def parts_read(self) -> Sequence[str]:
         """See TimedSpec."""
         return (self.from_, self.to)
+
+    @property
+    def of_what(self) -> Sequence[str]:
+        """Both parts."""
+        return self.parts_read
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """Both parts."""
+        return Measured(self.reads, (), parts=(self.from_, self.to), chord_error=self.error)
 
     def references(self) -> tuple[Reference, ...]:
         """Both parts, and the move after which it is read."""

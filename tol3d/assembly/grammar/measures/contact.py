@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
 from tol3d.assembly.grammar.moves.touch import SURFACES
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
@@ -16,9 +16,9 @@ from tol3d.units import Dimension
 
 
 class SurfaceGapSpec(BetweenSpec):
-    """How far two surfaces are apart, by the sizes of the trial; negative where they overlap."""
+    """How far two surfaces are apart, one of them round, by the sizes of the trial; negative where they overlap."""
 
-    reads: ClassVar[MeasureKind] = "surface_gap"
+    reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
 
     kind: Literal["surface_gap"]
 
@@ -28,10 +28,13 @@ class SurfaceGapSpec(BetweenSpec):
 
 
 class ContactAngleSpec(BetweenSpec):
-    """The angle of the normal of a contact to a plane's normal or an axis, or to a direction, 0 to 180 degrees."""
+    """Of the normal of a contact, from the middle or plane of `from` towards that of `to`, 0 to 180°.
+
+    It is the angle to the normal of a plane or to an axis, `against`, or to a direction, `along`: one of both is given.
+    """
 
     dimension: ClassVar[Dimension] = "angle"
-    reads: ClassVar[MeasureKind] = "contact_angle"
+    reads: ClassVar[Reading] = Reading("contact_angle", f"{PLACING}:contact_angle", f"{TORSORS}:contact_angle")
 
     kind: Literal["contact_angle"]
     against: FeatureName | None = Field(default=None, description="a plane or an axis; or a direction `along`")

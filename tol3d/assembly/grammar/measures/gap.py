@@ -7,15 +7,15 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec, OverPlaySpec
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 
 
 class DistanceSpec(BetweenSpec):
-    """The distance of two points in space, 0 or more."""
+    """In space, from middle to middle, 0 or more."""
 
-    reads: ClassVar[MeasureKind] = "distance"
+    reads: ClassVar[Reading] = Reading("distance", f"{PLACING}:distance", f"{TORSORS}:distance")
 
     kind: Literal["distance"]
 
@@ -23,7 +23,7 @@ class DistanceSpec(BetweenSpec):
 class DirectedSpec(OverPlaySpec):
     """How far `to` lies from `from` along a direction."""
 
-    reads: ClassVar[MeasureKind] = "gap"
+    reads: ClassVar[Reading] = Reading("gap", f"{PLACING}:gap", f"{TORSORS}:gap", is_linear=True)
 
     direction: Direction = Field(alias="along", description="in the frame of the part of `from`")
 
@@ -34,21 +34,23 @@ class DirectedSpec(OverPlaySpec):
 
 
 class GapSpec(DirectedSpec):
-    """A gap at a section."""
+    """How far `to` lies from `from` along a direction, with its sign."""
 
     kind: Literal["gap"]
 
 
 class FlushSpec(DirectedSpec):
-    """How far `to` stands proud of `from` at a section."""
+    """The same number: positive where `to` stands proud of `from`."""
 
     kind: Literal["flush"]
 
 
 class PointPlaneSpec(OverPlaySpec):
-    """How far a point lies above a plane, along its normal."""
+    """How far a point lies above the plane `to`, along its normal as it tilts."""
 
-    reads: ClassVar[MeasureKind] = "point_plane"
+    reads: ClassVar[Reading] = Reading(
+        "point_plane", f"{PLACING}:point_plane", f"{TORSORS}:point_plane", is_linear=True
+    )
 
     kind: Literal["point_plane"]
 

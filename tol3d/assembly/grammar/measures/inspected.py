@@ -9,7 +9,7 @@ from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.model.bonus import Modifier
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
@@ -34,9 +34,15 @@ class InspectedSpec(FeatureMeasureSpec):
 
 
 class InspectedPositionSpec(InspectedSpec):
-    """Twice the largest distance of its ends from where they are nominally; of an axis across it."""
+    """Twice the largest distance from nominal in the datum frame of the trial.
 
-    reads: ClassVar[MeasureKind] = "position"
+    Of an axis across it, of a point `across` a direction or in space; with a `modifier` less the bonus; `projected`
+    over such a length beyond the axis's end.
+    """
+
+    reads: ClassVar[Reading] = Reading(
+        "position", f"{PLACING}:position", f"{TORSORS}:position", of_part=True, worse="high"
+    )
 
     kind: Literal["inspected_position"]
     across: Direction | None = Field(default=None, description="of a point: the direction that does not count")
@@ -61,9 +67,11 @@ class InspectedPositionSpec(InspectedSpec):
 
 
 class InspectedOrientationSpec(InspectedSpec):
-    """Width of the zone, oriented nominally, that holds it: perpendicularity, parallelism, angularity."""
+    """Width of the narrowest zone, oriented as drawn, that holds the feature."""
 
-    reads: ClassVar[MeasureKind] = "orientation"
+    reads: ClassVar[Reading] = Reading(
+        "orientation", f"{PLACING}:orientation", f"{TORSORS}:orientation", of_part=True, worse="high"
+    )
 
     kind: Literal["inspected_orientation"]
 
@@ -73,9 +81,11 @@ class InspectedOrientationSpec(InspectedSpec):
 
 
 class InspectedFlatnessSpec(FeatureMeasureSpec):
-    """Smallest distance of two parallel planes with all the points between them."""
+    """Of 4 or more `points` of one part, between two parallel planes."""
 
-    reads: ClassVar[MeasureKind] = "flatness"
+    reads: ClassVar[Reading] = Reading(
+        "flatness", f"{PLACING}:flatness", f"{TORSORS}:flatness", of_part=True, worse="high"
+    )
 
     kind: Literal["inspected_flatness"]
     points: Annotated[tuple[FeatureName, ...], listed("points", 4)] = Field(description="of one part")

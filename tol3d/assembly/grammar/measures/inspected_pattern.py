@@ -10,16 +10,21 @@ from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.virtual_clearance import MOST_HOLES
 from tol3d.assembly.model.bonus import Modifier
-from tol3d.assembly.model.measures import Gauge, MeasureKind
+from tol3d.assembly.model.measures import TORSORS, Gauge, Reading
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
 
 
 class InspectedPatternSpec(FeatureMeasureSpec):
-    """The largest of several positions, at the best pose of a gauge that datums hold in its direction only."""
+    """The largest position of 2 to 8 parallel features, where nominal places may move to make it least.
 
-    reads: ClassVar[MeasureKind] = "pattern"
+    They may `shift`, or `shift_and_turn`; with a `modifier` each position is less its bonus.
+    """
+
+    reads: ClassVar[Reading] = Reading(
+        "pattern", "tol3d.assembly.placing.patterns:pattern", f"{TORSORS}:pattern", worse="high"
+    )
 
     kind: Literal["inspected_pattern"]
     features: Annotated[tuple[FeatureName, ...], listed("features", 2, MOST_HOLES)] = Field(

@@ -7,14 +7,14 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 
 
 class InspectedSizeSpec(FeatureMeasureSpec):
-    """A diameter or width as it is in the trial."""
+    """The diameter, or the width of a slot."""
 
-    reads: ClassVar[MeasureKind] = "size"
+    reads: ClassVar[Reading] = Reading("size", f"{PLACING}:size", f"{TORSORS}:size", is_linear=True, of_part=True)
 
     kind: Literal["inspected_size"]
     of: FeatureName = Field(description="the feature")

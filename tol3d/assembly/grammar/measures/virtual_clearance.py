@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.model.measures import MeasureKind
+from tol3d.assembly.model.measures import TORSORS, Reading
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
@@ -17,9 +17,13 @@ MOST_HOLES = 8
 
 
 class VirtualClearanceSpec(FeatureMeasureSpec):
-    """Diameter of the largest straight bolt that passes all holes, in the direction of the first."""
+    """Diameter of the largest straight bolt that passes all of 2 to 8 `holes`."""
 
-    reads: ClassVar[MeasureKind] = "virtual_clearance"
+    reads: ClassVar[Reading] = Reading(
+        "virtual_clearance",
+        "tol3d.assembly.placing.virtual_clearance:virtual_clearance",
+        f"{TORSORS}:virtual_clearance",
+    )
 
     kind: Literal["virtual_clearance"]
     holes: Annotated[tuple[FeatureName, ...], listed("holes", 2, MOST_HOLES)] = Field(

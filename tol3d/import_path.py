@@ -1,0 +1,43 @@
+"""Import paths `package.module:name`, by which what is light names code that is loaded when it is needed."""
+
+import re
+import sys
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, Final
+
+DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILINE)
+
+
+def named(path: str) -> Any:
+    """What an import path names.
+
+    >>> named("math:hypot")(3.0, 4.0)
+    5.0
+    """
+    module, _, name = path.partition(":")
+    return getattr(import_module(module), name)
+
+
+def is_named(path: str) -> bool:
+    """Whether an import path names something; where the module's source tells, it is not loaded.
+
+    >>> is_named("tol3d.errors:InputError"), is_named("tol3d.errors:Forgotten"), is_named("forgotten:it"), is_named("")
+    (True, False, False, False)
+    """
+    module, _, name = path.partition(":")
+    if not module or not name:
+        return False
+    try:
+        return (module not in sys.modules and name in _defined(module)) or hasattr(import_module(module), name)
+    except ModuleNotFoundError:
+        return False
+
+
+@cache
+def _defined(module: str) -> frozenset[str]:
+    """Names that the source of a module defines at its top; without it, none."""
+    spec = find_spec(module)
+    source = getattr(spec and spec.loader, "get_source", lambda _: None)(module)
+    return frozenset(name for names in DEFINED.findall(source or "") for name in names if name)
