@@ -24,7 +24,9 @@ from tol3d.assembly.grammar.tolerances import PositionSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.measures import Measured, Reading
 from tol3d.assembly.placing import measuring as placing
+from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors import measures as torsors
+from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.assembly.zones import Confined, Zone, catalogue
 from tol3d.assembly.zones.domain import Ratio, UnitLaw
 from tol3d.errors import InputError
@@ -45,11 +47,11 @@ class RadiusSpec(InspectedSizeSpec):
     kind: Literal["radius"]  # type: ignore[assignment]
 
 
-def half_placed(measured: Measured, world: placing.World) -> Array:
+def half_placed(measured: Measured, world: PlacedWorld) -> Array:
     return placing.size(measured, world) / 2
 
 
-def half_displaced(measured: Measured, world: torsors.World) -> Array:
+def half_displaced(measured: Measured, world: TorsorWorld) -> Array:
     return torsors.size(measured, world) / 2
 
 
