@@ -33,6 +33,7 @@ SHIPPED: Final = (
     "tol3d.gearing.mechanism:GEARING",
     "tol3d.assembly.mechanism:ASSEMBLY",
     "tol3d.machine.mechanism:MACHINE",
+    "tol3d.linkage.mechanism:LINKAGE",
     "tol3d.planetary.mechanism:PLANETARY",
     "tol3d.cycloid.mechanism:CYCLOID",
 )

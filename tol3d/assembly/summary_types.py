@@ -9,7 +9,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, NotNegative
 
 PRESENTER: Final = "tol3d.assembly.presenting"
-POSE_ERRORS: Final = ("position_error", "orientation_error")
+POSE_ERRORS: Final = ("position_error", "orientation_error", "direction_error")
 
 
 class AssemblyMeasureSummary(MeasureSummary):
@@ -27,6 +27,7 @@ class AssemblyMeasureSummary(MeasureSummary):
     )
 
     pose: Maybe[Label] = Field(default=LEFT_OUT, description="in which it is read, where the scene's moves have poses")
+    path: Maybe[Label] = Field(default=LEFT_OUT, description="over which it is read, where it is")
     component: Maybe[Label] = Field(default=LEFT_OUT, description="of an error of place or turn: x, y, z or size")
 
     @property
@@ -50,7 +51,7 @@ class AssemblyMeasureSummary(MeasureSummary):
         kind = self.kind.replace("_", " ")
         if self.kind == "clearance":
             return f"clearance from {self.of[0]} to {self.of[1]}, within {self.chord_error_um:.3g} um by their meshes"
-        at = f", at {self.pose}" if self.pose else ""
+        at = f", at {self.pose}" if self.pose else f", {self.take} over {self.path}" if self.path else ""
         if self.kind in POSE_ERRORS:
             along = "" if self.component == "size" else f"{self.component} of the "
             return f"{along}{kind} of {self.of[0]}, as {self.of[1]} sees it{at}"
@@ -63,7 +64,7 @@ class AssemblyMeasureSummary(MeasureSummary):
     @property
     def identity(self) -> tuple[str | None, ...]:
         """See MeasureSummary."""
-        return (self.kind, *self.of, *(own for own in (self.pose, self.component) if own))
+        return (self.kind, *self.of, *(own for own in (self.pose, self.path, self.component) if own))
 
 
 SUMMARY_KINDS: Final = SummaryKinds(common=(AssemblyMeasureSummary,))

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
-from tol3d.assembly.from_scene import Meant, understood
+from tol3d.assembly.from_scene import Meant, Understood, understood
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.measures import PoseErrorSpec
+from tol3d.assembly.grammar.measures import DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely
@@ -272,18 +272,19 @@ class ClearanceSystem(WitnessedSystem):
         return self.assembly.measures[measure.name].chord_error * measure.per_internal
 
 
-def assembly_system(scene: Scene, pose: str = "") -> AssemblySystem:
+def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = None) -> AssemblySystem:
     """What a scene of an assembly means.
 
     Args:
         scene: the scene.
         pose: in which moves that have poses lay their parts, with the measures that are read there; "" for the first.
+        meaning: its drawings and measures, where they are known.
 
     Raises:
         SceneError: what it says does not fit together, such as moves that leave a part free.
     """
     pose = pose or next(iter(pose_names(scene)), "")
-    placed = _asked(scene, lambda: _settled(scene, pose))
+    placed = _asked(scene, lambda: _settled(scene, pose, meaning or understood(scene)))
     for miss in misses(placed.assembly):
         raise scene.refuse(("moves", miss.move, "relations", miss.number), miss.sentence)
     kind = _kind_of(placed.assembly)
@@ -298,7 +299,7 @@ def assembly_system(scene: Scene, pose: str = "") -> AssemblySystem:
 
 
 def _components(scene: Scene) -> Mapping[str, str]:
-    return {name: spec.component for name, spec in scene.measures.items() if isinstance(spec, PoseErrorSpec)}
+    return {name: spec.component for name, spec in scene.measures.items() if isinstance(spec, PoseErrorSpec | DirectionErrorSpec)}
 
 
 def _kind_of(assembly: Assembly) -> type[AssemblySystem]:
@@ -318,12 +319,12 @@ def _faced(placed: Meant) -> Assembly:
     return with_facing(placed.assembly, motions)
 
 
-def _settled(scene: Scene, pose: str) -> Meant:
+def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
     """What a scene means, parts at the poses in which its moves lay them without deviations.
 
     A part that cannot be laid so, such as by pins beside their holes, stays where it is drawn.
     """
-    meaning, poses = understood(scene), poses_of(scene)
+    poses = poses_of(scene)
     drawn = meaning.at(poses, pose)
     found = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
     settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}

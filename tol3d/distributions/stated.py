@@ -11,6 +11,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, TypeAdap
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
+from tol3d.distributions.arcsine import ArcsineSpec
 from tol3d.distributions.base import DistributionSpec
 from tol3d.distributions.constant import ConstantSpec
 from tol3d.distributions.empirical import EmpiricalSpec
@@ -30,6 +31,7 @@ SHIPPED: Final[Laws] = (
     RayleighSpec,
     ConstantSpec,
     EmpiricalSpec,
+    ArcsineSpec,
 )
 
 _laws: ContextVar[Laws] = ContextVar("laws", default=SHIPPED)

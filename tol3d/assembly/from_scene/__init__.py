@@ -13,6 +13,6 @@ warming       parts that are warmer grow
 assembly      all of it together
 """
 
-from tol3d.assembly.from_scene.assembly import Meant, understood
+from tol3d.assembly.from_scene.assembly import Meant, Understood, understood
 
-__all__ = ["Meant", "understood"]
+__all__ = ["Meant", "Understood", "understood"]

@@ -13,7 +13,7 @@ from tol3d.assembly.from_scene.features import TouchedPoints, features_of
 from tol3d.assembly.from_scene.measures import add_projected, add_twins, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import warmed
-from tol3d.assembly.grammar.checks import pose_of
+from tol3d.assembly.grammar.checks import read_at
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
@@ -83,7 +83,7 @@ class Understood:
             Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
             for name in self.scene.of(SolidSpec)
         )
-        measured = {name: own for name, own in self.measured.items() if pose_of(self.scene, name) == pose}
+        measured = {name: own for name, own in self.measured.items() if pose in read_at(self.scene, name)}
         assembly = Assembly(parts, moves, measured, self.effects.width)
         shown = tuple(own for own in shown_measures(self.scene, self.measured) if own.name in measured)
         return Meant(assembly, tuple(self.effects.contributors), shown, named_by(self.scene))

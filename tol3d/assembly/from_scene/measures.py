@@ -16,11 +16,13 @@ from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
     DifferenceSpec,
+    DirectionErrorSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
     PoseErrorSpec,
 )
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.bonus import MaterialBonus
 from tol3d.scene import Scene
@@ -68,10 +70,10 @@ def _after(scene: Scene, spec: TimedSpec) -> int:
 def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Array]) -> None:
     """Add to parts features that lie where others do, whose errors they see, where parts lie at some poses (4, 4)."""
     for spec in scene.measures.values():
-        if isinstance(spec, PoseErrorSpec) and (name := spec.twin) not in features:
-            own = features[spec.of]
-            frame = np.linalg.inv(poses[spec.from_]) @ poses[own.part] @ own.frame
-            features[name] = Feature(name, spec.from_, Point(), frame, is_named=False)
+        if isinstance(spec, PoseErrorSpec | DirectionErrorSpec) and (name := spec.twin) not in features:
+            own, part = features[spec.of], spec.from_ or next(move.part for move in scene.of(FixSpec).values())
+            frame = np.linalg.inv(poses[part]) @ poses[own.part] @ own.frame
+            features[name] = Feature(name, part, Point(), frame, is_named=False)
 
 
 def add_projected(scene: Scene, features: dict[str, Feature]) -> None:

@@ -52,8 +52,7 @@ def moves_of(understood: "Understood", touched: TouchedPoints, pose: str) -> tup
     found: list[Move] = []
     for name, spec in scene.moves.items():
         if isinstance(spec, StatedMoveSpec):
-            at = pose if pose in spec.pose_names else next(iter(spec.pose_names), "")
-            found.append(spec.stated(name, understood, touched, effects.stated[name], at))
+            found.append(spec.stated(name, understood, touched, effects.stated[name], spec.pose_like(pose)))
         elif isinstance(spec, PlacingSpec | WeldSpec):
             found.append(_move(scene, name, spec, effects, touched))
     return tuple(found)

@@ -1,6 +1,6 @@
 """What must hold across the entries of a scene of an assembly."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tol3d.assembly.grammar.drawing import Drawing
@@ -146,12 +146,24 @@ def pose_names(scene: Scene) -> tuple[str, ...]:
     return tuple(dict.fromkeys(pose for move in moves for pose in move.pose_names))
 
 
+def paths_of(scene: Scene) -> Mapping[str, Sequence[str]]:
+    """The paths of a scene's moves: by name the poses on them."""
+    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
+    return {name: poses for move in moves for name, poses in move.path_names.items()}
+
+
 def pose_of(scene: Scene, name: str) -> str:
-    """The pose in which a measure is read, a difference as its first measure; "" where no move has poses."""
+    """The pose in which a measure is read, or a path; a difference as its first measure; "" where no move has poses."""
     spec = scene.measures[name]
     if isinstance(spec, DifferenceSpec):
         return pose_of(scene, spec.of)
-    return getattr(spec, "at", None) or next(iter(pose_names(scene)), "")
+    return getattr(spec, "over", None) or getattr(spec, "at", None) or next(iter(pose_names(scene)), "")
+
+
+def read_at(scene: Scene, name: str) -> tuple[str, ...]:
+    """The poses in which a measure is read: those of a path, or one."""
+    pose = pose_of(scene, name)
+    return tuple(paths_of(scene).get(pose, (pose,)))
 
 
 def differences_of_two_poses(scene: Scene) -> Iterator[Problem]:
@@ -165,14 +177,16 @@ def differences_of_two_poses(scene: Scene) -> Iterator[Problem]:
 
 def unknown_poses(scene: Scene) -> Iterator[Problem]:
     """Poses that no move has, named by measures."""
-    poses = pose_names(scene)
+    known = {"at": ("poses", pose_names(scene)), "over": ("paths", tuple(paths_of(scene)))}
     for name, measure in scene.measures.items():
-        if isinstance(measure, TimedSpec) and measure.at is not None and measure.at not in poses:
-            if not poses:
-                yield ("measures", name, "at"), f"expected none, for no move has poses, got {measure.at!r}"
-            else:
-                words = f"expected one of the poses {', '.join(poses)}, got {measure.at!r}"
-                yield ("measures", name, "at"), f"{words}{hint(measure.at, poses)}"
+        for field_name, (words, names) in known.items() if isinstance(measure, TimedSpec) else ():
+            own = getattr(measure, field_name)
+            if own is not None and own not in names:
+                path = ("measures", name, field_name)
+                if not names:
+                    yield path, f"expected none, for no move has {words}, got {own!r}"
+                else:
+                    yield path, f"expected one of the {words} {', '.join(names)}, got {own!r}{hint(own, names)}"
 
 
 def _read_too_early(scene: Scene, bodies: Bodies) -> Iterator[Problem]:

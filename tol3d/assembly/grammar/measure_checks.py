@@ -12,10 +12,12 @@ from tol3d.assembly.grammar.measures import (
     AssemblyMeasureSpec,
     ClearanceSpec,
     DifferenceSpec,
+    DirectionErrorSpec,
     InspectedFlatnessSpec,
     InspectedPatternSpec,
     VirtualClearanceSpec,
 )
+from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -49,6 +51,14 @@ def mixed_dimensions(scene: Scene) -> Iterator[Problem]:
             limit = getattr(spec, field)
             if limit is not None and limit.dimension != own:
                 yield ("measures", name, field), f"expected {expectation(own)}, got {str(limit)!r}"
+
+
+def seen_by_nothing(scene: Scene) -> Iterator[Problem]:
+    """Errors of directions in the world, where no part is fixed in it."""
+    if not scene.of(FixSpec):
+        for name, spec in scene.of(DirectionErrorSpec).items():
+            if spec.from_ is None:
+                yield ("measures", name, "from"), "expected the part that sees it, for no move is `fix`, got none"
 
 
 def missing_solids(scene: Scene) -> Iterator[Problem]:

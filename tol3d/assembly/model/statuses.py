@@ -21,6 +21,14 @@ WITH_CLEARANCES: Final = Statuses(
 )
 """The same, and parts that overlap, which no depth is known of: of assemblies with clearances of whole parts."""
 
+WITH_LOOPS: Final = Statuses(
+    (*WITH_CLEARANCES.texts, "does not close", "other branch"),
+    WITH_CLEARANCES.lacking,
+    {**WITH_CLEARANCES.words, "does not close": "do not close", "other branch": "close on another branch"},
+    {**WITH_CLEARANCES.states, "does not close": "not closed", "other branch": "on another branch"},
+)
+"""Further: a loop that does not close; one that closes only beyond a singular pose, on another branch than nominally."""
+
 OK: Final = 0
 NOT_UNIQUE: Final = 1
 NO_CONTACT: Final = 2
@@ -28,3 +36,5 @@ NO_BUILD: Final = 3
 SINGULAR: Final = 4
 NOT_HELD: Final = 5
 OVERLAP: Final = 6
+DOES_NOT_CLOSE: Final = 7
+OTHER_BRANCH: Final = 8

@@ -14,7 +14,7 @@ from tol3d.assembly.placing.datum_rooms import position_in_room
 from tol3d.assembly.placing.flatness import widths
 from tol3d.assembly.placing.gauged_positions import position_on_gauges
 from tol3d.assembly.placing.patterns import bonuses
-from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector
+from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
 from tol3d.import_path import named
@@ -22,6 +22,8 @@ from tol3d.import_path import named
 Array = NDArray[np.float64]
 
 TURN: Final = 2 * math.pi
+LEANS: Final = 1e-6
+"""Sine of an angle by which an axis leans nominally; less has no azimuth."""
 FLAT: Final = 1e-12
 """Sine of an angle that is nominally 0 or half a turn: half a turn is pi, not -pi."""
 
@@ -236,6 +238,38 @@ def turn(measured: Measured, world: World) -> Array:
     start, end = (world.placed(name).pose.turn for name in measured.features)
     vector = rotation_vector(product(end, np.swapaxes(start, 0, 1)))
     return _length(vector) if measured.direction is None else dot(vector, _direction(measured, world))
+
+
+def lean(measured: Measured, world: World) -> Array:
+    """How far the second feature's z leans from the first's [rad]; with a third one along or across the tilt from its z.
+
+    `direction` (2,) then chooses: along and across.
+    """
+    start, end = (world.placed(name).pose.turn[:, 2] for name in measured.features[:2])
+    sideways = end - dot(end, start) * start
+    size = _length(sideways)
+    angle = np.arctan2(size, dot(start, end))
+    if measured.direction is None:
+        return np.asarray(angle)
+    rest, about = world.placed(measured.features[2]).pose.turn, None
+    if tilts(world.assembly, measured.features):
+        about = unit(cross(rest[:, 2], start))
+    ahead = rest[:, 0] if about is None else cross(about, start)
+    beside = rest[:, 1] if about is None else about
+    share = angle / np.where(size > 0.0, size, 1.0)
+    chosen, other = measured.direction
+    return np.asarray(share * (chosen * dot(sideways, ahead) + other * dot(sideways, beside)))
+
+
+def tilts(assembly: Assembly, features: Sequence[str]) -> bool:
+    """Whether the first of three features leans from the third one nominally."""
+    start, rest = (_nominal_axis(assembly, features[k]) for k in (0, 2))
+    return bool(np.linalg.norm(np.cross(rest, start)) > LEANS)
+
+
+def _nominal_axis(assembly: Assembly, name: str) -> Array:
+    own = assembly.features[name]
+    return np.asarray((assembly.part[own.part].pose @ own.frame)[:3, 2])
 
 
 def slack(measured: Measured, world: World) -> Array:

@@ -56,7 +56,14 @@ def answers(
     assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
     """What measures read, as `values`; and columns of what decided in each trial (trials,), see `decided`."""
-    plan = planned(assembly, solids)
+    return planned_answers(planned(assembly, solids), deviations, names)
+
+
+def planned_answers(
+    plan: PlacingPlan, deviations: Array, names: Sequence[str]
+) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
+    """The same of an assembly as it is planned."""
+    assembly = plan.assembly
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
     words, on_the_way = dict[str, list[NDArray[np.str_]]](), {name: plan.of_measures[name] for name in names}

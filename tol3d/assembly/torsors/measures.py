@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 NEAR = 1.0
 """Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""
+LEANS = 1e-6
+"""Sine of an angle by which an axis leans nominally; less has no azimuth."""
 FLAT = 1e-12
 """Sine of an angle about a direction that is 0 or half a turn: half a turn is pi, not -pi."""
 SLANT = 1e-3
@@ -320,6 +322,21 @@ def turn(measured: Measured, world: World) -> Array:
     start, end = measured.features
     turned = (world.placed(end) - world.placed(start))[3:]  # nominally both frames are one
     return _length(np.zeros(3), turned, world) if measured.direction is None else _fixed_in(measured, world)[0] @ turned
+
+
+def lean(measured: Measured, world: World) -> Array:
+    """Of torsors at nominally equal frames, across their z; by the nominal tilt."""
+    start, end = measured.features[:2]
+    turned = (world.placed(end) - world.placed(start))[3:]
+    axis = world.axis(start)
+    leans = -cross_matrix(axis) @ turned
+    if measured.direction is None:
+        return _length(np.zeros(3), leans, world)
+    rest = world.frame(measured.features[2])
+    about = np.cross(rest[:3, 2], axis)
+    sine = float(np.linalg.norm(about))
+    ahead, beside = (rest[:3, 0], rest[:3, 1]) if sine < LEANS else (np.cross(about, axis) / sine, about / sine)
+    return (measured.direction[0] * ahead + measured.direction[1] * beside) @ leans
 
 
 def slack(measured: Measured, world: World) -> Array:

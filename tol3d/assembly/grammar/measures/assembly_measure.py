@@ -3,9 +3,9 @@
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
@@ -16,11 +16,12 @@ from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import Measured, OverPlay, Reading, Rocking
-from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry
+from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry, Take
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction
+from tol3d.strict import refused
 from tol3d.units import Dimension
 
 
@@ -33,8 +34,6 @@ class AssemblyMeasureSpec(MeasureEntry):
     words: ClassVar[str] = "a measure of an assembly"
     reads: ClassVar[Reading]
     dimension: ClassVar[Dimension] = "length"
-    gives_curve: ClassVar[bool] = False
-    several_positions: ClassVar[bool] = False
 
     lower_limit: LengthLimit | AngleLimit | None = Field(default=None, description="less than this is out of limits")
     upper_limit: LengthLimit | AngleLimit | None = Field(default=None, description="more than this is out of limits")
@@ -42,6 +41,16 @@ class AssemblyMeasureSpec(MeasureEntry):
         default=None,
         description="which value it has where a part may rock on its contacts; without one it then has no value",
     )
+
+    @property
+    def gives_curve(self) -> bool:
+        """See MeasureEntry."""
+        return False
+
+    @property
+    def several_positions(self) -> bool:
+        """See MeasureEntry."""
+        return False
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
@@ -72,11 +81,33 @@ class TimedSpec(AssemblyMeasureSpec):
     at: Name | None = Field(
         default=None, description="the pose in which it is read, of a move that has poses; its first one if not given"
     )
+    over: Name | None = Field(default=None, description="instead, the path over which it is read")
+    take: Take = Field(default="value", description="of a path: min, max, range or curve")
+
+    @property
+    def gives_curve(self) -> bool:
+        """See MeasureEntry."""
+        return self.take == "curve"
+
+    @property
+    def several_positions(self) -> bool:
+        """See MeasureEntry."""
+        return self.over is not None
 
     @property
     @abstractmethod
     def parts_read(self) -> Sequence[str]:
         """The parts that it is of, which moves have placed by then."""
+
+    @model_validator(mode="after")
+    def _refuse_take_without_over(self) -> Self:
+        if self.over is not None and self.at is not None:
+            raise refused("over", "`at` or `over`, one of both", "both")
+        if self.over is not None and self.take not in ("min", "max", "range", "curve"):
+            raise refused("take", f"min, max, range or curve beside over: {self.over}", self.take)
+        if self.over is None and self.take != "value":
+            raise refused("take", "`over` beside it, a path", f"take: {self.take} alone")
+        return self
 
     @property
     def timing(self) -> tuple[Reference, ...]:

@@ -1,10 +1,10 @@
 """How far a feature lies from where it is nominally, and how it is turned against that, as another part sees it."""
 
 from collections.abc import Iterator, Sequence
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
@@ -13,6 +13,7 @@ from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import PLACING, TORSORS, Measured, Reading
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
+from tol3d.strict import refused
 from tol3d.units import Dimension
 
 Component = Literal["x", "y", "z", "size"]
@@ -85,3 +86,71 @@ class OrientationErrorSpec(PoseErrorSpec):
     reads_along: ClassVar[Reading] = reads
 
     kind: Literal["orientation_error"]
+
+
+class DirectionErrorSpec(TimedSpec):
+    """The angle between the axis of the feature and its nominal direction, as the part `from` sees it.
+
+    Its `size`; or, of an axis that tilts `against` another one, the component `along` the tilt, positive where it tilts
+    further, or `across` it, positive counter-clockwise. Where it does not tilt nominally these are along x and y of the
+    axis `against`.
+    """
+
+    words: ClassVar[str] = "an error of a direction"
+    dimension: ClassVar[Dimension] = "angle"
+    reads: ClassVar[Reading] = Reading("lean", f"{PLACING}:lean", f"{TORSORS}:lean", worse="high")
+    reads_along: ClassVar[Reading] = Reading("lean", f"{PLACING}:lean", f"{TORSORS}:lean", is_linear=True)
+
+    kind: Literal["direction_error"]
+    of: FeatureName = Field(description="the feature whose z is read, such as gear 2.axis")
+    from_: Name | None = Field(
+        default=None, alias="from", description="the part that sees it; the first one that is fixed if not given"
+    )
+    against: FeatureName | None = Field(default=None, description="the axis from which it tilts, such as frame.axis")
+    component: Literal["size", "along", "across"] = Field(
+        default="size", description="along or across the tilt, or the size of both"
+    )
+
+    @property
+    def of_what(self) -> Sequence[str]:
+        """The feature, and what sees it."""
+        return (self.of, self.from_ or "the world")
+
+    @property
+    def twin(self) -> FeatureName:
+        """The feature that lies nominally where its own one does, on the part that sees it."""
+        return f"{self.of} nominal in {self.from_ or 'the world'}"
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """From its twin to its own feature, by the axis from which it tilts."""
+        if self.component == "size" or self.against is None:
+            return Measured(self.reads, (self.twin, self.of))
+        across = np.array([0.0, 1.0]) if self.component == "across" else np.array([1.0, 0.0])
+        return Measured(self.reads_along, (self.twin, self.of, self.against), across)
+
+    @property
+    def parts_read(self) -> Sequence[str]:
+        """See TimedSpec."""
+        others = [self.from_] if self.from_ else []
+        return (*others, part_of(self.of), *([part_of(self.against)] if self.against else []))
+
+    def references(self) -> tuple[Reference, ...]:
+        """The parts, and the move after which it is read."""
+        found = [Reference(("of",), part_of(self.of), (SolidSpec,))]
+        if self.from_ is not None:
+            found.append(Reference(("from",), self.from_, (SolidSpec,)))
+        if self.against is not None:
+            found.append(Reference(("against",), part_of(self.against), (SolidSpec,)))
+        return (*found, *self.timing)
+
+    def uses(self) -> Iterator[Use]:
+        """The feature, and the axis from which it tilts."""
+        yield Use(("of",), self.of)
+        if self.against is not None:
+            yield Use(("against",), self.against)
+
+    @model_validator(mode="after")
+    def _refuse_no_axis(self) -> Self:
+        if self.component != "size" and self.against is None:
+            raise refused("against", f"the axis from which it tilts, beside component: {self.component}", "none")
+        return self

@@ -35,6 +35,16 @@ class StatedMoveSpec(MoveSpec):
         """Poses that measures may be read at; the first one is read where none is named."""
         return ()
 
+    @property
+    def path_names(self) -> Mapping[str, Sequence[str]]:
+        """Paths that measures may be read over: by name the poses on them, which `stated` gets like others."""
+        return {}
+
+    def pose_like(self, pose: str) -> str:
+        """A pose of the scene if it is one of this move's, else its first one; "" where it has none."""
+        own = (*self.pose_names, *(each for poses in self.path_names.values() for each in poses))
+        return pose if pose in own else next(iter(own), "")
+
     def contributors(self, name: str, scene: "Scene") -> "Sequence[PlainContributor]":
         """What it draws besides the tolerances of the scene, such as floats; a name that begins with . is hidden."""
         return ()
@@ -50,7 +60,7 @@ class StatedMoveSpec(MoveSpec):
             understood: the scene's drawings; datum frames that the move needs are named here.
             touched: features of all parts, and where parts are nominally.
             drawn: the columns of its contributors.
-            pose: one of its poses; "" where it has none.
+            pose: one of its poses, on a path too; "" where it has none.
 
         Raises:
             SceneError: nothing that can be placed, with its place.

@@ -1,0 +1,232 @@
+"""An assembly that is read in several poses, or over paths: a system for each, of the same deviations."""
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene import understood
+from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
+from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.model.statuses import OK, WITH_LOOPS
+from tol3d.assembly.system import AssemblySystem, assembly_system
+from tol3d.scene import Scene
+from tol3d.system.closed_form import ClosedForm
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
+from tol3d.system.plain import PlainMeasure
+from tol3d.system.positions import Positions
+from tol3d.system.road import Answers, Codes, Road, RoadKind
+from tol3d.system.statuses import Statuses
+from tol3d.system.system import Columns, KeyPath
+from tol3d.system.trials import Trials
+
+Array = NDArray[np.float64]
+
+LOOKED_AT: Final = 9
+"""Poses of a path at which its nominal values are compared: the ends, and between them."""
+
+
+@dataclass(frozen=True)
+class PosedSystem(AssemblySystem):
+    """Implements System.
+
+    The assembly is that of the first pose.
+
+    Args:
+        poses: by name, the assembly there with the measures that are read in it; those of paths among them.
+        at: of each measure, the poses in which it is read, in order.
+    """
+
+    poses: Mapping[str, AssemblySystem] = field(default_factory=dict)
+    at: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def statuses(self) -> Statuses:  # type: ignore[override]
+        """See System."""
+        return WITH_LOOPS
+
+    @property
+    def _kinds(self) -> Mapping[str, Mapping[str, RoadKind]]:
+        return {pose: own.roads for pose, own in self.poses.items()}
+
+    @property
+    def roads(self) -> Mapping[str, RoadKind]:  # type: ignore[override]
+        """See System: those of any pose, one process each where solids are read."""
+        found: dict[str, RoadKind] = {}
+        for kinds in self._kinds.values():
+            for name, kind in kinds.items():
+                if name not in found or not kind.threads:
+                    found[name] = kind
+        return found
+
+    def _alone(self, measure: Measure) -> AssemblySystem:
+        """The assembly in the first pose in which a measure is read."""
+        return self.poses[self.at[measure.name][0]]
+
+    def _named(self, measure: Measure, pose: str) -> Measure:
+        return next(own for own in self.poses[pose].measures if own.name == measure.name)
+
+    # its roads --------------------------------------------------------------------------------------
+
+    def materials(self, road: str) -> Any:
+        """See System: of each pose, where there are any."""
+        found = {pose: own.materials(road) for pose, own in self.poses.items() if road in own.roads}
+        return found if any(own is not None for own in found.values()) else None
+
+    def road(self, name: str, materials: Any) -> Road:
+        """See System."""
+        given = materials or {}
+        own = {pose: each.road(name, given.get(pose)) for pose, each in self.poses.items() if name in each.roads}
+        return PosedRoad(self.at, own)
+
+    def cost(self, measures: Sequence[Measure]) -> int:
+        """See System: as a contact for each pose."""
+        return sum(len(self.at[measure.name]) for measure in measures)
+
+    def problems(self) -> Iterator[tuple[KeyPath, str]]:
+        """See System: of paths in some of their poses."""
+        looked = {pose for names in self.at.values() for pose in _some(names)}
+        seen = set()
+        for pose in self.poses:
+            for problem in self.poses[pose].problems() if pose in looked else ():
+                if problem[0] not in seen:
+                    seen.add(problem[0])
+                    yield problem
+
+    def describe(self, measure: Measure) -> Mapping[str, Any]:
+        """See AssemblySystem; and where it is read."""
+        poses, found = self.at[measure.name], self._alone(measure).describe(measure)
+        if measure.take == "value":
+            return {**found, "pose": poses[0]} if poses[0] else found
+        return {**found, "path": poses[0].partition("|")[0], "take": measure.take}
+
+    def chord_bound(self, measure: Measure, chord_error: float) -> float:
+        """See System."""
+        return max(self.poses[pose].chord_bound(measure, chord_error) for pose in self.at[measure.name])
+
+    # what acts on a measure -------------------------------------------------------------------------
+
+    def acting(self, measure: Measure) -> Sequence[Contributor]:
+        """See System: in any of its poses."""
+        if measure.take == "value":
+            return self._alone(measure).acting(measure)
+        if measure.name not in self._known_acting:
+            names = {own.name for pose in self.at[measure.name] for own in self.poses[pose].acting(measure)}
+            self._known_acting[measure.name] = [own for own in self.contributors if own.name in names]
+        return self._known_acting[measure.name]
+
+    def regressor_key(self, measure: Measure) -> Hashable:
+        """See System."""
+        if measure.take != "value":
+            return measure.name
+        return self.at[measure.name][0], self._alone(measure).regressor_key(measure)
+
+    def regress(
+        self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+    ) -> None:
+        """See System: over a path as in the first of its poses in which a contributor acts."""
+        waiting = {own.name: own for own in contributors}
+        for pose in self.at[measure.name]:
+            if not waiting:
+                return
+            system = self.poses[pose]
+            its = [waiting.pop(own.name) for own in system.acting(measure) if own.name in waiting]
+            if its:
+                system.regress(self._named(measure, pose), its, columns, rows)
+
+    def closed_form(self, measure: Measure) -> ClosedForm | None:
+        """See System: none over a path."""
+        return self._alone(measure).closed_form(measure) if measure.take == "value" else None
+
+    def reference_form(self, measure: Measure) -> ClosedForm | None:
+        """See System: over a path in its last pose."""
+        return self.poses[self.at[measure.name][-1]].closed_form(measure)
+
+
+@dataclass(frozen=True)
+class PosedRoad:
+    """A road of an assembly in several poses; implements WitnessRoad where those of its poses do.
+
+    Args:
+        at: of each measure, the poses in which it is read.
+        roads: by pose.
+    """
+
+    at: Mapping[str, tuple[str, ...]]
+    roads: Mapping[str, Road]
+
+    @property
+    def chord_error(self) -> float:
+        """See Road."""
+        return max(own.chord_error for own in self.roads.values())
+
+    def reads(self, measure: Measure) -> bool:
+        """See WitnessRoad."""
+        own: Any = [self.roads.get(pose) for pose in self.at[measure.name]]
+        return all(each is not None and each.reads(measure) for each in own)
+
+    def bounds(self, measure: Measure) -> tuple[float, float]:
+        """See WitnessRoad."""
+        own: Any = [self.roads[pose].bounds(measure) for pose in self.at[measure.name]]  # type: ignore[attr-defined]
+        return max(each for each, _ in own), max(each for _, each in own)
+
+    def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
+        """See Road: a trial whose value is lacking in one pose of a path has none."""
+        values = {own.name: np.empty((len(trials), len(self.at[own.name]))) for own in measures}
+        status: dict[str, Codes] = {}
+        details: dict[str, NDArray[np.generic]] = {}
+        wanted: dict[str, list[tuple[Measure, int]]] = {}
+        for measure in measures:
+            for k, pose in enumerate(self.at[measure.name]):
+                wanted.setdefault(pose, []).append((measure, k))
+        several = {own.name for own in measures if len(self.at[own.name]) > 1}
+        for pose, its in wanted.items():
+            found = self.roads[pose].answers(trials, [measure for measure, _ in its])
+            for measure, k in its:
+                values[measure.name][:, k] = found.values[measure.name][:, 0]
+                if (codes := found.status.get(measure.name)) is not None:
+                    before = status.get(measure.name)
+                    status[measure.name] = codes if before is None else np.where(before == OK, codes, before)
+            details |= {name: own for name, own in found.details.items() if not several or "|" not in pose}
+        for name in several & status.keys():
+            values[name][status[name] != OK] = np.nan
+        return Answers(values, details=details, status=status)
+
+
+def _some(poses: Sequence[str]) -> Sequence[str]:
+    """Some of many poses, the ends among them."""
+    if len(poses) <= LOOKED_AT:
+        return poses
+    return [poses[k] for k in np.linspace(0, len(poses) - 1, LOOKED_AT).round().astype(int)]
+
+
+def system_of(scene: Scene) -> AssemblySystem:
+    """What a scene of an assembly means, in all poses in which it is read.
+
+    Raises:
+        SceneError: see `assembly_system`.
+    """
+    paths, names = paths_of(scene), pose_names(scene)
+    if not paths and not names:
+        return assembly_system(scene)
+    at = {name: read_at(scene, name) for name in scene.measures}
+    poses = dict.fromkeys((*names[:1], *(pose for own in at.values() for pose in own)))
+    meaning = understood(scene)
+    systems = {pose: assembly_system(scene, pose, meaning) for pose in poses}
+    first = next(iter(systems.values()))
+    known = {name: _measure(scene, name, systems[own[0]], len(own)) for name, own in at.items()}
+    of_first = {each.name: getattr(first, each.name) for each in fields(first)}
+    return PosedSystem(**{**of_first, "measures": tuple(known.values())}, poses=systems, at=at)
+
+
+def _measure(scene: Scene, name: str, system: AssemblySystem, count: int) -> PlainMeasure:
+    own = next(each for each in system.measures if each.name == name)
+    spec = scene.measures[name]
+    if not isinstance(spec, TimedSpec) or spec.over is None:
+        return own
+    positions = Positions("swing", 1, max(count - 1, 1), angles=tuple(float(k) for k in range(count)))
+    return replace(own, positions=positions, take=spec.take, adds_up=False, worse="high" if spec.take == "max" else own.worse)
+

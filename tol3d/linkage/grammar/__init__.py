@@ -1,0 +1,1 @@
+"""What scenes may say of linkages."""

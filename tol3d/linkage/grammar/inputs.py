@@ -1,0 +1,141 @@
+"""What moves a loop: inputs, how far off they are, and the poses that name them."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+
+from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.distributions import StatedDistribution
+from tol3d.scene.listed import listed
+from tol3d.scene.name import Name
+from tol3d.scene.vector import Vector, three
+from tol3d.strict import Strict, refused
+from tol3d.units import Of, Positive, Quantity, refuse_dimension
+
+Angle = Annotated[Quantity, Of("angle")]
+Amount = Annotated[Quantity, Of("length", "angle")]
+Coordinate = Literal["turn", "slide", "first", "second", "x", "y"]
+
+
+class InputDeviationSpec(Strict):
+    """By how much an input is off."""
+
+    words: ClassVar[str] = "a deviation of an input"
+
+    distribution: StatedDistribution = Field(
+        description="its law: as the input is measured, or an angle of the screw or gears that drive it, by `lead`"
+    )
+    per: Annotated[Quantity, Of("length", "angle"), Positive()] | None = Field(
+        default=None, description="of how far the input goes, such as 300 mm of a lead error; of none if not given"
+    )
+    description: str = Field(default="", description="the user's own words, shown in reports")
+
+    @model_validator(mode="after")
+    def _refuse_other_dimensions(self) -> Self:
+        expected: tuple[Any, ...] = ("length", "angle")
+        for field, quantity in self.distribution.quantities().items():
+            refuse_dimension(quantity, expected, f"distribution.{field}")
+            expected = (quantity.dimension,)
+        return self
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it is one, not a length."""
+        return any(own.dimension == "angle" for own in self.distribution.quantities().values())
+
+
+class InputSpec(Strict):
+    """A freedom of a joint that is given."""
+
+    words: ClassVar[str] = "an input"
+
+    of: Name = Field(description="the joint, such as guide 1")
+    coordinate: Coordinate | None = Field(
+        default=None,
+        description="of a joint with several freedoms: turn or slide, first or second axis, tilt x or y",
+    )
+    as_placed: Amount | None = Field(
+        default=None, description="what it is as parts are `placed`, such as the length of a leg; 0 if not given"
+    )
+    lead: Annotated[Quantity, Of("length")] | None = Field(
+        default=None, description="how far a slide goes a turn of what drives it, for deviations that are angles"
+    )
+    deviations: Mapping[Name, InputDeviationSpec] = Field(
+        default_factory=dict, description="by how much it is off, by name"
+    )
+
+
+class OutputSpec(Strict):
+    """What poses may name instead of inputs: the direction of an axis, or the place and turn of a feature."""
+
+    words: ClassVar[str] = "an output"
+
+    tilt: FeatureName | None = Field(default=None, description="whose z tilts, such as ring.axis")
+    place: FeatureName | None = Field(default=None, description="or what is placed, such as platform.centre")
+    from_: FeatureName = Field(alias="from", description="of a placed part: z is no tilt, azimuths count from x")
+
+    @model_validator(mode="after")
+    def _refuse_both(self) -> Self:
+        if (self.tilt is None) == (self.place is None):
+            raise refused("", "`tilt` or `place`, one of both", "both" if self.tilt else "none")
+        return self
+
+    @property
+    def of(self) -> FeatureName:
+        """The feature."""
+        return self.tilt or self.place or ""
+
+
+class TiltPoseSpec(Strict):
+    """By the direction of the output."""
+
+    tilt: Angle
+    azimuth: Angle
+
+
+class PlacePoseSpec(Strict):
+    """By the place of the output, seen from where it is read."""
+
+    at: Vector
+    turned: Annotated[tuple[Angle, Angle, Angle], three("three angles: a rotation vector")] | None = Field(
+        default=None, description="a rotation vector, from the frame from which it is read; none turned if not given"
+    )
+
+
+class PathSpec(Strict):
+    """Several poses, one after the other."""
+
+    path: Annotated[tuple[Name, ...], listed("poses", 2)] = Field(description="poses that it goes through, in order")
+    steps: int = Field(ge=1, le=20_000, description="in which it does, alike between all of them")
+
+    @model_validator(mode="after")
+    def _refuse_few(self) -> Self:
+        if self.steps < len(self.path) - 1:
+            raise refused("steps", f"{len(self.path) - 1} or more, one between two poses each", self.steps)
+        return self
+
+
+def _form(value: Any) -> str:
+    keys = set(value) if isinstance(value, Mapping) else set(getattr(type(value), "model_fields", ()))
+    if "path" in keys:
+        return "path"
+    if keys & {"tilt", "azimuth"}:
+        return "tilt"
+    return "place" if keys & {"at", "turned"} else "inputs"
+
+
+def _a_mapping(value: Any) -> Any:
+    if isinstance(value, Mapping | Strict):
+        return value
+    raise refused("", "inputs such as {travel 1: 10 mm}, an output, or {path: [..], steps: 40}", value)
+
+
+PoseSpec = Annotated[
+    Annotated[PathSpec, Tag("path")]
+    | Annotated[TiltPoseSpec, Tag("tilt")]
+    | Annotated[PlacePoseSpec, Tag("place")]
+    | Annotated[Mapping[Name, Amount], Tag("inputs")],
+    Discriminator(_form),
+    BeforeValidator(_a_mapping),
+]

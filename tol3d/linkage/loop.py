@@ -1,0 +1,171 @@
+"""Closed loops among the parts of an assembly, on both roads; see StatedMove."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.model import StatedMove
+from tol3d.assembly.model.statuses import NO_BUILD, OK
+from tol3d.assembly.placing.poses import Codes, Pose
+from tol3d.assembly.placing.world import World as PlacedWorld
+from tol3d.assembly.torsors.world import World as TorsorWorld
+from tol3d.linkage.closing import loops_closed
+from tol3d.linkage.first_order import Displaced
+from tol3d.linkage.frames import joint_frames, stacked
+from tol3d.linkage.kinematics import Position
+from tol3d.linkage.play import JointPlay
+from tol3d.linkage.structure import ROOT, Structure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class InputDeviation:
+    """One deviation of an input.
+
+    Args:
+        column: of the deviations.
+        share: by how much of it the input is off, in the pose in which the loop is read.
+    """
+
+    column: int
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedLoop(StatedMove):
+    """A loop in one of its poses.
+
+    Args:
+        structure: the loop.
+        position: where it stands without deviations.
+        plays: of joints, by their names.
+        errors: of inputs, by their names.
+    """
+
+    structure: Structure
+    position: Position
+    plays: Mapping[str, JointPlay] = field(default_factory=dict)
+    errors: Mapping[str, Sequence[InputDeviation]] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """See StatedMove."""
+        return self.structure.name
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """See StatedMove."""
+        return self.structure.bodies
+
+    @property
+    def carriers(self) -> tuple[str, ...]:
+        """See StatedMove."""
+        before = ((own.joint.of if own.reverse else own.joint.on) for own in self.structure.tree)
+        return tuple(feature.partition(".")[0] for feature in before)
+
+    @cached_property
+    def _pairs(self) -> tuple[tuple[str, str], ...]:
+        found = []
+        for own in self.structure.steps:
+            joint = own.joint
+            found.append((joint.on, joint.of) if own.reverse or own.body == ROOT else (joint.of, joint.on))
+            if "." in joint.carrier:
+                found.append((joint.of, joint.carrier))
+        return tuple(found)
+
+    @property
+    def pairs(self) -> Sequence[tuple[str, str]]:
+        """See StatedMove."""
+        return self._pairs
+
+    @property
+    def words(self) -> str:
+        """See StatedMove."""
+        return ", ".join(own.joint.name for own in self.structure.steps)
+
+    def placing(self, nominal: PlacedWorld) -> "Closing":
+        """See StatedMove."""
+        return Closing(self)
+
+    def displaced(self, world: TorsorWorld) -> TorsorWorld:
+        """See StatedMove."""
+        plays = {name: play.torsor(world.columns) for name, play in self.plays.items()}
+        inputs = {}
+        for name in self.structure.inputs:
+            row = world.columns.zeros(1)
+            for own in self.errors.get(name, ()):
+                row[0, own.column] += own.share
+            inputs[name] = row
+        found = Displaced(self.structure, plays, inputs).torsors(world)
+        for part, torsor in zip(self.structure.bodies, found, strict=True):
+            world = world.with_part_at(part, torsor)
+        return world
+
+
+@dataclass(frozen=True, eq=False)
+class Closing:
+    """A loop as it is closed in trials; see Placer."""
+
+    move: ClosedLoop
+
+    def placed(self, world: PlacedWorld) -> tuple[PlacedWorld, Codes]:
+        """See Placer; where it is not closed, its bodies lie as they do without deviations."""
+        own, at = self.move.structure, self.move.position
+        plays, fits = dict[str, Pose](), np.ones(1, dtype=bool)
+        for name, play in self.move.plays.items():
+            plays[name], fit = play.offset(world.columns)
+            fits = fits & fit
+
+        def frame(feature: str) -> Pose:
+            part = feature.partition(".")[0]
+            return (world.on_body(feature, part) if part in own.body_of else world.placed(feature)).pose
+
+        base, child = (stacked(poses) for poses in joint_frames(own, frame, plays))
+        given = self._given(world.columns)
+        trials = max(len(base), len(child), len(given))
+        free = own.free(inputs=False)
+        scale = own.scale(free)
+        poses, coordinates = np.empty((trials, len(own.bodies), 3, 4)), np.empty((trials, own.width))
+        turned, codes = np.empty((trials, own.slots, 3, 3)), np.empty(trials, dtype=np.int8)
+        found, matrix = np.empty((trials, 3)), np.empty((len(scale), len(scale)))
+        loops_closed(
+            own.tree_array,
+            own.shut_array(output=False),
+            own.numbers,
+            free,
+            at.held,
+            at.coordinates,
+            at.turns,
+            base,
+            child,
+            at.base,
+            at.child,
+            given,
+            scale,
+            np.array([own.length, at.sign]),
+            poses,
+            coordinates,
+            turned,
+            codes,
+            found,
+            matrix,
+        )
+        codes = np.where(fits, codes, np.int8(NO_BUILD)).astype(np.int8)
+        for b, part in enumerate(own.bodies):
+            turn = np.ascontiguousarray(np.moveaxis(poses[:, b, :, :3], 0, -1))
+            world = world.with_part_at(part, Pose(turn, np.ascontiguousarray(poses[:, b, :, 3].T)))
+        return world, codes if (codes != OK).any() else codes[:1]
+
+    def _given(self, columns: Array) -> Array:
+        """Coordinates of inputs with their errors (n or 1, coordinates)."""
+        own, nominal = self.move.structure, self.move.position.coordinates
+        errors = {name: sum(e.share * columns[e.column] for e in each) for name, each in self.move.errors.items() if each}
+        found = np.repeat(nominal[None], columns.shape[1] if errors else 1, axis=0)
+        for name, error in errors.items():
+            place, sense = own.given[name]
+            found[:, place] += sense * error
+        return found
