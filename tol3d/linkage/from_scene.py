@@ -26,7 +26,7 @@ from tol3d.linkage.grammar.joints import (
     TowardFloatSpec,
 )
 from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError, rotation
-from tol3d.linkage.loop import ClosedLoop, InputDeviation
+from tol3d.linkage.loop import ClosedLoop, InputDeviation, LoopInput
 from tol3d.linkage.play import InBall, JointPlay
 from tol3d.linkage.structure import FREEDOMS, KINDS, Joint, Output, Structure, structured
 from tol3d.scene import Scene
@@ -124,7 +124,12 @@ def loop_of(
         known.kinematics[key] = kinematics_of(spec, name, understood, placed, plays)
     kinematics = known.kinematics[key]
     position = _position(spec, name, understood.scene, kinematics, pose, known.positions, key)
-    return ClosedLoop(kinematics.structure, position, plays, _deviations(spec, kinematics, position, drawn))
+    stations = {
+        each: _position(spec, name, understood.scene, kinematics, each, known.positions, key)
+        for each in spec.pose_names
+    }
+    errors = _deviations(spec, kinematics, position, drawn)
+    return ClosedLoop(kinematics, position, inputs_of(spec), stations, plays, errors)
 
 
 def _play(joint: str, room: ClearanceSpec | PlaySpec | None, drawn: Mapping[str, slice]) -> JointPlay | None:
@@ -270,6 +275,7 @@ def _position(
         raise scene.refuse(
             ("moves", name, "poses", path), f"{words}{got}, then it is singular or reaches no further"
         ) from None
+    _refuse_out_of_range(spec, name, scene, kinematics, pose, found)
     known[*key, pose] = found
     return found
 
@@ -343,13 +349,35 @@ def _between(
     return kinematics.at_inputs(between, start)
 
 
+def inputs_of(spec: "CloseLoopSpec") -> Mapping[str, LoopInput]:
+    """What the inputs of a loop are."""
+    return {
+        name: LoopInput(
+            own.of,
+            spec.coordinate_of(name),
+            as_placed(spec, name),
+            None if own.range is None else (own.range[0].internal, own.range[1].internal),
+        )
+        for name, own in spec.inputs.items()
+    }
+
+
+def _refuse_out_of_range(
+    spec: "CloseLoopSpec", name: str, scene: Scene, kinematics: Kinematics, pose: str, at: Position
+) -> None:
+    for each, own in inputs_of(spec).items():
+        value = own.as_placed + kinematics.inputs_at(at)[each]
+        if own.range is not None and not own.range[0] - TINY <= value <= own.range[1] + TINY:
+            low, high = (own.told(limit - own.as_placed) for limit in own.range)
+            words = f"expected {each!r} from {low} to {high}, got {own.told(value - own.as_placed)}"
+            at_position = f", at position {pose.partition(STEP)[2]} of the path" if STEP in pose else ""
+            raise scene.refuse(("moves", name, "poses", pose.partition(STEP)[0]), words + at_position)
+
+
 def _told(spec: "CloseLoopSpec", kinematics: Kinematics, at: Position) -> Mapping[str, str]:
     """Inputs and the output where a loop stands, in words."""
-    found = {}
-    for name, value in kinematics.inputs_at(at).items():
-        whole = value + as_placed(spec, name)
-        angle = spec.dimension_of(name) == "angle"
-        found[name] = f"{np.degrees(whole):.6g} deg" if angle else f"{whole:.6g} mm"
+    values = kinematics.inputs_at(at)
+    found = {name: own.told(values[name]) for name, own in inputs_of(spec).items()}
     if spec.output is not None and spec.output.tilt is not None:
         x, y = kinematics.tilt_at(at)
         found["tilt"] = f"{np.degrees(np.hypot(x, y)):.6g} deg"

@@ -15,7 +15,7 @@ from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.first_order import Displaced
 from tol3d.linkage.frames import joint_frames, stacked
-from tol3d.linkage.kinematics import Position
+from tol3d.linkage.kinematics import Kinematics, Position
 from tol3d.linkage.play import JointPlay
 from tol3d.linkage.structure import ROOT, Structure
 
@@ -35,21 +35,62 @@ class InputDeviation:
     share: float
 
 
+@dataclass(frozen=True)
+class LoopInput:
+    """A freedom that is given.
+
+    Args:
+        joint: whose.
+        coordinate: which of its freedoms: "slide", else an angle.
+        as_placed: its value as parts are placed [mm or rad].
+        range: from where to where it may go [mm or rad]; None where nothing is said.
+    """
+
+    joint: str
+    coordinate: str
+    as_placed: float
+    range: tuple[float, float] | None
+
+    @property
+    def is_slide(self) -> bool:
+        """Whether it is a length."""
+        return self.coordinate == "slide"
+
+    def told(self, value: float) -> str:
+        """How far it has gone from where parts are placed [mm or rad], as the scene counts."""
+        whole = self.as_placed + value
+        return f"{whole:.6g} mm" if self.is_slide else f"{np.degrees(whole):.6g} deg"
+
+
 @dataclass(frozen=True, eq=False)
 class ClosedLoop(StatedMove):
     """A loop in one of its poses.
 
     Args:
-        structure: the loop.
+        kinematics: of the loop.
         position: where it stands without deviations.
+        inputs: what each of them is, by name.
+        stations: where it stands in the poses that the scene names.
         plays: of joints, by their names.
         errors: of inputs, by their names.
     """
 
-    structure: Structure
+    kinematics: Kinematics
     position: Position
+    inputs: Mapping[str, LoopInput]
+    stations: Mapping[str, Position]
     plays: Mapping[str, JointPlay] = field(default_factory=dict)
     errors: Mapping[str, Sequence[InputDeviation]] = field(default_factory=dict)
+
+    @property
+    def structure(self) -> Structure:
+        """The loop."""
+        return self.kinematics.structure
+
+    @property
+    def tables(self) -> str:
+        """See StatedMove."""
+        return "tol3d.linkage.presenting.tables:loop_blocks"
 
     @property
     def name(self) -> str:

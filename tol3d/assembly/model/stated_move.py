@@ -39,6 +39,11 @@ class StatedMove(ABC):
         return ()
 
     @property
+    def tables(self) -> str:
+        """Import path of what makes tables of it for `tol3d check`; "" for none."""
+        return ""
+
+    @property
     def words(self) -> str:
         """By what it places them, for tables."""
         return ", ".join(dict.fromkeys(target for _, target in self.pairs))

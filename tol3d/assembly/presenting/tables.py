@@ -16,6 +16,7 @@ from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
+from tol3d.import_path import named as at_path
 from tol3d.report.number import NOTHING
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.system_check import MIDDLE, system_blocks
@@ -64,7 +65,9 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, plans, strict=True)]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
-    return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *_rests(system))
+    stated = (move for move in system.assembly.moves if isinstance(move, StatedMove) and move.tables)
+    others = (item for move in stated for item in at_path(move.tables)(move))
+    return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *_rests(system), *others)
 
 
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:

@@ -177,6 +177,11 @@ class CloseLoopSpec(StatedMoveSpec):
             dimension = self.dimension_of(name)
             if own.as_placed is not None and own.as_placed.dimension != dimension:
                 raise refused(f"inputs.{name}.as_placed", f"a {dimension}", str(own.as_placed))
+            for limit in own.range or ():
+                if limit.dimension != dimension:
+                    raise refused(f"inputs.{name}.range", f"two {dimension}s", str(limit))
+            if own.range is not None and not own.range[0].internal < own.range[1].internal:
+                raise refused(f"inputs.{name}.range", "the lower limit first", f"{own.range[0]}, {own.range[1]}")
             for key, each in own.deviations.items():
                 at = f"inputs.{name}.deviations.{key}"
                 if each.per is not None and each.per.dimension != dimension:

@@ -58,6 +58,9 @@ class InputSpec(Strict):
     as_placed: Amount | None = Field(
         default=None, description="what it is as parts are `placed`, such as the length of a leg; 0 if not given"
     )
+    range: Annotated[tuple[Amount, Amount], listed("limits", 2, 2)] | None = Field(
+        default=None, description="from where to where it may go; poses beyond are refused"
+    )
     lead: Annotated[Quantity, Of("length")] | None = Field(
         default=None, description="how far a slide goes a turn of what drives it, for deviations that are angles"
     )

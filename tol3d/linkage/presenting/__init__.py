@@ -1,0 +1,1 @@
+"""How closed loops are shown: tables of their inputs, freedoms and poses; their workspace as a picture."""
