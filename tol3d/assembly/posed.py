@@ -38,10 +38,34 @@ class PosedSystem(AssemblySystem):
     Args:
         poses: by name, the assembly there with the measures that are read in it; those of paths among them.
         at: of each measure, the poses in which it is read, in order.
+        scene: that means it.
     """
 
     poses: Mapping[str, AssemblySystem] = field(default_factory=dict)
     at: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    scene: Scene | None = None
+
+    @property
+    def pose_names(self) -> Sequence[str]:
+        """All poses of the scene."""
+        return pose_names(self.scene) if self.scene is not None else tuple(self.poses)
+
+    @property
+    def paths(self) -> Mapping[str, Sequence[str]]:
+        """All paths of the scene: by name the poses on them."""
+        return paths_of(self.scene) if self.scene is not None else {}
+
+    def in_poses(self, poses: Sequence[str]) -> Mapping[str, AssemblySystem]:
+        """The assembly in some poses, also in those in which nothing is read."""
+        scene, meaning = self.scene, None
+        found = {}
+        for pose in poses:
+            if pose not in self.poses and scene is not None:
+                meaning = meaning or understood(scene)
+                found[pose] = assembly_system(scene, pose, meaning)
+            else:
+                found[pose] = self.poses[pose]
+        return found
 
     @property
     def statuses(self) -> Statuses:  # type: ignore[override]
@@ -219,7 +243,7 @@ def system_of(scene: Scene) -> AssemblySystem:
     first = next(iter(systems.values()))
     known = {name: _measure(scene, name, systems[own[0]], len(own)) for name, own in at.items()}
     of_first = {each.name: getattr(first, each.name) for each in fields(first)}
-    return PosedSystem(**{**of_first, "measures": tuple(known.values())}, poses=systems, at=at)
+    return PosedSystem(**{**of_first, "measures": tuple(known.values())}, poses=systems, at=at, scene=scene)
 
 
 def _measure(scene: Scene, name: str, system: AssemblySystem, count: int) -> PlainMeasure:

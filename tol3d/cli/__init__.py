@@ -25,6 +25,7 @@ COMMANDS = (
     studies.run,
     showing.scenes,
     showing.check,
+    showing.workspace,
     showing.compare,
     analyses.shim,
     analyses.compensate,

@@ -66,6 +66,40 @@ def check(
         tell(f"time: {sum(spent.values()):.1f} s in all: {', '.join(f'{s:.1f} s {word}' for word, s in spent.items())}")
 
 
+def workspace(
+    scene: SceneArgument,
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The picture: .png, .svg or .pdf.")] = Path("workspace.png"),
+    of: Annotated[
+        str | None,
+        typer.Option(metavar="MEASURE", help="Show its sigma, by first order, instead of the condition number."),
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the numbers too.")] = None,
+    trust_parts: TrustParts = False,
+    run_builders: RunBuilders = False,
+) -> None:
+    """Draw how far a linkage reaches, where it is singular, and how well its inputs hold it."""
+    from tol3d.errors import InputError, unwritable
+    from tol3d.report.presenter import Mapped, presenter_at
+    from tol3d.runs.atomic_write import write_whole
+    from tol3d.simulate import load, simulation_of
+
+    loaded = load(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
+    simulation = simulation_of(loaded)
+    presenter = presenter_at(simulation.presenter)
+    if not isinstance(presenter, Mapped):
+        raise InputError(f"{loaded.scene}: expected a scene with a linkage (kind: close_loop), got none")
+    with err_console.status("workspace") as status:
+        found = presenter.workspace(simulation, of, status.update)
+    found.draw(out)
+    tell(str(out))
+    if csv is not None:
+        try:
+            write_whole(csv, found.csv().encode())
+        except OSError as error:
+            raise unwritable(csv, error, "choose another file") from None
+        tell(str(csv))
+
+
 def scenes(
     copy: Annotated[
         str | None, typer.Option(metavar="NAME", help="Copy that scene, with its files, to edit it.")

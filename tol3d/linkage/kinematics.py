@@ -1,7 +1,7 @@
 """A loop without deviations: whether it closes as it is drawn, what is free in it, and where it stands in a pose."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
 
@@ -25,7 +25,7 @@ CLOSED: Final = 1e-9
 """What a loop may lack as it is drawn, as a share of its length."""
 STRIDE: Final = 0.1
 """Step of inputs and outputs [rad, or of the loop's length] on the way to a pose."""
-LEAST: Final = 2.0**-14
+LEAST: Final = 2.0**-20
 """Share of the way under which no step is tried."""
 ROUNDS: Final = 60
 """Of closing a loop as it is drawn."""
@@ -305,25 +305,14 @@ class Kinematics:
         if solved is None:
             return None
         coordinates, turns, matrix, poses = solved
-        if target is not None:  # its inputs are found; how it moves by them is another matter
-            found = {name: sense * coordinates[place] for name, (place, sense) in own.given.items()}
-            there = replace(start, coordinates=coordinates, turns=turns)
-            there = replace(there, held=self._at(coordinates, turns, start.held)[0], sign=0.0)
-            again = self._run(there, found, None)
-            if again is None:
-                return None
-            coordinates, turns, matrix, poses = again
+        if target is not None:  # its inputs are found; how it moves by them are the other columns
+            narrow, wide = own.free(inputs=False), own.free(inputs=True)
+            matrix = matrix[:, wide[narrow >= 0]]
         held, singular, sign = self._held(matrix[: own.rows], start.held)
         if sign != start.sign:
             return None
         base, child = self._with_output(target)
         return Position(coordinates, turns, held, sign, base, child, singular, poses)
-
-    def _at(self, coordinates: Array, turns: Array, before: Array) -> tuple[Array, Array, float]:
-        own = self.structure
-        scale = own.scale(own.free(inputs=False))
-        matrix = self._linear(coordinates, turns)[1]
-        return self._held(matrix * scale / own.length, before)
 
     def _run(
         self, start: Position, inputs: Mapping[str, float], target: Array | None

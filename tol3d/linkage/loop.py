@@ -93,6 +93,11 @@ class ClosedLoop(StatedMove):
         return "tol3d.linkage.presenting.tables:loop_blocks"
 
     @property
+    def workspace(self) -> str:
+        """See StatedMove."""
+        return "tol3d.linkage.presenting.workspace_picture:workspace_map"
+
+    @property
     def name(self) -> str:
         """See StatedMove."""
         return self.structure.name

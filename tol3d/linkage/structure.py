@@ -247,6 +247,16 @@ class Structure:
 
     def rest(self, joint: Joint) -> Array:
         """What is left of it where all coordinates are 0 and the joint holds (4, 4)."""
+        if joint.name not in self._rests:
+            self._rests[joint.name] = self._rest(joint)
+        return self._rests[joint.name]
+
+    @cached_property
+    def _rests(self) -> dict[str, Array]:
+        """By joint, as far as they were asked for."""
+        return {}
+
+    def _rest(self, joint: Joint) -> Array:
         apart, found = self.apart(joint), np.eye(4)
         if joint.kind in ON_AXES_KINDS:
             flip = np.diag([1.0, np.sign(apart[2, 2]) or 1.0, np.sign(apart[2, 2]) or 1.0])

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from tol3d.errors import InputError
 from tol3d.report.page import PageItem
@@ -123,6 +123,36 @@ class Presenter(Protocol):
 
         Raises:
             RunError: it cannot be shown.
+        """
+        ...
+
+
+class Map(Protocol):
+    """A picture of values over a workspace."""
+
+    def draw(self, path: Path) -> None:
+        """Draw it and write it; raises InputError where that is not possible."""
+        ...
+
+    def csv(self) -> str:
+        """Its numbers, as comma-separated values."""
+        ...
+
+
+@runtime_checkable
+class Mapped(Protocol):
+    """A presenter of systems that have a workspace."""
+
+    def workspace(self, simulation: "Simulation", measure: str | None, activity: Callable[[str], None]) -> Map:
+        """The workspace of a scene.
+
+        Args:
+            simulation: of the scene.
+            measure: whose sigma is shown; what the mechanism says of its poses if not given.
+            activity: told what goes on.
+
+        Raises:
+            InputError: it has none, or no such measure.
         """
         ...
 

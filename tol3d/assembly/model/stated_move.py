@@ -44,6 +44,11 @@ class StatedMove(ABC):
         return ""
 
     @property
+    def workspace(self) -> str:
+        """Import path of what draws its workspace, see `tol3d.report.presenter.Mapped`; "" for none."""
+        return ""
+
+    @property
     def words(self) -> str:
         """By what it places them, for tables."""
         return ", ".join(dict.fromkeys(target for _, target in self.pairs))

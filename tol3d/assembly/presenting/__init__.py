@@ -15,7 +15,9 @@ from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
     from tol3d.report.page import PageItem
-    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
+    from collections.abc import Callable
+
+    from tol3d.report.presenter import Display, Draw, FurtherRow, Map, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
@@ -48,6 +50,12 @@ class AssemblyPresenter:
     def parts(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Each part below the one that its move lays it on."""
         return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
+
+    def workspace(
+        self, simulation: "Simulation", measure: str | None, activity: "Callable[[str], None]"
+    ) -> "Map":
+        """That of the first move that has one; see `tol3d.report.presenter.Mapped`."""
+        return _lazily("tables").workspace(simulation, measure, activity)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
         """A build with its parts placed again."""

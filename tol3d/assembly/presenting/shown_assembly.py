@@ -12,10 +12,12 @@ from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.presenting.labels import labels, unnamed
 from tol3d.assembly.presenting.part_symbols import joined_symbols, marks_on_solid
+from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
 from tol3d.report.body import Body, World
 from tol3d.report.built_body import built_body
+from tol3d.report.motion import Frame, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
@@ -31,6 +33,8 @@ DEFLECTION: Final = 0.05
 """mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
 OPACITY: Final = 0.3
 """Of solids, so that their features and what lies within them are seen."""
+FRAMES: Final = 25
+"""Of a path, where nothing else is said."""
 HALVINGS: Final = 10
 """Of the range of magnifications: 1/1024 of it."""
 RIGID: Final = "solids keep the shape that is drawn: what deviates on them is shown by the symbols of their features"
@@ -79,11 +83,67 @@ class ShownAssembly:
     label: str
     placed: Placed
     notes: tuple[str, ...] = ()
+    seen: Replay | None = None
 
     @cached_property
     def worlds(self) -> tuple[World, ...]:
-        """One world; the features that matter most are named."""
-        return (World("assembly", bodies(self.placed), points=self.placed.points, up=(0.0, 0.0, 1.0)),)
+        """One world a pose; the features that matter most are named."""
+        system = self._posed
+        if system is None:
+            return (self._world("assembly", self.placed),)
+        return tuple(self._world(pose or "assembly", own) for pose, own in self._in(system.pose_names))
+
+    @staticmethod
+    def _world(name: str, placed: Placed) -> World:
+        return World(name, bodies(placed), points=placed.points, up=(0.0, 0.0, 1.0))
+
+    @property
+    def _posed(self) -> PosedSystem | None:
+        """The system of an assembly that is read in several poses."""
+        system = self.seen.simulation.system if self.seen is not None else None
+        return system if isinstance(system, PosedSystem) else None
+
+    def _in(self, poses: Sequence[str]) -> Sequence[tuple[str, Placed]]:
+        """The build in some poses, as far as it is built there."""
+        system, seen = self._posed, self.seen
+        assert system is not None and seen is not None
+        found = []
+        for pose, own in system.in_poses(poses).items():
+            if (placed := placed_in(own.assembly, seen.trials.deviations[:1])) is not None:
+                found.append((pose, placed))
+        return found
+
+    @property
+    def motions(self) -> tuple[str, ...]:
+        """The paths of its moves; see `tol3d.report.motion.Movable`."""
+        return tuple(self._posed.paths) if self._posed is not None else ()
+
+    def motion(self, name: str, frames: int | None) -> Motion:
+        """Along a path, there and back; see `tol3d.report.motion.Movable`."""
+        system = self._posed
+        assert system is not None
+        path = system.paths[name]
+        count = min(frames or FRAMES, len(path))
+        chosen = [path[k] for k in np.linspace(0, len(path) - 1, count).round().astype(int)]
+        placed = self._in(list(dict.fromkeys(chosen)))
+        if not placed:
+            raise InputError(f"--motion: {self.label} is not built anywhere on {name}")
+        first = placed[0][1]
+        world = self._world(name, first)
+        solid = {part.name for part in first.assembly.parts if part.solid is not None}
+        shown = []
+        for pose, own in placed:
+            moved = {
+                part: there if part in solid else there @ np.linalg.inv(first.poses[part])
+                for part, there in own.poses.items()
+            }
+            shown.append(Frame(f"{name}: {pose.rpartition('|')[2]} of {len(path) - 1}", moved))
+        points = np.concatenate([np.array([frame[:3, 3] for frame in own.frames.values()]) for _, own in placed])
+        corners = np.concatenate([body.mesh[0] for body in world.bodies])
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        look = around(np.concatenate([points, corners]), middle, *corner(np.array(world.up)))
+        notes = () if len(placed) == len(set(chosen)) else ("it is not built in all poses of the path",)
+        return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes)
 
     def view(self, close_up: str | None) -> View:
         """The world, its parts named."""
@@ -147,7 +207,7 @@ def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> S
     placed = placed_by(seen)
     if placed is None:
         raise RunError(f"{label}: cannot be shown: {seen.status}; take another trial, or smaller deviations")
-    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])))
+    return ShownAssembly(label, placed, (*notes, *([RIGID] if placed.has_solids else [])), seen)
 
 
 def placed_by(seen: Replay) -> Placed | None:

@@ -1,7 +1,7 @@
 """What a scene of an assembly means, as tables: features with their datum frames, moves."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -16,9 +16,11 @@ from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.freedom_tables import datum_blocks, freedom_blocks
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
+from tol3d.errors import InputError
 from tol3d.import_path import named as at_path
 from tol3d.report.number import NOTHING
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.presenter import Map
 from tol3d.report.system_check import MIDDLE, system_blocks
 from tol3d.solids.bounding_box import bounding_box
 from tol3d.solids.kept_shape import KeptShape
@@ -40,6 +42,21 @@ def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Each part below the one that its move lays it on."""
     assert isinstance(simulation.system, AssemblySystem)
     return parts_tree(simulation.system.assembly)
+
+
+def workspace(simulation: Simulation, measure: str | None, activity: Callable[[str], None]) -> Map:
+    """That of the first move that has one.
+
+    Raises:
+        InputError: none has.
+    """
+    assert isinstance(simulation.system, AssemblySystem)
+    moves = simulation.system.assembly.moves
+    for move in moves:
+        if isinstance(move, StatedMove) and move.workspace:
+            found: Map = at_path(move.workspace)(simulation, move.name, measure, activity)
+            return found
+    raise InputError("expected a scene with a linkage (kind: close_loop), got none")
 
 
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:

@@ -1,0 +1,165 @@
+"""The workspace of a loop as a picture: how far its output tilts, and how well its inputs hold it on the way there."""
+
+import csv
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from tol3d.assembly.posed import PosedSystem, system_of
+from tol3d.assembly.system import AssemblySystem
+from tol3d.errors import InputError
+from tol3d.linkage.grammar.close_loop import CloseLoopSpec
+from tol3d.linkage.grammar.inputs import TiltPoseSpec
+from tol3d.linkage.loop import ClosedLoop
+from tol3d.linkage.workspace import Workspace, workspace_of
+from tol3d.report.canvas import BLACK, VERMILLION, new_figure, save_figure
+from tol3d.scene.nearest import hint
+from tol3d.study.simulation import Simulation
+from tol3d.system.road import ANALYTIC_ROAD
+from tol3d.system.stated import component_slices, stated
+from tol3d.units import Quantity
+
+Array = NDArray[np.float64]
+
+RAYS: Final = 72
+PLACES: Final = 24
+COARSE_RAYS: Final = 24
+COARSE_PLACES: Final = 10
+"""Of a picture of a measure's sigma, for which the assembly is made anew in each pose."""
+DRAWS: Final = 2000
+SIZE: Final = (7.2, 6.2)
+COLOURS: Final = "viridis_r"
+
+
+@dataclass(frozen=True, eq=False)
+class WorkspaceMap:
+    """What a picture of a workspace shows.
+
+    Args:
+        move: the loop's name.
+        words: what is shown, with its unit.
+        workspace: where.
+        values: by ray and place.
+    """
+
+    move: str
+    words: str
+    workspace: Workspace
+    values: Array
+
+    def draw(self, path: Path) -> None:
+        """Draw it.
+
+        Raises:
+            InputError: the picture cannot be written there.
+        """
+        save_figure(self.figure(), path)
+
+    def figure(self) -> Figure:
+        """Tilts outwards, azimuths around, values as colours, the singular curve; not yet written."""
+        own, figure = self.workspace, new_figure(*SIZE)
+        axes = figure.add_subplot(projection="polar")
+        azimuths = np.append(own.azimuths, own.azimuths[0] + 2 * np.pi)
+        tilts = np.degrees(np.vstack([own.tilts, own.tilts[:1]]))
+        values = np.vstack([self.values, self.values[:1]])
+        shown = np.ma.masked_invalid(values)
+        around = np.repeat(azimuths[:, None], tilts.shape[1], axis=1)
+        mesh = axes.pcolormesh(
+            around,
+            tilts,
+            shown,
+            shading="gouraud",
+            cmap=COLOURS,
+            norm=LogNorm(float(shown.min()), float(shown.max()) if shown.max() > shown.min() else None),
+        )
+        axes.plot(azimuths, np.degrees(np.append(own.reach, own.reach[0])), color=VERMILLION, linewidth=1.5)
+        axes.set_title(f"{self.move}: {self.words}", color=BLACK, fontsize=11, fontweight="bold", pad=18)
+        axes.grid(color="white", alpha=0.4, linewidth=0.6)
+        axes.tick_params(labelsize=8)
+        axes.set_rlabel_position(112.0)
+        figure.colorbar(mesh, ax=axes, pad=0.1, shrink=0.8)
+        least = int(np.argmin(own.reach))
+        note = f"outwards: tilt [deg], around: azimuth; red: singular, first at {np.degrees(own.reach[least]):.2f} deg"
+        figure.text(0.02, 0.01, f"{note} towards {np.degrees(own.azimuths[least]):.4g} deg", fontsize=8, color=BLACK)
+        return figure
+
+    def csv(self) -> str:
+        """Azimuth, tilt, inputs and value of each place."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["azimuth [deg]", "tilt [deg]", self.words])
+        for k, azimuth in enumerate(np.degrees(self.workspace.azimuths)):
+            for tilt, value in zip(np.degrees(self.workspace.tilts[k]), self.values[k], strict=True):
+                writer.writerow([f"{azimuth:.10g}", f"{tilt:.10g}", f"{value:.10g}"])
+        return stream.getvalue()
+
+
+def workspace_map(
+    simulation: Simulation, name: str, measure: str | None, activity: Callable[[str], None]
+) -> WorkspaceMap:
+    """The workspace of a loop.
+
+    Args:
+        simulation: of the scene.
+        name: of the move.
+        measure: whose sigma is shown, by first order; the condition number if not given.
+        activity: told what goes on.
+
+    Raises:
+        InputError: its output does not tilt, or no such measure.
+    """
+    system = simulation.system
+    assert isinstance(system, AssemblySystem)
+    move = next(own for own in system.assembly.moves if own.name == name)
+    assert isinstance(move, ClosedLoop)
+    if measure is None:
+        found = workspace_of(move, RAYS, PLACES, lambda done: activity(f"ray {done} of {RAYS}"))
+        return WorkspaceMap(move.name, "condition number", found, found.conditions)
+    names = [own.name for own in system.measures]
+    if measure not in names:
+        raise InputError(f"--of: no measure {measure!r}{hint(measure, names)}")
+    found = workspace_of(move, COARSE_RAYS, COARSE_PLACES, lambda done: activity(f"ray {done} of {COARSE_RAYS}"))
+    assert isinstance(system, PosedSystem)
+    unit = next(own.unit for own in system.measures if own.name == measure)
+    return WorkspaceMap(move.name, f"sigma of {measure} [{unit}], first order", found, _sigmas(system, move, found, measure))
+
+
+def _sigmas(system: PosedSystem, move: ClosedLoop, workspace: Workspace, measure: str) -> Array:
+    """Of a measure in all poses of a workspace (rays, places), in its unit."""
+    scene = system.scene
+    assert scene is not None
+    spec = scene.moves[move.name]
+    assert isinstance(spec, CloseLoopSpec)
+    names, poses = {}, dict[str, TiltPoseSpec]()
+    for (ray, place), tilt in np.ndenumerate(workspace.tilts):
+        name = names[ray, place] = f"{ray} {place}"
+        azimuth = float(np.degrees(workspace.azimuths[ray]))
+        poses[name] = TiltPoseSpec(
+            tilt=Quantity.parse(f"{np.degrees(tilt):.15g} deg"), azimuth=Quantity.parse(f"{azimuth:.15g} deg")
+        )
+    own = scene.measures[measure]
+    read = {name: own.model_copy(update={"at": name, "over": None, "take": "value"}) for name in poses}
+    loop = spec.model_copy(update={"poses": poses})
+    there = system_of(scene.model_copy(update={"moves": {**scene.moves, move.name: loop}, "measures": read}))
+    uniforms = np.random.default_rng(1)
+    rows = np.empty((DRAWS, there.assembly.width))
+    for contributor, columns in component_slices(there).items():
+        draw = next(each.draw for each in there.contributors if each.name == contributor)
+        drawn = draw.deviations(*uniforms.random((draw.uniforms, DRAWS)))
+        rows[:, columns] = np.array(drawn).T
+    road = there.road(ANALYTIC_ROAD, None)
+    values = road.answers(stated(there, rows), there.measures).values
+    per = next(each.per_internal for each in there.measures)
+    found = np.empty(workspace.tilts.shape)
+    for place, name in names.items():
+        found[place] = per * float(values[name].std())
+    return found
+
+

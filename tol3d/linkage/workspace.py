@@ -1,0 +1,92 @@
+"""How far a loop reaches: condition numbers over its output or its inputs, and where it is singular."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
+from tol3d.linkage.loop import ClosedLoop
+
+Array = NDArray[np.float64]
+
+FURTHEST: Final = np.radians(175.0)
+"""Tilt beyond which nothing is looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """A grid of poses, in rays from where the loop is drawn, each as far as it reaches.
+
+    Args:
+        azimuths: directions of the rays [rad].
+        shares: places on each, as shares of its reach.
+        reach: of each ray, the tilt at which the loop is singular or ends [rad].
+        positions: by ray and place.
+    """
+
+    azimuths: Array
+    shares: Array
+    reach: Array
+    positions: Sequence[Sequence[Position]]
+
+    @property
+    def tilts(self) -> Array:
+        """Of all places (rays, places) [rad]."""
+        return self.reach[:, None] * self.shares
+
+    @property
+    def conditions(self) -> Array:
+        """Condition numbers (rays, places)."""
+        return np.array([[own.condition for own in ray] for ray in self.positions])
+
+
+def workspace_of(
+    move: ClosedLoop, rays: int, places: int, activity: Callable[[int], None] = lambda done: None
+) -> Workspace:
+    """The workspace of a loop whose output tilts.
+
+    Args:
+        move: the loop.
+        rays: azimuths, evenly over a turn.
+        places: on each ray, from no tilt to its end, which is left out.
+        activity: told how many rays are done.
+
+    Raises:
+        InputError: it has no output that tilts.
+    """
+    kinematics = move.kinematics
+    output = kinematics.structure.output
+    if output is None or output.whole:
+        words = "expected a loop with `output: {tilt: …, from: …}`, whose tilts and azimuths a picture can show"
+        raise InputError(f"moves.{move.name}: {words}; this one has none")
+    azimuths = 2 * np.pi * np.arange(rays) / rays
+    shares = np.arange(places) / places
+    reach, positions = np.empty(rays), []
+    for k, azimuth in enumerate(azimuths):
+        reach[k] = reach_of(kinematics, float(azimuth))
+        ray, at = [], kinematics.drawn
+        for tilt in reach[k] * shares:
+            at = kinematics.at_output(_tilted(tilt, azimuth), at)
+            ray.append(at)
+        positions.append(ray)
+        activity(k + 1)
+    return Workspace(azimuths, shares, reach, positions)
+
+
+def reach_of(kinematics: Kinematics, azimuth: float) -> float:
+    """The tilt towards an azimuth at which the loop is singular or ends [rad]; FURTHEST where it is neither."""
+    try:
+        kinematics.at_output(_tilted(FURTHEST, azimuth))
+    except UnreachedError as error:
+        return float(np.hypot(*kinematics.tilt_at(error.position)))
+    return float(FURTHEST)
+
+
+def _tilted(tilt: float, azimuth: float) -> Array:
+    return tilt * np.array([-np.sin(azimuth), np.cos(azimuth)])
+
+
