@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene import understood
 from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.model import Assembly, StatedMove
 from tol3d.assembly.model.statuses import OK, WITH_LOOPS
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.scene import Scene
@@ -70,7 +71,7 @@ class PosedSystem(AssemblySystem):
     @property
     def statuses(self) -> Statuses:  # type: ignore[override]
         """See System."""
-        return WITH_LOOPS
+        return WITH_LOOPS if has_loops(self.assembly) else super().statuses
 
     @property
     def _kinds(self) -> Mapping[str, Mapping[str, RoadKind]]:
@@ -220,6 +221,11 @@ class PosedRoad:
         return Answers(values, details=details, status=status)
 
 
+def has_loops(assembly: Assembly) -> bool:
+    """Whether moves close loops, which then have statuses of their own."""
+    return any(isinstance(move, StatedMove) and move.closes_loops for move in assembly.moves)
+
+
 def _some(poses: Sequence[str]) -> Sequence[str]:
     """Some of many poses, the ends among them."""
     if len(poses) <= LOOKED_AT:
@@ -252,5 +258,6 @@ def _measure(scene: Scene, name: str, system: AssemblySystem, count: int) -> Pla
     if not isinstance(spec, TimedSpec) or spec.over is None:
         return own
     positions = Positions("swing", 1, max(count - 1, 1), angles=tuple(float(k) for k in range(count)))
-    return replace(own, positions=positions, take=spec.take, adds_up=False, worse="high" if spec.take == "max" else own.worse)
-
+    return replace(
+        own, positions=positions, take=spec.take, adds_up=False, worse="high" if spec.take == "max" else own.worse
+    )

@@ -299,7 +299,11 @@ def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = N
 
 
 def _components(scene: Scene) -> Mapping[str, str]:
-    return {name: spec.component for name, spec in scene.measures.items() if isinstance(spec, PoseErrorSpec | DirectionErrorSpec)}
+    return {
+        name: spec.component
+        for name, spec in scene.measures.items()
+        if isinstance(spec, PoseErrorSpec | DirectionErrorSpec)
+    }
 
 
 def _kind_of(assembly: Assembly) -> type[AssemblySystem]:

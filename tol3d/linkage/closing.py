@@ -162,7 +162,7 @@ def moving(kind: int, numbers: Any, q: Any, q0: int, at: Any, free: Any, twists:
     axis, point, own = room
     for r in range(3):
         axis[r], point[r] = at[r, 2], at[r, 3]
-    if kind == REVOLUTE or kind == CYLINDRICAL or kind == SCREW or kind == UNIVERSAL:
+    if kind in (REVOLUTE, CYLINDRICAL, SCREW, UNIVERSAL):
         add_turn(twists, free[q0], axis, point)
     if kind == PRISMATIC:
         add_slide(twists, free[q0], axis, 1.0)
@@ -289,7 +289,7 @@ def forward(model: Any, state: Any, room: Any) -> None:
 
 
 @nested
-def turn_row(seen: Any, twist: Any, r: int, c: int) -> float:
+def turn_row(seen: Any, twist: Any, r: int, c: int) -> Any:
     """How an entry of a rotation (3, 4) changes with an angular velocity (3,)."""
     s, t = (r + 1) % 3, (r + 2) % 3
     return twist[s] * seen[t, c] - twist[t] * seen[s, c]
@@ -324,7 +324,7 @@ def keeps(kind: int, k: int, numbers: Any, angle: float, seen: Any, twist: Any, 
         r, c = (k - 1) % 3, (k - 2) % 3  # (2, 1), (0, 2), (1, 0)
         own = length * (seen[r, c] - seen[c, r])
         return own, length * (turn_row(seen, twist, r, c) - turn_row(seen, twist, c, r))
-    across = kind == PRISMATIC or kind == CYLINDRICAL or kind == SCREW
+    across = kind in (PRISMATIC, CYLINDRICAL, SCREW)
     shifts = 0 if kind == ALONG else (2 if across else 3)
     if k < shifts:
         return seen[k, 3], twist[3 + k]
@@ -337,7 +337,7 @@ def rows_of(kind: int) -> int:
     """How many equations a joint asks for."""
     if kind == BALL:
         return 3
-    if kind == REVOLUTE or kind == PRISMATIC or kind == SCREW:
+    if kind in (REVOLUTE, PRISMATIC, SCREW):
         return 5
     if kind == FIXED:
         return 6
@@ -363,7 +363,6 @@ def equations(model: Any, state: Any, room: Any, length: float, matrix: Any, rig
             copy_matrix(other, child[f])
         for r in range(3):
             for c in range(4):
-                less = at[r, 3] if c == 3 else 0.0
                 seen[r, c] = 0.0
             vectors[0][r] = other[r, 3] - at[r, 3]
         for r in range(3):
@@ -398,7 +397,7 @@ def equations(model: Any, state: Any, room: Any, length: float, matrix: Any, rig
 
 @nested
 def eliminated(matrix: Any, right: Any) -> Any:
-    """Solve equations in place by elimination with pivots; the sign of their determinant, 0 of none, the least pivot."""
+    """Solve equations in place by elimination with pivots: their determinant's sign, 0 of none, and the least pivot."""
     count, sign, least = right.shape[0], 1.0, np.inf
     for k in range(count):
         best = k
@@ -430,7 +429,7 @@ def eliminated(matrix: Any, right: Any) -> Any:
 
 
 @nested
-def least_singular(matrix: Any, square: Any, vector: Any) -> float:
+def least_singular(matrix: Any, square: Any, vector: Any) -> Any:
     """The least singular value of a matrix, by inverse iteration on its square."""
     count, size = matrix.shape[0], 0.0
     fill(vector, 1.0)
@@ -469,7 +468,7 @@ def stepped(model: Any, state: Any, scale: Any, step: Any, moved: Any, room: Any
     share = min(1.0, LONGEST / largest) if largest > 0.0 else 1.0
     for t in range(tree.shape[0]):
         kind, q0, f = tree[t, 0], tree[t, 3], tree[t, 4]
-        count = 3 if kind == BALL else (2 if kind == CYLINDRICAL or kind == UNIVERSAL or kind == SWING else 1)
+        count = 3 if kind == BALL else (2 if kind in (CYLINDRICAL, UNIVERSAL, SWING) else 1)
         if kind == ROLLING:
             continue
         for k in range(count):

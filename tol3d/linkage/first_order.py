@@ -54,13 +54,15 @@ class Displaced:
         moved = np.vstack(rows).reshape(-1, count, 6) @ _about(centre)
         found = np.linalg.lstsq(moved.reshape(len(moved), -1) * scale, np.vstack(right), rcond=LOST)[0]
         shaped = (found * scale[:, None]).reshape(count, 6, -1)
-        return np.einsum("ij,bjc->bic", _about(centre), shaped)
+        return np.asarray(np.einsum("ij,bjc->bic", _about(centre), shaped))
 
     def _equations(self, joint: Joint, world: World) -> Sequence[tuple[Array, Array]]:
         """Rows (rows, bodies, 6) on the torsors of the bodies, and what they amount to (rows, columns)."""
         kept = _rolling(joint, world, self.structure) if joint.kind == ROLLING else [(None, _kept(joint, world, self))]
         given = [
-            (own, self.inputs[name]) for name, (of, k) in self.structure.inputs.items() if of == joint.name
+            (own, self.inputs[name])
+            for name, (of, k) in self.structure.inputs.items()
+            if of == joint.name
             for own in [_coordinate(joint, FREEDOMS[joint.kind][k], world, self.structure)]
         ]
         found = []
@@ -71,9 +73,7 @@ class Displaced:
             found.append((matrix, right + amount))
         return found
 
-    def _row(
-        self, joint: Joint, world: World, rows: Array, weights: Mapping[str, Array] | None
-    ) -> tuple[Array, Array]:
+    def _row(self, joint: Joint, world: World, rows: Array, weights: Mapping[str, Array] | None) -> tuple[Array, Array]:
         """Rows of the displacement of the feature after, relative to that before, in terms of bodies."""
         own = self.structure
         by_feature = weights or {joint.of: np.eye(6), joint.on: -np.eye(6)}
@@ -180,7 +180,9 @@ def _rolling(joint: Joint, world: World, structure: Structure) -> list[tuple[Map
     theta, sine, e, towards = _tilt(rest, axis)
     swings = np.cross(axis, e)  # times a turn: the rate of the azimuth, times the sine of the tilt
     k = joint.ratio
-    by_azimuth = np.array([k, 0.0]) if sine <= NO_TILT else np.array([np.sin(k * theta), 1.0 - np.cos(k * theta)]) / sine
+    by_azimuth = (
+        np.array([k, 0.0]) if sine <= NO_TILT else np.array([np.sin(k * theta), 1.0 - np.cos(k * theta)]) / sine
+    )
     follows = k * np.outer(e, e) + np.outer(-by_azimuth[0] * towards + by_azimuth[1] * rest, swings)
     turn = np.zeros((6, 6))
     turn[3:, 3:] = follows

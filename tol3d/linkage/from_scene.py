@@ -11,7 +11,6 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import UsesFeatures, part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.model import Point
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.errors import InputError
@@ -80,8 +79,8 @@ def _drawn(spec: "CloseLoopSpec", scene: Scene) -> Iterator[PlainContributor]:
             ends = tuple(f"{end} {axis}" for end in ("start", "end") for axis in "xy")
             place = Ball(InBall()) if isinstance(room, ClearanceSpec) else FloatDraw(("disc", "disc"), ends)
             yield PlainContributor(float_name(joint), FLOAT, place, "1", 1.0, words)
-    for of, own in spec.inputs.items():
-        for key, each in own.deviations.items():
+    for of, given in spec.inputs.items():
+        for key, each in given.deviations.items():
             law = Scalar(each.distribution.resolve(scene.files))
             unit_of, per = UNITS["angle" if each.is_angle else "length"]
             yield PlainContributor(deviation_name(key, of), "input", law, unit_of, per, each.description)
@@ -185,7 +184,8 @@ def _structure(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing)
         if isinstance(own, RollingSpec):
             first, last = (_radius(drawing, feature) for feature in own.between)
             ratio, carrier = 1.0 + first / last, own.carrier
-        joints.append(Joint(joint, KINDS[own.kind], *own.between, lead, ratio, carrier))
+        on, of = own.between
+        joints.append(Joint(joint, KINDS[own.kind], on, of, lead, ratio, carrier))
     named = {feature for own in joints for feature in own.features}
     output = None
     if spec.output is not None:
@@ -202,16 +202,15 @@ def _structure(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing)
 
 
 def _radius(drawing: Drawing, feature: str) -> float:
-    shape = drawing.kind(feature).shape
-    size = nominal_size(shape)
-    assert isinstance(shape, Point) and size is not None, "a sphere"
+    size = nominal_size(drawing.kind(feature).shape)
+    assert size is not None, "a sphere"
     return size / 2
 
 
 def _read_features(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Features of the bodies that later moves and measures read, with their fields."""
     later = list(scene.moves)[list(scene.moves).index(name) + 1 :]
-    entries = [("moves", own, scene.moves[own]) for own in later]
+    entries: list[tuple[str, str, object]] = [("moves", own, scene.moves[own]) for own in later]
     entries += [("measures", own, entry) for own, entry in scene.measures.items()]
     for section, own, entry in entries:
         if isinstance(entry, UsesFeatures):
@@ -220,9 +219,7 @@ def _read_features(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[t
                     yield (section, own, *use.path), use.name
 
 
-def _refuse_read_idle(
-    spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics
-) -> None:
+def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
     """Refuse to read what a freedom moves that moves no joint, for nothing says where it is."""
     own = kinematics.structure
     for words, moved in kinematics.idle_freedoms():
@@ -297,6 +294,7 @@ def _reached(spec: "CloseLoopSpec", kinematics: Kinematics, pose: str, start: Po
         return kinematics.at_output(tilt_vector(own.tilt.internal, own.azimuth.internal), start)
     if isinstance(own, PlacePoseSpec):
         return kinematics.at_place(_frame(own), start)
+    assert not isinstance(own, PathSpec)
     return kinematics.at_inputs(_values(spec, own), start)
 
 
@@ -399,5 +397,3 @@ def _deviations(
                 share *= abs(values[of]) / each.per.internal
             found.setdefault(of, []).append(InputDeviation(drawn[deviation_name(key, of)].start, share))
     return found
-
-

@@ -176,8 +176,8 @@ class Kinematics:
                 worst, size, drawn = own.joint.name, gap, float(np.linalg.norm(first[rows]))
         words = f"expected parts that go together without deviations, got a gap of {size:.4g} mm"
         return (
-            f"moves.{self.structure.name}.joints.{worst}: {words} at {worst!r} at the least, {drawn:.4g} mm as they are "
-            "`placed`"
+            f"moves.{self.structure.name}.joints.{worst}: {words} at {worst!r} at the least, {drawn:.4g} mm as they "
+            "are `placed`"
         )
 
     def _refuse_unfit(self, matrix: Array, twists: Array) -> None:
@@ -374,7 +374,9 @@ class Kinematics:
 
     def inputs_at(self, position: Position) -> Mapping[str, float]:
         """Values of the inputs [mm or rad]."""
-        return {name: sense * float(position.coordinates[place]) for name, (place, sense) in self.structure.given.items()}
+        return {
+            name: sense * float(position.coordinates[place]) for name, (place, sense) in self.structure.given.items()
+        }
 
     def at_inputs(self, inputs: Mapping[str, float], start: Position | None = None) -> Position:
         """Where it stands at some inputs, on the branch on which it is drawn.
@@ -390,14 +392,16 @@ class Kinematics:
         return self._walked(
             start,
             max(sizes, default=0.0),
-            lambda at, share: self._solved(at, {name: before[name] + share * own for name, own in changes.items()}, None),
+            lambda at, share: self._solved(
+                at, {name: before[name] + share * own for name, own in changes.items()}, None
+            ),
         )
 
     def _is_slide(self, name: str) -> bool:
         joint, k = self.structure.inputs[name]
         return FREEDOMS[self.structure.step[joint].joint.kind][k] == "slide"
 
-    def at_output(self, along: Sequence[float], start: Position | None = None) -> Position:
+    def at_output(self, along: Sequence[float] | Array, start: Position | None = None) -> Position:
         """Where its output tilts by a rotation vector (x, y) [rad] in the frame from which it is read.
 
         Raises:

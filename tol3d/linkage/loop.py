@@ -88,6 +88,11 @@ class ClosedLoop(StatedMove):
         return self.kinematics.structure
 
     @property
+    def closes_loops(self) -> bool:
+        """See StatedMove."""
+        return True
+
+    @property
     def tables(self) -> str:
         """See StatedMove."""
         return "tol3d.linkage.presenting.tables:loop_blocks"
@@ -209,7 +214,9 @@ class Closing:
     def _given(self, columns: Array) -> Array:
         """Coordinates of inputs with their errors (n or 1, coordinates)."""
         own, nominal = self.move.structure, self.move.position.coordinates
-        errors = {name: sum(e.share * columns[e.column] for e in each) for name, each in self.move.errors.items() if each}
+        errors = {
+            name: sum(e.share * columns[e.column] for e in each) for name, each in self.move.errors.items() if each
+        }
         found = np.repeat(nominal[None], columns.shape[1] if errors else 1, axis=0)
         for name, error in errors.items():
             place, sense = own.given[name]

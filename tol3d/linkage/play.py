@@ -1,7 +1,7 @@
 """Where in its play a joint lies: draws that are shares of its clearance, and what they make of its frame."""
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,7 +82,9 @@ class JointPlay:
         if self.length == 0.0:
             return Pose(IDENTITY.turn, shares), fits
         zero = np.zeros_like(shares[0])
-        lean = np.stack([(shares[2] - shares[0]) / self.length, (shares[3] - shares[1]) / self.length, np.ones_like(zero)])
+        lean = np.stack(
+            [(shares[2] - shares[0]) / self.length, (shares[3] - shares[1]) / self.length, np.ones_like(zero)]
+        )
         z = unit(lean)
         sine = np.sqrt(z[0] * z[0] + z[1] * z[1])
         share = 1.0 / np.where(sine > NOWHERE, sine, 1.0)

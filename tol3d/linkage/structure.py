@@ -262,9 +262,7 @@ class Structure:
             flip = np.diag([1.0, np.sign(apart[2, 2]) or 1.0, np.sign(apart[2, 2]) or 1.0])
             seen = apart[:3, :3] @ flip
             spin = np.arctan2(seen[1, 0], seen[0, 0])
-            turned = np.array(
-                [[np.cos(spin), -np.sin(spin), 0.0], [np.sin(spin), np.cos(spin), 0.0], [0.0, 0.0, 1.0]]
-            )
+            turned = np.array([[np.cos(spin), -np.sin(spin), 0.0], [np.sin(spin), np.cos(spin), 0.0], [0.0, 0.0, 1.0]])
             found[:3, :3], found[2, 3] = turned @ flip, apart[2, 3]
         elif joint.kind in (SWING, ROLLING):
             found[:3, :3] = apart[:3, :3]

@@ -13,6 +13,8 @@ from tol3d.linkage.loop import ClosedLoop
 
 Array = NDArray[np.float64]
 
+NEAREST: Final = 0.985
+"""Of the reach: how near to its end a ray is looked at."""
 FURTHEST: Final = np.radians(175.0)
 """Tilt beyond which nothing is looked at."""
 
@@ -52,7 +54,7 @@ def workspace_of(
     Args:
         move: the loop.
         rays: azimuths, evenly over a turn.
-        places: on each ray, from no tilt to its end, which is left out.
+        places: on each ray, from no tilt to near its end.
         activity: told how many rays are done.
 
     Raises:
@@ -64,7 +66,7 @@ def workspace_of(
         words = "expected a loop with `output: {tilt: …, from: …}`, whose tilts and azimuths a picture can show"
         raise InputError(f"moves.{move.name}: {words}; this one has none")
     azimuths = 2 * np.pi * np.arange(rays) / rays
-    shares = np.arange(places) / places
+    shares = NEAREST * np.arange(places) / (places - 1)
     reach, positions = np.empty(rays), []
     for k, azimuth in enumerate(azimuths):
         reach[k] = reach_of(kinematics, float(azimuth))
@@ -88,5 +90,3 @@ def reach_of(kinematics: Kinematics, azimuth: float) -> float:
 
 def _tilted(tilt: float, azimuth: float) -> Array:
     return tilt * np.array([-np.sin(azimuth), np.cos(azimuth)])
-
-

@@ -7,6 +7,7 @@ from tol3d.machine.grammar.checks import (
     joints_named_twice,
     laid_too_early,
     laid_twice,
+    read_over_paths,
     shafts_thicker_than_bores,
     unfit_worst_errors,
 )
@@ -19,7 +20,7 @@ MACHINE: Final = Mechanism(
     name="machine",
     moves=(CarrierPinsSpec, OpenChainSpec, ShaftInBoresSpec),
     measures=(WorstPositionErrorSpec,),
-    checks=(laid_twice, laid_too_early, joints_named_twice, unfit_worst_errors),
+    checks=(laid_twice, read_over_paths, laid_too_early, joints_named_twice, unfit_worst_errors),
     warnings=(shafts_thicker_than_bores,),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import STATUSES as OF_ASSEMBLIES
 from tol3d.assembly.model.statuses import WITH_CLEARANCES as OF_CLEARANCES
+from tol3d.assembly.model.statuses import WITH_LOOPS as OF_LOOPS
 from tol3d.gearing.statuses import STATUSES as OF_GEARS
 from tol3d.system.statuses import Statuses
 
@@ -26,7 +27,10 @@ STATUSES: Final = _with_those_of(OF_ASSEMBLIES)
 WITH_CLEARANCES: Final = _with_those_of(OF_CLEARANCES)
 """The same, and parts that overlap: of gearboxes with clearances of whole parts."""
 
+WITH_LOOPS: Final = _with_those_of(OF_LOOPS)
+"""Further what may become of closed loops."""
+
 FROM_ASSEMBLIES: Final[NDArray[np.int8]] = np.array(
-    [WITH_CLEARANCES.texts.index(text) for text in OF_CLEARANCES.texts], dtype=np.int8
+    [WITH_LOOPS.texts.index(text) for text in OF_LOOPS.texts], dtype=np.int8
 )
 """Their codes by those of assemblies."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import reader_of
+from tol3d.assembly.posed import has_loops
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.assembly.zones import laws_told
 from tol3d.gearing.model.measure import Measure as GearMeasure
@@ -19,7 +20,7 @@ from tol3d.machine.joined import Joined, is_hidden
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.machine.roads import MachineRoad
-from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES
+from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -53,6 +54,8 @@ class MachineSystem(Joined):
     @property
     def statuses(self) -> Statuses:
         """See System."""
+        if has_loops(self.drawn.assembly):
+            return WITH_LOOPS
         return WITH_CLEARANCES if self._is_clearing else STATUSES
 
     @property

@@ -39,6 +39,11 @@ class StatedMove(ABC):
         return ()
 
     @property
+    def closes_loops(self) -> bool:
+        """Whether it closes loops, which may stay open or close on another branch."""
+        return False
+
+    @property
     def tables(self) -> str:
         """Import path of what makes tables of it for `tol3d check`; "" for none."""
         return ""

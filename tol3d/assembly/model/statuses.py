@@ -27,7 +27,7 @@ WITH_LOOPS: Final = Statuses(
     {**WITH_CLEARANCES.words, "does not close": "do not close", "other branch": "close on another branch"},
     {**WITH_CLEARANCES.states, "does not close": "not closed", "other branch": "on another branch"},
 )
-"""Further: a loop that does not close; one that closes only beyond a singular pose, on another branch than nominally."""
+"""Further: a loop that does not close; one that closes on another branch than nominally, beyond a singular pose."""
 
 OK: Final = 0
 NOT_UNIQUE: Final = 1

@@ -241,7 +241,7 @@ def turn(measured: Measured, world: World) -> Array:
 
 
 def lean(measured: Measured, world: World) -> Array:
-    """How far the second feature's z leans from the first's [rad]; with a third one along or across the tilt from its z.
+    """How far the second feature's z leans from the first's [rad]; with a third one along or across the tilt from it.
 
     `direction` (2,) then chooses: along and across.
     """

@@ -14,9 +14,9 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
-    from tol3d.report.page import PageItem
     from collections.abc import Callable
 
+    from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Map, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.presenting.labels import labels, unnamed
 from tol3d.assembly.presenting.part_symbols import joined_symbols, marks_on_solid
-from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
 from tol3d.report.body import Body, World
@@ -106,7 +106,8 @@ class ShownAssembly:
     def _in(self, poses: Sequence[str]) -> Sequence[tuple[str, Placed]]:
         """The build in some poses, as far as it is built there."""
         system, seen = self._posed, self.seen
-        assert system is not None and seen is not None
+        assert system is not None
+        assert seen is not None
         found = []
         for pose, own in system.in_poses(poses).items():
             if (placed := placed_in(own.assembly, seen.trials.deviations[:1])) is not None:

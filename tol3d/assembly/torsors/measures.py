@@ -336,7 +336,7 @@ def lean(measured: Measured, world: World) -> Array:
     about = np.cross(rest[:3, 2], axis)
     sine = float(np.linalg.norm(about))
     ahead, beside = (rest[:3, 0], rest[:3, 1]) if sine < LEANS else (np.cross(about, axis) / sine, about / sine)
-    return (measured.direction[0] * ahead + measured.direction[1] * beside) @ leans
+    return np.asarray((measured.direction[0] * ahead + measured.direction[1] * beside) @ leans)
 
 
 def slack(measured: Measured, world: World) -> Array:

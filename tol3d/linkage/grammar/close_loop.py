@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.import_path import named
 from tol3d.linkage.grammar.inputs import InputSpec, OutputSpec, PathSpec, PlacePoseSpec, PoseSpec, TiltPoseSpec
 from tol3d.linkage.grammar.joints import JointUnion, Length, RollingSpec
 from tol3d.scene.listed import listed
@@ -16,7 +17,6 @@ from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
-from tol3d.system.mechanism import named
 from tol3d.system.plain import PlainContributor
 
 if TYPE_CHECKING:
@@ -120,8 +120,8 @@ class CloseLoopSpec(StatedMoveSpec):
         for name, joint in self.joints.items():
             law = joint.room.distribution if joint.room is not None else None
             if law is not None:
-                path = ("joints", name, "clearance" if joint.kind == "ball" else "play", "distribution")
-                yield from (((*path, field), file) for field, file in law.file_names())
+                room = ("joints", name, "clearance" if joint.kind == "ball" else "play", "distribution")
+                yield from (((*room, field), file) for field, file in law.file_names())
 
     def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
         """See StatedMoveSpec: plays and clearances of joints, then deviations of inputs."""
@@ -165,7 +165,9 @@ class CloseLoopSpec(StatedMoveSpec):
             joint = self.joints[own.of]
             words = COORDINATES[joint.kind]
             if not words:
-                raise refused(f"inputs.{name}.of", "a joint with an axis, or a swing", f"{own.of!r}, a {joint.kind} one")
+                raise refused(
+                    f"inputs.{name}.of", "a joint with an axis, or a swing", f"{own.of!r}, a {joint.kind} one"
+                )
             if own.coordinate is None and len(words) > 1:
                 raise refused(f"inputs.{name}.coordinate", f"{' or '.join(words)}, of a {joint.kind} joint", "none")
             if own.coordinate is not None and own.coordinate not in words:
@@ -229,5 +231,3 @@ class CloseLoopSpec(StatedMoveSpec):
         for own, value in pose.items():
             if (dimension := getattr(value, "dimension", "")) != self.dimension_of(own):
                 raise refused(f"{at}.{own}", f"a {self.dimension_of(own)}", f"{value}, a {dimension}")
-
-

@@ -172,7 +172,7 @@ class UniversalSpec(JointSpec):
 
 
 class SwingSpec(JointSpec):
-    """Constant velocity: the part after tilts any way about the middle, and never spins about z of the first feature."""
+    """Constant velocity: the part after tilts any way about the middle, without spin about z of the first feature."""
 
     kind: Literal["swing"]
 
@@ -193,13 +193,6 @@ class RollingSpec(JointSpec):
 
 
 JointUnion = Annotated[
-    BallSpec
-    | RevoluteSpec
-    | PrismaticSpec
-    | CylindricalSpec
-    | ScrewSpec
-    | UniversalSpec
-    | SwingSpec
-    | RollingSpec,
+    BallSpec | RevoluteSpec | PrismaticSpec | CylindricalSpec | ScrewSpec | UniversalSpec | SwingSpec | RollingSpec,
     Field(discriminator="kind"),
 ]

@@ -17,8 +17,8 @@ STEPS: Final = 5
 """Values of each input in the table of outputs."""
 MOST_ROWS: Final = 64
 CONDITION: Final = (
-    "condition: of the equations of all joints with lengths as shares of {length:.4g} mm; it grows without bound towards "
-    "a singular pose"
+    "condition: of the equations of all joints with lengths as shares of {length:.4g} mm; it grows without bound "
+    "towards a singular pose"
 )
 
 

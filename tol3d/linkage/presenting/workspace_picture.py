@@ -5,11 +5,12 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from tol3d.assembly.posed import PosedSystem, system_of
@@ -65,7 +66,7 @@ class WorkspaceMap:
     def figure(self) -> Figure:
         """Tilts outwards, azimuths around, values as colours, the singular curve; not yet written."""
         own, figure = self.workspace, new_figure(*SIZE)
-        axes = figure.add_subplot(projection="polar")
+        axes: Any = figure.add_subplot(projection="polar")  # PolarAxes, which has more than Axes
         azimuths = np.append(own.azimuths, own.azimuths[0] + 2 * np.pi)
         tilts = np.degrees(np.vstack([own.tilts, own.tilts[:1]]))
         values = np.vstack([self.values, self.values[:1]])
@@ -84,7 +85,8 @@ class WorkspaceMap:
         axes.grid(color="white", alpha=0.4, linewidth=0.6)
         axes.tick_params(labelsize=8)
         axes.set_rlabel_position(112.0)
-        figure.colorbar(mesh, ax=axes, pad=0.1, shrink=0.8)
+        ticks = LogLocator(subs=(1.0, 2.0, 5.0))
+        figure.colorbar(mesh, ax=axes, pad=0.1, shrink=0.8, ticks=ticks, format="%g").minorticks_off()
         least = int(np.argmin(own.reach))
         note = f"outwards: tilt [deg], around: azimuth; red: singular, first at {np.degrees(own.reach[least]):.2f} deg"
         figure.text(0.02, 0.01, f"{note} towards {np.degrees(own.azimuths[least]):.4g} deg", fontsize=8, color=BLACK)
@@ -128,7 +130,9 @@ def workspace_map(
     found = workspace_of(move, COARSE_RAYS, COARSE_PLACES, lambda done: activity(f"ray {done} of {COARSE_RAYS}"))
     assert isinstance(system, PosedSystem)
     unit = next(own.unit for own in system.measures if own.name == measure)
-    return WorkspaceMap(move.name, f"sigma of {measure} [{unit}], first order", found, _sigmas(system, move, found, measure))
+    return WorkspaceMap(
+        move.name, f"sigma of {measure} [{unit}], first order", found, _sigmas(system, move, found, measure)
+    )
 
 
 def _sigmas(system: PosedSystem, move: ClosedLoop, workspace: Workspace, measure: str) -> Array:
@@ -161,5 +165,3 @@ def _sigmas(system: PosedSystem, move: ClosedLoop, workspace: Workspace, measure
     for place, name in names.items():
         found[place] = per * float(values[name].std())
     return found
-
-

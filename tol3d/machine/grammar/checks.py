@@ -6,6 +6,7 @@ from typing import Final
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.gearing.grammar.checks import too_thick
@@ -39,6 +40,14 @@ def laid_twice(scene: Scene) -> Iterator[Problem]:
                 words = f"expected a bore without a shaft, got {bore!r}, in which {other!r} lays one"
                 yield ("moves", name, "in", k), words
             bores.setdefault(bore, name)
+
+
+def read_over_paths(scene: Scene) -> Iterator[Problem]:
+    """Measures over paths, which scenes with gears do not have."""
+    for name, spec in scene.measures.items():
+        if isinstance(spec, TimedSpec) and spec.over is not None:
+            words = f"expected `at` a pose, for in a scene with gears no path is read, got {spec.over!r}"
+            yield ("measures", name, "over"), words
 
 
 def laid_too_early(scene: Scene) -> Iterator[Problem]:

@@ -13,7 +13,12 @@ from tol3d.assembly.grammar.measures.inspected import (
 )
 from tol3d.assembly.grammar.measures.inspected_pattern import InspectedPatternSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
-from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, OrientationErrorSpec, PoseErrorSpec, PositionErrorSpec
+from tol3d.assembly.grammar.measures.pose_errors import (
+    DirectionErrorSpec,
+    OrientationErrorSpec,
+    PoseErrorSpec,
+    PositionErrorSpec,
+)
 from tol3d.assembly.grammar.measures.slack import SlackSpec
 from tol3d.assembly.grammar.measures.virtual_clearance import VirtualClearanceSpec
 
