@@ -13,7 +13,7 @@
     findings     tally -> summary           study/findings.py           findings
     witness      some trials again          study/witness.py            witness_summary
     explanation  why both roads differ      study/agreement/            explanations
-    result       the run on disk            runs/run.py                 Run               (writer.py, manifest.py)
+    result       the run on disk            runs/run.py                 Run               (writer.py, occupant.py)
 
 A study knows a system by `system/` alone: contributors, measures, statuses, roads. Gears are one such system. Theirs:
 
@@ -80,8 +80,8 @@ from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.full_disk import refusals_explained
-from tol3d.runs.occupant import free_folder, refuse_changed
-from tol3d.runs.run import Run, whole_run
+from tol3d.runs.occupant import Place, free_folder, refuse_changed
+from tol3d.runs.run import Run
 from tol3d.runs.writer import RunWriter
 from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
 from tol3d.study import replaying
@@ -178,7 +178,7 @@ class _Order:
 
     def whole_run(self) -> Run | None:
         """The run that is there already, if it was asked to go on and has nothing left to do."""
-        return whole_run(self.folder, self.fingerprint) if self.execution.resume else None
+        return Place(self.folder, self.fingerprint).whole_run() if self.execution.resume else None
 
     @contextmanager
     def writing(self, *, force: bool) -> Iterator[RunWriter]:

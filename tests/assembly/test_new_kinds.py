@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from toys.registered import known
 
 from tol3d import Overrides, load_scene, open_run, run_scene
-from tol3d.assembly.from_scene.zones import drawn_by
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.angle import AngleSpec
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.grammar.tolerances import PositionSpec
+from tol3d.assembly.grammar.zone import LawSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.measures import Measured, Reading
 from tol3d.assembly.placing import measuring as placing
@@ -33,7 +33,6 @@ from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene.entry import kind_of
 from tol3d.scene.place import KeyPath
-from tol3d.strict import Strict
 from tol3d.system.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -55,13 +54,15 @@ def half_displaced(measured: Measured, world: TorsorWorld) -> Array:
     return torsors.size(measured, world) / 2
 
 
-class TwoEndsSpec(Strict):
+class TwoEndsSpec(LawSpec):
     """At either end of x."""
+
+    draws = f"{__name__}:two_ends"
 
     kind: Literal["two_ends"]
 
 
-class StrangeSpec(Strict):
+class StrangeSpec(LawSpec):
     """A law without a draw."""
 
     kind: Literal["strange"]
@@ -72,6 +73,13 @@ class TwoEndsPositionSpec(PositionSpec):
 
     kind: Literal["two_ends_position"]  # type: ignore[assignment]
     law: TwoEndsSpec  # type: ignore[assignment]
+
+
+class StrangePositionSpec(PositionSpec):
+    """A position with a law that nothing draws."""
+
+    kind: Literal["strange_position"]  # type: ignore[assignment]
+    law: StrangeSpec  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)
@@ -89,8 +97,7 @@ class TwoEnds(UnitLaw):
         return np.diag([1.0, 0.0])
 
 
-@drawn_by.register
-def _(law: TwoEndsSpec, zone: Zone, files: Files) -> Confined:
+def two_ends(law: TwoEndsSpec, zone: Zone, files: Files) -> Confined:
     return Confined(catalogue.axis_section(zone.width), TwoEnds(), "two ends")
 
 
@@ -149,9 +156,11 @@ def scene(tmp_path: Path) -> Iterator[Path]:
         yield path
 
 
-def test_a_law_that_nobody_registered_is_named_and_not_drawn_as_uniform() -> None:
-    with pytest.raises(TypeError, match="no draw by the law StrangeSpec: register it at drawn_by"):
-        drawn_by(StrangeSpec(kind="strange"), catalogue.axis_section(0.1), {})
+def test_a_law_without_a_draw_is_refused_as_it_is_registered() -> None:
+    own = Mechanism(name="own", extends=("assembly",), tolerances=(StrangePositionSpec,))
+    words = "own.tolerances: strange_position lacks `draws` of the law StrangeSpec, got ''"
+    with pytest.raises(InputError, match=f"^{re.escape(words)}$"), known(own):
+        pass
 
 
 @pytest.mark.parametrize(

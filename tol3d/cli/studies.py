@@ -178,7 +178,7 @@ def _how_to_resume(folder: Path) -> str:
     """What is kept of an interrupted run, and the command that goes on with it."""
     import shlex
 
-    from tol3d.runs.run import partial_of
+    from tol3d.runs.occupant import partial_of
 
     partial = partial_of(folder)
     if not partial.exists():

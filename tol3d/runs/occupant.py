@@ -1,21 +1,34 @@
-"""What lies where a run is to go, and whether a run may take its place.
+"""Whose folder this is: what lies where a run is to go, whether it may go on there, take its place, or delete it.
 
 A run is replaced by one of the same study only, and only where nothing but its own files is in its folder: notes,
 exports and other people's work are never deleted. `--force` replaces a run of another study too; what holds anything
-else it moves aside whole, to the first free of `<name>.1`, `<name>.2` ...
+else it moves aside whole, to the first free of `<name>.1`, `<name>.2` ... An unfinished run is written in
+`<name>.partial`, which its fingerprint shows to be one; `writer.py` does what is decided here.
 """
 
+import glob
 import itertools
+import os
+import re
+import secrets
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from tol3d.errors import RunError
-from tol3d.runs.fingerprint import Fingerprint, another_study, differences, interrupted
-from tol3d.runs.run import Run, partial_of, read_run, tidy_after_kill
+from tol3d.runs.atomic_write import UNFINISHED
+from tol3d.runs.block_files import CHECKSUMS, BlockFiles
+from tol3d.runs.fingerprint import FINGERPRINT, STUDY, Fingerprint, another_study, differences, interrupted
+from tol3d.runs.manifest import TRIALS, Manifest
+from tol3d.runs.run import CHECKPOINT, LOCK, PIECES, SUMMARY, Run, read_run, warn_of_damage, whole_file
 from tol3d.runs.summary.kinds import SummaryKinds
 
 SHOWN = 3  # foreign files in a message
+BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
+REPLACED = "replaced"
+REPLACED_NAME = re.compile(rf"\.{REPLACED}-[0-9]+-[0-9a-f]{{8}}")  # of a run until it is deleted, after the run's own
 
 
 class MovedAsideWarning(UserWarning):
@@ -43,34 +56,178 @@ class Occupant:
             return f"holds another study ({'; '.join(self.others)})"
         return f"holds what is not of the run ({_some(self.foreign)})" if self.foreign else ""
 
-    def refuse(self, *, force: bool) -> None:
-        """Raise unless it may be replaced, or moved aside.
+
+@dataclass(frozen=True)
+class Place:
+    """Where a run is to go.
+
+    Args:
+        path: its folder to be.
+        fingerprint: what makes the blocks of an interrupted run its own.
+        kinds: what a summary may hold; by default what this package's mechanisms add.
+    """
+
+    path: Path
+    fingerprint: Fingerprint
+    kinds: SummaryKinds | None = None
+
+    @property
+    def partial(self) -> Path:
+        """The folder in which it is written."""
+        return partial_of(self.path)
+
+    def occupant(self) -> Occupant | None:
+        """The run that lies there; None where nothing does.
+
+        Raises:
+            RunError: something lies there that is not a run, or cannot be recognised as one; nothing may replace it.
+        """
+        path = self.path
+        if not path.exists() and not path.is_symlink():
+            return None
+        try:
+            run = read_run(path, self.kinds)
+            _tidy_after_kill(run)
+            return Occupant(run, tuple(another_study(run.fingerprint, self.fingerprint)), tuple(run.manifest.foreign()))
+        except RunError as error:
+            words = f"{path}: exists and is not a tol3d run that this version knows ({error})"
+            raise RunError(f"{words}; choose another folder with --out") from None
+
+    def refuse_taken(self, *, force: bool) -> None:
+        """Raise unless a new run may take the place, or move aside what is there.
 
         Raises:
             RunError: it says the way out.
         """
-        if force or not self.reason:
+        occupant = self.occupant()
+        if occupant is None or force or not occupant.reason:
             return
-        way = "moves the whole folder aside" if self.foreign else "replaces it"
-        raise RunError(f"{self.run.path}: {self.reason}; choose another --out, or --force, which {way}")
+        way = "moves the whole folder aside" if occupant.foreign else "replaces it"
+        raise RunError(f"{self.path}: {occupant.reason}; choose another --out, or --force, which {way}")
+
+    def whole_run(self) -> Run | None:
+        """The finished run of that fingerprint, if no other was begun there since and all its blocks are whole."""
+        if self.partial.exists() or not (self.path / SUMMARY).is_file():
+            return None
+        run = read_run(self.path, self.kinds)
+        if differences(run.fingerprint, self.fingerprint) or (run.keeps_trials and not _has_whole_blocks(run)):
+            return None
+        _tidy_after_kill(run)
+        return run
+
+    def refuse_unmendable(self) -> None:
+        """Raise unless a finished run is there whose blocks may be made again, with all that lies in its folder.
+
+        Raises:
+            RunError: there is nothing to go on with.
+        """
+        path = self.path
+        if not path.exists():
+            raise RunError(f"{path}: nothing to resume, neither a run nor {self.partial.name} is there")
+        run = read_run(path, self.kinds)
+        self._refuse_another(run.fingerprint, f"{path}: nothing to resume, this is a finished run")
+        made_again = (SUMMARY, f"{TRIALS}/{CHECKSUMS}")
+        if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
+            raise RunError(f"{path / changed[0]}: was changed since the run was made; move it away first")
+
+    def begun(self) -> Fingerprint | None:
+        """The fingerprint of the interrupted run there; None where there is none, {} where it was being cleared.
+
+        Raises:
+            RunError: something else is in the folder of an unfinished run.
+        """
+        partial, there = self.partial, interrupted(self.partial)
+        if partial.exists() and there is None and {file.name for file in partial.iterdir()} - BEGINNING:
+            raise RunError(f"{partial}: exists and is not an interrupted run; move it away")
+        return there
+
+    def goes_on(self, there: Fingerprint | None, *, resume: bool, force: bool) -> bool:
+        """Whether this run goes on with what was begun; else that is to be cleared.
+
+        Raises:
+            RunError: it is another one, which is not thrown away.
+        """
+        if there is None or there == self.fingerprint:
+            return True
+        if resume:
+            self._refuse_another(there, f"{self.partial}: this is an interrupted run")
+        if there and not force and (others := another_study(there, self.fingerprint)):
+            raise RunError(
+                f"{self.partial}: an interrupted run of another study is kept there ({'; '.join(others)}); choose "
+                "another --out, or --force, which throws it away"
+            )
+        return False
+
+    def _refuse_another(self, there: Fingerprint, words: str) -> None:
+        if found := differences(there, self.fingerprint):
+            raise RunError(
+                f"{words} of something else ({'; '.join(found)}); choose another --out, or --force without --resume"
+            )
+
+    def taken(self, *, resume: bool) -> str | None:
+        """Why a folder will not do; None where this study is there, "" where nothing is."""
+        begun = self.partial.exists()
+        if begun:
+            there = interrupted(self.partial)
+            if there is None:
+                return "is taken by something else"
+            if others := another_study(there, self.fingerprint) if there else []:
+                return f"is that of an interrupted run of another study ({'; '.join(others)})"
+        try:
+            occupant = self.occupant()
+        except RunError:
+            return "is taken by something else"
+        if occupant is None:
+            return None if begun else ""
+        reason = "; ".join(occupant.others) if resume else occupant.reason
+        return reason or None
+
+    def put_in_place(self, *, force: bool) -> None:
+        """Rename the written folder; what lies there is deleted where it may be replaced, else moved aside."""
+        path = self.path
+        old = self._moved_away(force=force) if path.exists() else None
+        self.partial.replace(path)
+        _tidy(path)
+        if old is not None and not Manifest.read(old).remove():  # something came into it since
+            self._move_aside(old, "more than the run")
+        for left in path.parent.glob(f"{glob.escape(path.name)}.{REPLACED}-*"):
+            if REPLACED_NAME.fullmatch(left.name.removeprefix(path.name)):
+                self._remove_left(left)
+
+    def _remove_left(self, folder: Path) -> None:
+        """Delete what a kill left of a run that was replaced; with anything else in it, it is moved aside."""
+        with suppress(OSError):
+            folder.rmdir()  # its list goes last: without one there is only the folder
+        with suppress(RunError):
+            manifest = Manifest.read(folder)
+            if manifest.foreign() or not manifest.remove():
+                self._move_aside(folder, "more than the run")
+
+    def _moved_away(self, *, force: bool) -> Path | None:
+        """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
+        try:
+            occupant = self.occupant()
+        except RunError:
+            self._move_aside(self.path, "something else than a run")
+            return None
+        if occupant is not None and (occupant.foreign or (occupant.others and not force)):
+            self._move_aside(self.path, occupant.reason.removeprefix("holds "))
+            return None
+        old = self.path.with_name(f"{self.path.name}.{REPLACED}-{os.getpid()}-{secrets.token_hex(4)}")
+        self.path.rename(old)
+        return old
+
+    def _move_aside(self, folder: Path, what: str) -> None:
+        asides = (self.path.with_name(f"{self.path.name}.{number}") for number in itertools.count(1))
+        aside = next(aside for aside in asides if not aside.exists() and not aside.is_symlink())
+        folder.rename(aside)
+        warnings.warn(f"{self.path}: held {what}, and was moved aside to {aside}", MovedAsideWarning, stacklevel=2)
 
 
-def occupant_of(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None = None) -> Occupant | None:
-    """The run that lies at a path; None where nothing does.
-
-    Raises:
-        RunError: something lies there that is not a run, or cannot be recognised as one; nothing may replace it.
-    """
-    if not path.exists() and not path.is_symlink():
-        return None
-    try:
-        run = read_run(path, kinds)
-        tidy_after_kill(run)
-        return Occupant(run, tuple(another_study(run.fingerprint, fingerprint)), tuple(run.manifest.foreign()))
-    except RunError as error:
-        raise RunError(
-            f"{path}: exists and is not a tol3d run that this version knows ({error}); choose another folder with --out"
-        ) from None
+def partial_of(path: Path) -> Path:
+    """The folder in which a run that goes to `path` is written."""
+    path = path.resolve()  # so that "." has a name
+    return path.with_name(path.name + ".partial")
 
 
 def free_folder(
@@ -92,7 +249,7 @@ def free_folder(
     """
     taken = ""
     for path in numbered(wanted):
-        reason = _taken(path, fingerprint, kinds, resume=resume)
+        reason = Place(path, fingerprint, kinds).taken(resume=resume)
         if reason is None:
             return (path, taken)
         if not reason:
@@ -144,30 +301,30 @@ def _begun_or_finished(path: Path) -> Fingerprint:
     return read_run(path).fingerprint if path.exists() else {}
 
 
-def _taken(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None, *, resume: bool) -> str | None:
-    """Why a folder will not do; None where this study is there, "" where nothing is."""
-    partial = partial_of(path)
-    begun = partial.exists()
-    if begun:
-        there = interrupted(partial)
-        if there is None:
-            return "is taken by something else"
-        if others := another_study(there, fingerprint) if there else []:
-            return f"is that of an interrupted run of another study ({'; '.join(others)})"
+def _has_whole_blocks(run: Run) -> bool:
+    """Whether every block is as it was written; warns of each damaged one."""
     try:
-        occupant = occupant_of(path, fingerprint, kinds)
-    except RunError:
-        return "is taken by something else"
-    if occupant is None:
-        return None if begun else ""
-    reason = "; ".join(occupant.others) if resume else occupant.reason
-    return reason or None
+        blocks = run.blocks
+    except RunError as error:
+        warn_of_damage(error)
+        return False
+    whole = [whole_file(blocks, name) for name in blocks.names]
+    return len(whole) == -(-run.trials // run.block_trials) and all(whole)
 
 
-def free_aside(path: Path) -> Path:
-    """Where a folder is moved aside: the first of `<name>.1`, `<name>.2` ... that is not there."""
-    asides = (path.with_name(f"{path.name}.{number}") for number in itertools.count(1))
-    return next(aside for aside in asides if not aside.exists() and not aside.is_symlink())
+def _tidy_after_kill(run: Run) -> None:
+    """Take away what a kill between the end of a run and its tidying left; nothing that was not that run's."""
+    there = interrupted(run.path)
+    if there and not differences({key: there.get(key) for key in STUDY}, {key: run.fingerprint[key] for key in STUDY}):
+        _tidy(run.path)
+
+
+def _tidy(folder: Path) -> None:
+    """Take away what only an unfinished run needs; of a kill in here the finished run bears what was left."""
+    for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
+        (folder / name).unlink(missing_ok=True)
+    BlockFiles(folder / PIECES).clear()
+    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it shows that the others are ours
 
 
 def _some(names: tuple[str, ...]) -> str:

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from tol3d.errors import RunError
 from tol3d.files import LARGEST_FILE, FileContent, Files, UnreadableFileError, kept_name, read_contained
-from tol3d.runs.atomic_write import UNFINISHED
 from tol3d.runs.block_files import CHECKSUMS, MENDED, BlockFiles, block_name
-from tol3d.runs.fingerprint import FINGERPRINT, STUDY, Fingerprint, differences, interrupted
+from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.frame import Curves, frame_of
 from tol3d.runs.manifest import TRIALS, Manifest
 from tol3d.runs.parquet import Shape
@@ -277,34 +276,6 @@ def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
     return run
 
 
-def partial_of(path: Path) -> Path:
-    """The folder in which a run that goes to `path` is written."""
-    path = path.resolve()  # so that "." has a name
-    return path.with_name(path.name + ".partial")
-
-
-def whole_run(path: Path, fingerprint: Fingerprint, kinds: SummaryKinds | None = None) -> Run | None:
-    """The finished run of that fingerprint, if no other was begun there since and all its blocks are whole."""
-    if partial_of(path).exists() or not (path / SUMMARY).is_file():
-        return None
-    run = read_run(path, kinds)
-    if differences(run.fingerprint, fingerprint) or (run.keeps_trials and not _has_whole_blocks(run)):
-        return None
-    tidy_after_kill(run)
-    return run
-
-
-def _has_whole_blocks(run: Run) -> bool:
-    """Whether every block is as it was written; warns of each damaged one."""
-    try:
-        blocks = run.blocks
-    except RunError as error:
-        warn_of_damage(error)
-        return False
-    whole = [whole_file(blocks, name) for name in blocks.names]
-    return len(whole) == -(-run.trials // run.block_trials) and all(whole)
-
-
 def whole_file(files: BlockFiles, name: str) -> bool:
     """Whether a file is as it was written; warns of a damaged one."""
     try:
@@ -323,18 +294,3 @@ def warn_of_damage(error: RunError) -> None:
 def _is_words(name: str, values: NDArray[Any]) -> bool:
     """Whether a column is a detail in words, such as which contacts carry: values and what has a unit are numbers."""
     return values.dtype.kind == "U" and not name.startswith((ANALYTIC, GEOMETRIC)) and not name.endswith("]")
-
-
-def tidy_after_kill(run: Run) -> None:
-    """Take away what a kill between the end of a run and its tidying left; nothing that was not that run's."""
-    there = interrupted(run.path)
-    if there and not differences({key: there.get(key) for key in STUDY}, {key: run.fingerprint[key] for key in STUDY}):
-        tidy(run.path)
-
-
-def tidy(folder: Path) -> None:
-    """Take away what only an unfinished run needs; of a kill in here the finished run bears what was left."""
-    for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
-        (folder / name).unlink(missing_ok=True)
-    BlockFiles(folder / PIECES).clear()
-    (folder / FINGERPRINT).unlink(missing_ok=True)  # last, for it shows that the others are ours

@@ -1,11 +1,6 @@
 """Writes a run into `<name>.partial`, block by block, and puts it in its place at the end."""
 
-import glob
 import json
-import os
-import re
-import secrets
-import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,11 +11,11 @@ from filelock import FileLock, Timeout
 from tol3d.errors import DiskError, RunError, refused_by_disk
 from tol3d.files import FileContent, Files, kept_name
 from tol3d.runs.atomic_write import write_whole
-from tol3d.runs.block_files import CHECKSUMS, BlockFiles, block_name
+from tol3d.runs.block_files import BlockFiles, block_name
 from tol3d.runs.checkpoint import Checkpoint
-from tol3d.runs.fingerprint import FINGERPRINT, Fingerprint, another_study, differences, interrupted
+from tol3d.runs.fingerprint import FINGERPRINT, Fingerprint
 from tol3d.runs.manifest import TRIALS, Manifest, own_paths_of_trials
-from tol3d.runs.occupant import MovedAsideWarning, free_aside, occupant_of
+from tol3d.runs.occupant import Place
 from tol3d.runs.run import (
     CHECKPOINT,
     FILES,
@@ -30,9 +25,6 @@ from tol3d.runs.run import (
     SUMMARY,
     Columns,
     Run,
-    partial_of,
-    read_run,
-    tidy,
     warn_of_damage,
     whole_file,
 )
@@ -41,11 +33,8 @@ from tol3d.runs.summary.text import written
 
 T = TypeVar("T")
 
-BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
 DRAWN = "drawn"  # folder of pictures until they are whole
 NOBODYS = "{}"  # the fingerprint of no run
-REPLACED = "replaced"
-REPLACED_NAME = re.compile(rf"\.{REPLACED}-[0-9]+-[0-9a-f]{{8}}")  # of a run until it is deleted, after the run's own
 
 
 class RunWriter:
@@ -77,15 +66,15 @@ class RunWriter:
     ) -> None:
         self._kinds = kinds
         self.path = path.resolve()
-        self.partial = partial_of(path)
-        self._fingerprint = json.loads(json.dumps(fingerprint))
+        self._place = Place(self.path, json.loads(json.dumps(fingerprint)), kinds)
+        self.partial = self._place.partial
         self._lock = FileLock(self.partial / LOCK)
         self._keep_trials = keep_trials
         self._force = force
         self._tables: list[str] = []
         self._pictures: list[str] = []
-        if not resume and (occupant := occupant_of(self.path, self._fingerprint, kinds)):
-            occupant.refuse(force=force)
+        if not resume:
+            self._place.refuse_taken(force=force)
         try:
             if resume:
                 self._reopen()
@@ -100,51 +89,26 @@ class RunWriter:
             raise RunError(f"{self.partial}: cannot be written ({error.strerror}); choose another --out") from None
 
     def _reopen(self) -> None:
-        """A finished run with damaged blocks becomes an interrupted one, with all that lies in its folder.
-
-        Raises:
-            RunError: there is nothing to go on with.
-        """
+        """A finished run with damaged blocks becomes an interrupted one, with all that lies in its folder."""
         if self.partial.exists():
             return
-        if not self.path.exists():
-            raise RunError(f"{self.path}: nothing to resume, neither a run nor {self.partial.name} is there")
-        run = read_run(self.path, self._kinds)
-        self._refuse_another(run.fingerprint, f"{self.path}: nothing to resume, this is a finished run")
-        made_again = (SUMMARY, f"{TRIALS}/{CHECKSUMS}")
-        if changed := [name for name in run.manifest.foreign() if name in run.manifest.sums and name not in made_again]:
-            raise RunError(f"{self.path / changed[0]}: was changed since the run was made; move it away first")
+        self._place.refuse_unmendable()
         write_whole(self.path / FINGERPRINT, self._mark)
         self.path.replace(self.partial)
 
-    def _refuse_another(self, there: Fingerprint, words: str) -> None:
-        if found := differences(there, self._fingerprint):
-            raise RunError(
-                f"{words} of something else ({'; '.join(found)}); choose another --out, or --force without --resume"
-            )
-
     @property
     def _mark(self) -> bytes:
-        return json.dumps(self._fingerprint, sort_keys=True, indent=1).encode()
+        return json.dumps(self._place.fingerprint, sort_keys=True, indent=1).encode()
 
     def _open_partial(self, *, resume: bool) -> None:
         mark = self.partial / FINGERPRINT
-        there = interrupted(self.partial)
-        if self.partial.exists() and there is None and {file.name for file in self.partial.iterdir()} - BEGINNING:
-            raise RunError(f"{self.partial}: exists and is not an interrupted run; move it away")
+        there = self._place.begun()
         self.partial.mkdir(parents=True, exist_ok=True)
         try:
             self._lock.acquire(blocking=False)
         except Timeout:
             raise RunError(f"{self.path}: another run is being written there; choose another --out") from None
-        if there is not None and there != self._fingerprint:
-            if resume:
-                self._refuse_another(there, f"{self.partial}: this is an interrupted run")
-            if there and not self._force and (others := another_study(there, self._fingerprint)):
-                raise RunError(
-                    f"{self.partial}: an interrupted run of another study is kept there ({'; '.join(others)}); choose "
-                    "another --out, or --force, which throws it away"
-                )
+        if not self._place.goes_on(there, resume=resume, force=self._force):
             write_whole(mark, NOBODYS.encode())  # killed in here, the next run sees that the rest is not its own
             for folder in (TRIALS, PIECES):
                 BlockFiles(self.partial / folder).clear()
@@ -236,7 +200,7 @@ class RunWriter:
         own = {SUMMARY, *self._kept, *self._tables, *self._pictures, *lists, *self._older()}
         Manifest.of(self.partial, own).write()
         self.close()
-        self._put_in_place()
+        self._place.put_in_place(force=self._force)
         return Run(self.path, json.loads(text), self._kinds)
 
     def _older(self) -> Iterator[str]:
@@ -249,45 +213,6 @@ class RunWriter:
     def close(self) -> None:
         """Let go of the folder, finished or not: another run may be written there."""
         self._lock.release()
-
-    def _put_in_place(self) -> None:
-        """Rename the folder; what lies there is deleted where it may be replaced, else moved aside."""
-        old = self._moved_away() if self.path.exists() else None
-        self.partial.replace(self.path)
-        tidy(self.path)
-        if old is not None and not Manifest.read(old).remove():  # something came into it since
-            self._move_aside(old, "more than the run")
-        for left in self.path.parent.glob(f"{glob.escape(self.path.name)}.{REPLACED}-*"):
-            if REPLACED_NAME.fullmatch(left.name.removeprefix(self.path.name)):
-                self._remove_left(left)
-
-    def _remove_left(self, folder: Path) -> None:
-        """Delete what a kill left of a run that was replaced; with anything else in it, it is moved aside."""
-        with suppress(OSError):
-            folder.rmdir()  # its list goes last: without one there is only the folder
-        with suppress(RunError):
-            manifest = Manifest.read(folder)
-            if manifest.foreign() or not manifest.remove():
-                self._move_aside(folder, "more than the run")
-
-    def _moved_away(self) -> Path | None:
-        """Free the run's place: the old run's new name if it may be deleted, None if it was moved aside."""
-        try:
-            occupant = occupant_of(self.path, self._fingerprint, self._kinds)
-        except RunError:
-            self._move_aside(self.path, "something else than a run")
-            return None
-        if occupant is not None and (occupant.foreign or (occupant.others and not self._force)):
-            self._move_aside(self.path, occupant.reason.removeprefix("holds "))
-            return None
-        old = self.path.with_name(f"{self.path.name}.{REPLACED}-{os.getpid()}-{secrets.token_hex(4)}")
-        self.path.rename(old)
-        return old
-
-    def _move_aside(self, folder: Path, what: str) -> None:
-        aside = free_aside(self.path)
-        folder.rename(aside)
-        warnings.warn(f"{self.path}: held {what}, and was moved aside to {aside}", MovedAsideWarning, stacklevel=2)
 
 
 def _piece_name(index: int, first: int | str) -> str:

@@ -15,7 +15,7 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_colum
 from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import OK, Statuses
-from tol3d.system.system import System
+from tol3d.system.system import Described, System
 from tol3d.system.trials import Trials
 
 Columns = dict[str, NDArray[Any]]
@@ -67,7 +67,7 @@ def drawn_columns(system: System, trials: Trials) -> Columns:
     return columns | dict(system.columns(trials))
 
 
-def _terms(system: System, road: str, answers: Answers) -> Columns:
+def _terms(system: Described, road: str, answers: Answers) -> Columns:
     return {
         breakdown.column(road, term.name): answers.terms[breakdown.measure, term.name] * breakdown.per_internal
         for breakdown in system.breakdowns

@@ -19,7 +19,7 @@ from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
 from tol3d.system.road import Road
 from tol3d.system.stated import component_slices, mean_deviations
-from tol3d.system.system import System
+from tol3d.system.system import Described, System
 
 Array = NDArray[np.float64]
 
@@ -180,7 +180,7 @@ def _step(contributor: Contributor) -> float:
     return contributor.draw.sigma or contributor.per_unit
 
 
-def _concerned(system: System, acting: Sequence[Contributor]) -> list[Contributor]:
+def _concerned(system: Described, acting: Sequence[Contributor]) -> list[Contributor]:
     """Those that act on a measure and those that they read, directly or not, in the system's order."""
     known = {own.name: own for own in system.contributors}
     names = {own.name for own in acting}

@@ -15,7 +15,7 @@ from tol3d.system.dependent import reads_of
 from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
 from tol3d.system.regressors import regressor_count
-from tol3d.system.system import Columns, System
+from tol3d.system.system import Columns, System, Theory
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -91,7 +91,7 @@ class RegressorSet:
         """How many rows there are."""
         return self.clusters.features
 
-    def rows(self, system: System, columns: Columns) -> Array:
+    def rows(self, system: Theory, columns: Columns) -> Array:
         """The regressors of a block, a row each, (regressors, trials), over each contributor's sigma."""
         rows = np.empty((len(self), len(next(iter(columns.values())))))
         ends = self.clusters.starts.tolist()

@@ -27,7 +27,7 @@ from tol3d.system.draw import Each, JudgedDraw
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
-from tol3d.system.system import System
+from tol3d.system.system import Described, System
 from tol3d.units import FACTORS
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
     return grids
 
 
-def _values(system: System, measure: Measure, pilot: Columns) -> list[Array]:
+def _values(system: Described, measure: Measure, pilot: Columns) -> list[Array]:
     """The pilot's values of a measure by each road that was gone, nan where a trial did not seat."""
     roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
     return [outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads]
@@ -235,7 +235,7 @@ class Tally:
         )
 
 
-def _unphysical(system: System, columns: Columns) -> dict[str, int]:
+def _unphysical(system: Described, columns: Columns) -> dict[str, int]:
     known = {own.name: own for own in system.contributors}
 
     def components(name: str) -> list[NDArray[np.float64]]:

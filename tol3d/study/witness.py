@@ -17,7 +17,7 @@ from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import GEOMETRIC, Columns, status_column, value_column
 from tol3d.system.road import Road, WitnessRoad
-from tol3d.system.system import System
+from tol3d.system.system import Roads
 from tol3d.system.trials import joined
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 STREAM = ("witness", "trial")
 
 
-def witness_of(system: System) -> str | None:
+def witness_of(system: Roads) -> str | None:
     """The engine that can check the others; None where there is none."""
     return next((name for name, kind in system.roads.items() if kind.witness), None)
 

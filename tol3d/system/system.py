@@ -26,10 +26,8 @@ KeyPath = tuple[str | int, ...]
 StreamKey = tuple[str, str]
 
 
-class System(Protocol):
-    """Parts that are built and measured: frozen, and it pickles. Lengths are mm, angles rad, temperatures K."""
-
-    # what it is -------------------------------------------------------------------------------------
+class Described(Protocol):
+    """What a system is: its contributors, measures and statuses."""
 
     @property
     def name(self) -> str:
@@ -69,7 +67,9 @@ class System(Protocol):
         """What a measure is, by keys of summary.json: its kind, of what it is, how it is read."""
         ...
 
-    # its trials -------------------------------------------------------------------------------------
+
+class Positioned(Protocol):
+    """Where the shafts of a system stand in its trials."""
 
     @property
     def streams(self) -> Sequence[StreamKey]:
@@ -88,7 +88,9 @@ class System(Protocol):
         """Whether a deviation's direction turns through all angles from trial to trial, read at these positions."""
         ...
 
-    # its roads --------------------------------------------------------------------------------------
+
+class Roads(Protocol):
+    """By which roads a system answers, and what they take."""
 
     @property
     def roads(self) -> Mapping[str, RoadKind]:
@@ -123,7 +125,9 @@ class System(Protocol):
         """What chord errors [mm] may make of a measure, in its unit."""
         ...
 
-    # what acts on a measure -------------------------------------------------------------------------
+
+class Theory(Protocol):
+    """What acts on the measures of a system, and what is known of them without trials."""
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """The contributors that act on a measure."""
@@ -151,7 +155,9 @@ class System(Protocol):
         """What the analytic road leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
         ...
 
-    # what it shows ----------------------------------------------------------------------------------
+
+class Shown(Protocol):
+    """What a system shows of its results."""
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """Further sections of summary.json, from what was pooled of each breakdown by measure and road."""
@@ -160,3 +166,7 @@ class System(Protocol):
     def display(self, trials: Trials, road: Road) -> Any:
         """A build with its contacts, for whoever draws or exports it; the system's presenters know what it is."""
         ...
+
+
+class System(Described, Positioned, Roads, Theory, Shown, Protocol):
+    """Parts that are built and measured: frozen, and it pickles. Lengths are mm, angles rad, temperatures K."""

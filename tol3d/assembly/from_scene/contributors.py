@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +20,11 @@ from tol3d.assembly.grammar.tolerances import (
     SizeSpec,
 )
 from tol3d.assembly.grammar.tolerances.form import FormSpec
-from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec, RingLawSpec, UniformLawSpec
 from tol3d.assembly.model import Contribution
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
-from tol3d.distributions import Distribution, TruncatedNormal, Uniform
+from tol3d.distributions import Distribution
+from tol3d.import_path import named
 from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.system.plain import PlainContributor
@@ -33,8 +32,6 @@ from tol3d.system.plain import PlainContributor
 Array = NDArray[np.float64]
 Touch = tuple[str, str]
 """A move, and one of its pairs by the name that locators have."""
-
-SIGMAS = 3.0  # of a point that touches, in half of the form's zone, by the law `normal`
 
 
 @dataclass
@@ -175,21 +172,11 @@ class Effects:
             return  # a part that is like the toleranced one, or one of a pattern, and touches nothing there
         if not others:
             raise self.scene.refuse(("tolerances", own.entry, "law"), self._untouched(own))
-        half = 0.5 * spec.zone.size
-        match spec.law:
-            case ProcessLawSpec():
-                law: Distribution = spec.law.distribution.resolve(self.scene.files)
-            case NormalLawSpec():
-                law = TruncatedNormal(0.0, half / SIGMAS, -half, half)
-            case UniformLawSpec():
-                law = Uniform(-half, half)
-            case RingLawSpec():
-                words = f"expected uniform, normal or process, got ring of a {spec.kind} of {own.feature!r}"
-                raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words}; a ring is of where an axis lies")
-            case None:
-                raise TypeError(f"{own.name}: expected a form with a law")
-            case _:
-                assert_never(spec.law)
+        assert spec.law is not None
+        if not spec.law.touching:
+            words = f"expected uniform, normal or process, got {spec.law.kind} of a {spec.kind} of {own.feature!r}"
+            raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words}; {spec.law.lies}")
+        law: Distribution = named(spec.law.touching)(spec.law, 0.5 * spec.zone.size, self.scene.files)
         columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)))
         for k, touches in enumerate(others.values()):
             matrix = np.zeros((1, len(others)))

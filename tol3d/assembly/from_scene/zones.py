@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from functools import singledispatch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, 
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.modified import Modified
-from tol3d.assembly.grammar.zone import NormalLawSpec, ProcessLawSpec, RingLawSpec, UniformLawSpec, ZoneSpec
+from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
 from tol3d.assembly.model import Axis
 from tol3d.assembly.zones import (
     Confined,
@@ -25,19 +24,13 @@ from tol3d.assembly.zones import (
     Zone,
     ZoneDraw,
     catalogue,
-    normal_in,
-    ring_in,
-    uniform_in,
 )
-from tol3d.assembly.zones.centred import Centred
 from tol3d.errors import InputError
 from tol3d.files import Files
+from tol3d.import_path import named
 from tol3d.scene import Scene
 
 Array = NDArray[np.float64]
-
-TILTS = ("rise x", "rise y")
-"""Components of planes that a process spreads about 0, whatever its mean: an offset does not tilt a face."""
 
 LEAST_SINE = 1e-9
 """Of an angle from the axis; a direction nearer to it has no direction across."""
@@ -117,41 +110,16 @@ def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
     return replace(found, bonus=bonus)
 
 
-@singledispatch
-def drawn_by(law: object, zone: Zone, files: Files) -> Confined | Process:
-    """The draw that a law of a scene makes of a zone; a law of one's own registers what it makes.
+def drawn_by(law: LawSpec, zone: Zone, files: Files) -> Confined | Process:
+    """The draw that a law of a scene makes of a zone.
 
     Args:
         law: as the scene states it.
         zone: without bonus.
         files: those that a distribution may read.
-
-    Raises:
-        TypeError: a law that nobody registered.
     """
-    raise TypeError(f"from_scene/zones.py has no draw by the law {type(law).__name__}: register it at drawn_by")
-
-
-@drawn_by.register
-def _(law: UniformLawSpec, zone: Zone, files: Files) -> Confined:
-    return uniform_in(zone)
-
-
-@drawn_by.register
-def _(law: NormalLawSpec, zone: Zone, files: Files) -> Confined:
-    return normal_in(zone)
-
-
-@drawn_by.register
-def _(law: RingLawSpec, zone: Zone, files: Files) -> Confined:
-    return ring_in(zone)
-
-
-@drawn_by.register
-def _(law: ProcessLawSpec, zone: Zone, files: Files) -> Process:
-    own = law.distribution.resolve(files)
-    about_zero = Centred(own)
-    return Process(zone, tuple(about_zero if name in TILTS else own for name in zone.components))
+    found: Confined | Process = named(law.draws)(law, zone, files)
+    return found
 
 
 def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:

@@ -1,11 +1,14 @@
 """Tolerance zones and the laws of deviations in them, as a scene names them."""
 
-from typing import Annotated, Any, Literal, Self
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Final, Literal, Self, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.distributions import StatedDistribution
+from tol3d.import_path import is_named
 from tol3d.scene.part import Length
+from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity, shown
@@ -43,29 +46,74 @@ class ZoneSpec(Strict):
         return self
 
 
-class UniformLawSpec(Strict):
+DRAWS: Final = "tol3d.assembly.from_scene.laws"
+
+
+class LawSpec(Strict):
+    """A law of deviations in a zone, and by import paths `package.module:function` how they are drawn.
+
+    `draws` makes of the law, a zone without bonus and files the draw of a feature's displacement (Confined or Process);
+    `touching` of the law, half of a form's zone [mm] and files the distribution of a point that touches, "" where forms
+    cannot have it: `lies` says why.
+    """
+
+    draws: ClassVar[str]
+    touching: ClassVar[str] = ""
+    lies: ClassVar[str] = "that is no law of a form"
+
+    kind: str
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Files that it reads, each with its field."""
+        return iter(())
+
+    @classmethod
+    def lacking(cls) -> Iterator[str]:
+        """What it names and is not there."""
+        for what, path in (("draws", getattr(cls, "draws", "")), ("touching", cls.touching)):
+            if path or what == "draws":
+                yield from () if is_named(path) else (f"`{what}` of the law {cls.__name__}, got {path!r}",)
+
+
+class UniformLawSpec(LawSpec):
     """Every point of the zone is as likely as any other."""
+
+    draws: ClassVar[str] = f"{DRAWS}:uniform"
+    touching: ClassVar[str] = f"{DRAWS}:uniform_form"
 
     kind: Literal["uniform"]
 
 
-class NormalLawSpec(Strict):
+class NormalLawSpec(LawSpec):
     """The middle of the feature is normal, 3 sigma at half of the zone and cut off there; tilts in what it leaves."""
+
+    draws: ClassVar[str] = f"{DRAWS}:normal"
+    touching: ClassVar[str] = f"{DRAWS}:normal_form"
 
     kind: Literal["normal"]
 
 
-class RingLawSpec(Strict):
+class RingLawSpec(LawSpec):
     """The middle of an axis lies on the edge of its zone, at any phase, without lean: an eccentricity of one size."""
+
+    draws: ClassVar[str] = f"{DRAWS}:ring"
+    lies: ClassVar[str] = "a ring is of where an axis lies"
 
     kind: Literal["ring"]
 
 
-class ProcessLawSpec(Strict):
+class ProcessLawSpec(LawSpec):
     """A stated law of each coordinate; the zone judges only, and what lies outside stays in the trial."""
+
+    draws: ClassVar[str] = f"{DRAWS}:process"
+    touching: ClassVar[str] = f"{DRAWS}:process_form"
 
     kind: Literal["process"]
     distribution: StatedDistribution = Field(description="of each coordinate, a length at the end of the feature")
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """See LawSpec."""
+        return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
 
 def _no_word(value: Any) -> Any:
@@ -79,3 +127,12 @@ LawUnion = Annotated[
     Field(discriminator="kind", description="the law of deviations in the zone: uniform, normal, ring or process"),
     BeforeValidator(_no_word),
 ]
+
+
+def laws_lacking(annotation: Any) -> Iterator[str]:
+    """What the laws that a field may hold name and is not there."""
+    if isinstance(annotation, type) and issubclass(annotation, LawSpec):
+        yield from annotation.lacking()
+    else:
+        for own in get_args(annotation):
+            yield from laws_lacking(own)

@@ -12,7 +12,7 @@ from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.regressors import Regressed, regressor_set
 from tol3d.study.tally import MeasureTally
 from tol3d.system.measure import Measure
-from tol3d.system.system import System
+from tol3d.system.system import System, Theory
 
 Array = NDArray[np.float64]
 
@@ -64,7 +64,7 @@ class RoadFits:
         return cls(regressed, tally.disagreement, difference, analytic, geometric, sigma, magnitude, own)
 
 
-def _effects_at_one_position(system: System, measure: Measure) -> Mapping[str, float]:
+def _effects_at_one_position(system: Theory, measure: Measure) -> Mapping[str, float]:
     """Standard deviations by the stack-up, at a random position, of a measure that takes an extreme; else none."""
     form = system.reference_form(measure) if measure.take != "value" else None
     shares = form.shares if form else ()

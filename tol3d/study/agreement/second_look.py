@@ -25,7 +25,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.positions import AT_RANDOM
 from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations
-from tol3d.system.system import System
+from tol3d.system.system import Described, System
 from tol3d.system.trials import Trials, joined
 
 Array = NDArray[np.float64]
@@ -70,7 +70,7 @@ class SecondLook:
         return IndependentSums.of_each(rows, target[None, good], own, [own.all], sparse_products())[0]
 
 
-def scalars_of(system: System) -> tuple[Measure, ...]:
+def scalars_of(system: Described) -> tuple[Measure, ...]:
     """The measures of one value a trial."""
     return tuple(measure for measure in system.measures if measure.take != "curve")
 

@@ -8,6 +8,7 @@ from pydantic import Field
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.zone import laws_lacking
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceEntry
@@ -19,6 +20,12 @@ class FeatureTolerance(ToleranceEntry):
     applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "plane", "slot", "cylinder", "axis")
 
     of: FeatureName = Field(description="the feature, with its part")
+
+    @classmethod
+    def lacking(cls) -> Iterator[str]:
+        """See Entry: how its laws are drawn."""
+        if "law" in cls.model_fields:
+            yield from laws_lacking(cls.model_fields["law"].annotation)
 
     def references(self) -> tuple[Reference, ...]:
         """The part."""

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.modified import Modified
-from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, ZoneSpec
+from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
 
@@ -35,9 +35,7 @@ class LocationSpec(FeatureTolerance):
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""
-        law: Any = self.law
-        found = law.distribution.file_names() if isinstance(law, ProcessLawSpec) else ()
-        return ((("law", "distribution", field), name) for field, name in found)
+        return ((("law", *path), name) for path, name in self.law.file_names())
 
 
 class PositionSpec(Modified, LocationSpec):

@@ -1,11 +1,11 @@
 """Position tolerance of the bores of a carrier, as a drawing states it."""
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec
+from tol3d.assembly.grammar.zone import LawUnion
 from tol3d.planetary.grammar.parts.carrier import CarrierSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
@@ -41,6 +41,4 @@ class BorePositionSpec(ToleranceEntry):
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""
-        law: Any = self.law
-        found = law.distribution.file_names() if isinstance(law, ProcessLawSpec) else ()
-        return ((("law", "distribution", field), name) for field, name in found)
+        return ((("law", *path), name) for path, name in self.law.file_names())
