@@ -5,6 +5,7 @@ import sys
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, Final
 
 DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILINE)
@@ -38,6 +39,20 @@ def is_named(path: str) -> bool:
 @cache
 def _defined(module: str) -> frozenset[str]:
     """Names that the source of a module defines at its top; without it, none."""
-    spec = find_spec(module)
-    source = getattr(spec and spec.loader, "get_source", lambda _: None)(module)
-    return frozenset(name for names in DEFINED.findall(source or "") for name in names if name)
+    source = _source(module)
+    return frozenset(name for names in DEFINED.findall(source) for name in names if name)
+
+
+def _source(module: str) -> str:
+    """The source of a module: only its outermost package is loaded, for what is between may load much."""
+    outermost, *inner = module.split(".")
+    spec = find_spec(outermost)
+    if spec is None or not inner:
+        source: str | None = getattr(spec and spec.loader, "get_source", lambda _: None)(module)
+        return source or ""
+    for folder in spec.submodule_search_locations or ():
+        own = Path(folder, *inner)
+        for file in (own.with_suffix(".py"), own / "__init__.py"):
+            if file.is_file():
+                return file.read_text("utf-8")
+    return ""

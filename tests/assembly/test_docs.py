@@ -109,7 +109,8 @@ def test_the_scenes_use_every_field_of_every_kind() -> None:
     assert len(PAIRS) == 3
     said |= {own for pair in PAIRS for own in fields_said(pair)}  # of the page
     said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one
-    posed = {(model, field) for model, field in known if field == "at" and issubclass(model, TimedSpec)}  # of machines
+    of_poses = {"at", "over", "take"}  # of machines and linkages
+    posed = {(model, field) for model, field in known if field in of_poses and issubclass(model, TimedSpec)}
     assert unsaid(known - posed, said) == set()
     assert set(kinds) <= {model for model, _ in said}
 

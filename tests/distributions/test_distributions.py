@@ -345,7 +345,16 @@ def test_quantities_names_every_dimensioned_field() -> None:
 
 def test_every_kind_has_a_json_schema() -> None:
     kinds = UNION.json_schema()["discriminator"]["mapping"]
-    assert set(kinds) == {"normal", "truncated_normal", "uniform", "triangular", "rayleigh", "constant", "empirical"}
+    assert set(kinds) == {
+        "normal",
+        "truncated_normal",
+        "uniform",
+        "triangular",
+        "rayleigh",
+        "constant",
+        "empirical",
+        "arcsine",
+    }
 
 
 # the file of an empirical distribution ------------------------------------------------------------

@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from tol3d.assembly.posed import PosedSystem, system_of
@@ -20,7 +17,8 @@ from tol3d.linkage.grammar.close_loop import CloseLoopSpec
 from tol3d.linkage.grammar.inputs import TiltPoseSpec
 from tol3d.linkage.loop import ClosedLoop
 from tol3d.linkage.workspace import Workspace, workspace_of
-from tol3d.report.canvas import BLACK, VERMILLION, new_figure, save_figure
+from tol3d.report.canvas import save_figure
+from tol3d.report.polar_map import polar_map
 from tol3d.scene.nearest import hint
 from tol3d.study.simulation import Simulation
 from tol3d.system.road import ANALYTIC_ROAD
@@ -35,8 +33,6 @@ COARSE_RAYS: Final = 24
 COARSE_PLACES: Final = 10
 """Of a picture of a measure's sigma, for which the assembly is made anew in each pose."""
 DRAWS: Final = 2000
-SIZE: Final = (7.2, 6.2)
-COLOURS: Final = "viridis_r"
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,34 +59,15 @@ class WorkspaceMap:
         """
         save_figure(self.figure(), path)
 
-    def figure(self) -> Figure:
+    def figure(self) -> Any:
         """Tilts outwards, azimuths around, values as colours, the singular curve; not yet written."""
-        own, figure = self.workspace, new_figure(*SIZE)
-        axes: Any = figure.add_subplot(projection="polar")  # PolarAxes, which has more than Axes
-        azimuths = np.append(own.azimuths, own.azimuths[0] + 2 * np.pi)
-        tilts = np.degrees(np.vstack([own.tilts, own.tilts[:1]]))
-        values = np.vstack([self.values, self.values[:1]])
-        shown = np.ma.masked_invalid(values)
-        around = np.repeat(azimuths[:, None], tilts.shape[1], axis=1)
-        mesh = axes.pcolormesh(
-            around,
-            tilts,
-            shown,
-            shading="gouraud",
-            cmap=COLOURS,
-            norm=LogNorm(float(shown.min()), float(shown.max()) if shown.max() > shown.min() else None),
+        own = self.workspace
+        least, reach = int(np.argmin(own.reach)), np.degrees(own.reach)
+        words = (
+            "outwards: tilt [deg], around: azimuth [deg]; red: where it is singular or ends, first at "
+            f"{reach[least]:.2f} deg towards {np.degrees(own.azimuths[least]):.4g} deg"
         )
-        axes.plot(azimuths, np.degrees(np.append(own.reach, own.reach[0])), color=VERMILLION, linewidth=1.5)
-        axes.set_title(f"{self.move}: {self.words}", color=BLACK, fontsize=11, fontweight="bold", pad=18)
-        axes.grid(color="white", alpha=0.4, linewidth=0.6)
-        axes.tick_params(labelsize=8)
-        axes.set_rlabel_position(112.0)
-        ticks = LogLocator(subs=(1.0, 2.0, 5.0))
-        figure.colorbar(mesh, ax=axes, pad=0.1, shrink=0.8, ticks=ticks, format="%g").minorticks_off()
-        least = int(np.argmin(own.reach))
-        note = f"outwards: tilt [deg], around: azimuth; red: singular, first at {np.degrees(own.reach[least]):.2f} deg"
-        figure.text(0.02, 0.01, f"{note} towards {np.degrees(own.azimuths[least]):.4g} deg", fontsize=8, color=BLACK)
-        return figure
+        return polar_map(f"{self.move}: {self.words}", own.azimuths, np.degrees(own.tilts), self.values, reach, [words])
 
     def csv(self) -> str:
         """Azimuth, tilt, inputs and value of each place."""
