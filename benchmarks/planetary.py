@@ -20,11 +20,9 @@ from rich.table import Table
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.execution.pools import Execution
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.contact_curves import ContactCurves
+from tol3d.planetary.exact.contact import Contact, ContactCurves
+from tol3d.planetary.first_order.stack_up import StackUp, StackUpCurves
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.stack_up import StackUp
-from tol3d.planetary.stack_up_curves import StackUpCurves
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 

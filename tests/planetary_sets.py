@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.set_mesh import SetGear, SetMesh
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 
 Array = NDArray[np.float64]
 ALPHA = math.radians(20)

@@ -15,11 +15,9 @@ from OCP.gp import gp_Pnt
 from oracles.rolling_disc import Outline, distance, pin_in_disc
 from scipy.special import ellipe
 
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
-from tol3d.cycloid.shapes import CycloidDisc, DiscHoles
-from tol3d.cycloid.shapes_cad import FLANK_ERROR, disc, knots
-from tol3d.cycloid.strips import lobe_strips
+from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
+from tol3d.cycloid.model.shapes_cad import FLANK_ERROR, disc, knots
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.solids import display_mesh
 

@@ -7,11 +7,11 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from rv_250 import rv_250
 
-from tol3d.cycloid.contact import ContactStage
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.linear import LinearStage
-from tol3d.cycloid.linear_rest import LinearRest
-from tol3d.cycloid.rest import Play, RestStage
+from tol3d.cycloid.exact.contact import ContactStage
+from tol3d.cycloid.exact.rest import Play, RestStage
+from tol3d.cycloid.first_order.linear import LinearStage
+from tol3d.cycloid.first_order.linear_rest import LinearRest
+from tol3d.cycloid.model.deviated import Deviated
 
 Array = NDArray[np.float64]
 

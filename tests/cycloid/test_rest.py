@@ -10,9 +10,9 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from tol3d.cycloid.contact import ContactStage
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.rest import Play, RestStage
+from tol3d.cycloid.exact.contact import ContactStage
+from tol3d.cycloid.exact.rest import Play, RestStage
+from tol3d.cycloid.model.deviated import Deviated
 from tol3d.numerics.programme import NO_ROOM, OK
 
 Array = NDArray[np.float64]

@@ -18,11 +18,11 @@ from planetary_sets import (
 )
 
 from tol3d import Overrides, SceneError, load_scene
-from tol3d.planetary.contact_curves import ContactCurves
-from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.exact.contact import ContactCurves
+from tol3d.planetary.first_order.stack_up import StackUpCurves
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.stack_up_curves import StackUpCurves
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.system.plain import PlainMeasure

@@ -10,26 +10,23 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.contact_kernel import first_contacts
-from tol3d.cycloid.draws import NOT_NEGATIVE, acts_of, draw_of
-from tol3d.cycloid.formula_section import stages_by_formula
-from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
-from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
-from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
-from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
-from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
-from tol3d.cycloid.neglected import BEND, BentTurning
-from tol3d.cycloid.problems import problems_at
-from tol3d.cycloid.refusals import implausible_stage, parts_of, reducer_of
-from tol3d.cycloid.rest_kernel import rests
-from tol3d.cycloid.resting import exact_turning, linear_rates, linear_turning
-from tol3d.cycloid.rv_deviated import Acts, Effect, RVDeviated
-from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.shown import ShownReducer
-from tol3d.cycloid.statuses import NO_FIT
+from tol3d.cycloid.exact.contact_kernel import first_contacts
+from tol3d.cycloid.exact.rest_kernel import rests
+from tol3d.cycloid.from_scene import implausible_stage, parts_of, reducer_of
+from tol3d.cycloid.grammar.measures import CycloidMeasureSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.cycloid.reducer.deviated import Acts, Effect, RVDeviated
+from tol3d.cycloid.reducer.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.reducer.formula import stages_by_formula
+from tol3d.cycloid.reducer.neglected import BEND, BentTurning
+from tol3d.cycloid.reducer.problems import problems_at
+from tol3d.cycloid.reducer.resting import exact_turning, linear_rates, linear_turning
+from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.cycloid.reducer.shown import ShownReducer
+from tol3d.cycloid.reducer.trials import NO_FIT
+from tol3d.cycloid.reducer.turning import LinearTurning, Turning
 from tol3d.cycloid.system import REST_COSTS
-from tol3d.cycloid.turning import LinearTurning, Turning
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.scene import Scene

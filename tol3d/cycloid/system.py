@@ -8,20 +8,17 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.contact_kernel import first_contacts
-from tol3d.cycloid.formula_section import stages_by_formula
-from tol3d.cycloid.neglected import neglected
-from tol3d.cycloid.problems import problems_of
-from tol3d.cycloid.regressors import regress_touching
-from tol3d.cycloid.rest_kernel import rests
-from tol3d.cycloid.resting import exact_turning, linear_turning
-from tol3d.cycloid.roads import RVRoad
-from tol3d.cycloid.rv_trials import RVTrials
-from tol3d.cycloid.shown import ShownReducer
-from tol3d.cycloid.stage_shapes import usual_shapes
-from tol3d.cycloid.statuses import STATUSES
-from tol3d.cycloid.strips import lobe_strips
-from tol3d.cycloid.turn_regressors import TAKEN, regress_over_turn
+from tol3d.cycloid.exact.contact_kernel import first_contacts
+from tol3d.cycloid.exact.places import usual_shapes
+from tol3d.cycloid.exact.rest_kernel import rests
+from tol3d.cycloid.model.shapes import lobe_strips
+from tol3d.cycloid.reducer.formula import stages_by_formula
+from tol3d.cycloid.reducer.neglected import neglected
+from tol3d.cycloid.reducer.problems import problems_of
+from tol3d.cycloid.reducer.regressors import TAKEN, regress_over_turn, regress_touching
+from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
+from tol3d.cycloid.reducer.shown import ShownReducer
+from tol3d.cycloid.reducer.trials import STATUSES, RVRoad, RVTrials
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
@@ -34,7 +31,7 @@ Array = NDArray[np.float64]
 
 FCL: Final = "fcl"
 REST_COSTS: Final = 80  # times a first contact
-WITNESS: Final = "tol3d.cycloid.witness"  # it loads FCL, in the worker
+WITNESS: Final = "tol3d.cycloid.reducer.witness"  # it loads FCL, in the worker
 ROADS: Final[Mapping[str, RoadKind]] = {
     "exact": RoadKind("kernels", compiled=True, contacts_per_minute=900_000_000),
     FCL: RoadKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),

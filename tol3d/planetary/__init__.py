@@ -4,6 +4,6 @@
 finds sets and their efficiencies.
 """
 
-from tol3d.planetary.tooth_set import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom
+from tol3d.planetary.model.tooth_set import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom
 
 __all__ = ["CARRIER", "CentralMesh", "ToothSet", "compound", "simple", "wolfrom"]

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.displaced_ends import DisplacedEnds, displaced_ends
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.spring_curve import DisplacedEnds, LeafSpring, breakaway, displaced_ends, turns_under
 
 Array = NDArray[np.float64]
 

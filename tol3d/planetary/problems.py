@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.set_mesh import SetMesh
-from tol3d.planetary.set_trials import SetTrials
-from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.model.set_mesh import SetMesh
+from tol3d.planetary.trials import SetTrials
 from tol3d.system.stated import mean_build
 from tol3d.system.system import KeyPath
 

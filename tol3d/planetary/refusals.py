@@ -9,11 +9,10 @@ from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear, cylindrical_pair
 from tol3d.gears.cylindrical_pair import SAME_LENGTH
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
-from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
-from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.set_mesh import SetGear, SetMesh
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.scene import Scene
 
 

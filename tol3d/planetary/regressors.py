@@ -16,10 +16,9 @@ from functools import reduce
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.measure import PlanetaryMeasure
-from tol3d.planetary.set_trials import SetTrials
-from tol3d.planetary.stack_up_curves import StackUpCurves
+from tol3d.planetary.first_order.stack_up import StackUpCurves
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.trials import PlanetaryMeasure, SetTrials
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import Columns
 from tol3d.system.taken import ROWS_AT_ONCE

@@ -13,22 +13,20 @@ from numpy.typing import NDArray
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.numerics.programme import NO_ROOM, ranges
-from tol3d.planetary.contact import Contact, seated_ranges
-from tol3d.planetary.deviated import Acts, Deviated
-from tol3d.planetary.free import turned
-from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
-from tol3d.planetary.grammar.parts.carrier import CarrierSpec
-from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.implausible import implausible_set
-from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.contact_kernel import seated_ranges
+from tol3d.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
+from tol3d.planetary.first_order.stack_up import StackUp, StackUpCurves
+from tol3d.planetary.from_scene import implausible_set
+from tol3d.planetary.grammar.measures import PlanetaryMeasureSpec
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
+from tol3d.planetary.model.deviated import Acts, Deviated, turned
+from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
-from tol3d.planetary.shown import Made, ShownSet, heights_of, made_gears, shown_set
-from tol3d.planetary.stack_up import StackUp
-from tol3d.planetary.stack_up_curves import StackUpCurves
-from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath

@@ -10,18 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.programme import ranges
-from tol3d.planetary.contact import seated_ranges
-from tol3d.planetary.contact_curves import ContactCurves
+from tol3d.planetary.exact.contact import ContactCurves
+from tol3d.planetary.exact.contact_kernel import seated_ranges
+from tol3d.planetary.exact.shown import Made, ShownSet, shown_set
+from tol3d.planetary.first_order.stack_up import StackUpCurves
 from tol3d.planetary.problems import problems_of
 from tol3d.planetary.regressors import regress
-from tol3d.planetary.roads import PlanetaryRoad
 from tol3d.planetary.sections import set_sections, spring_summary
-from tol3d.planetary.set_trials import SetTrials
-from tol3d.planetary.shown import Made, ShownSet, shown_set
 from tol3d.planetary.spring_curve import LeafSpring
-from tol3d.planetary.stack_up_curves import StackUpCurves
-from tol3d.planetary.statuses import STATUSES
 from tol3d.planetary.summary_types import PlanetarySetSummary
+from tol3d.planetary.trials import STATUSES, PlanetaryRoad, SetTrials
 from tol3d.solids import measuring_strips
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure

@@ -12,12 +12,19 @@ from hypothesis import strategies as st
 
 from tol3d.errors import GeometryError
 from tol3d.planetary import CARRIER, ToothSet, compound, simple, wolfrom
-from tol3d.planetary.design.adjacency import tip_gap
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.mesh_loss import mesh_efficiency, shared_sliding_factor, sliding_factor
-from tol3d.planetary.design.published_efficiency import MeshEfficiencies, inner_ratios, published_efficiencies
-from tol3d.planetary.design.torque_balance import Drive, balances, efficiency
-from tol3d.planetary.design.working_mesh import WorkingMesh, shift_sum
+from tol3d.planetary.design.efficiency import (
+    Drive,
+    MeshEfficiencies,
+    balances,
+    efficiency,
+    inner_ratios,
+    mesh_efficiency,
+    published_efficiencies,
+    shared_sliding_factor,
+    sliding_factor,
+)
+from tol3d.planetary.design.shifted_set import tip_gap
+from tol3d.planetary.design.working_mesh import BasicRack, WorkingMesh, shift_sum
 
 BUILT = wolfrom(25, 27, 79, 24, 76)
 REDUCER = Drive("sun", "ring 2", "ring 1")

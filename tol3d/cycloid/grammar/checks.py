@@ -4,22 +4,22 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
-from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
-from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
-from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
-from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
-from tol3d.cycloid.grammar.tolerances.carrier_bearing import CarrierBearingSpec
-from tol3d.cycloid.grammar.tolerances.carrier_hole import CarrierHoleSpec
-from tol3d.cycloid.grammar.tolerances.crank_eccentricity import CrankEccentricitySpec
-from tol3d.cycloid.grammar.tolerances.disc_eccentricity import DiscEccentricitySpec
-from tol3d.cycloid.grammar.tolerances.disc_hole import DiscHoleSpec
-from tol3d.cycloid.grammar.tolerances.lobe_pitch import LobePitchSpec
-from tol3d.cycloid.grammar.tolerances.lobe_profile import LobeProfileSpec
-from tol3d.cycloid.grammar.tolerances.pin_circle import PinCircleSpec
-from tol3d.cycloid.grammar.tolerances.pin_position import PinPositionSpec
-from tol3d.cycloid.grammar.tolerances.pin_radius import PinRadiusSpec
-from tol3d.cycloid.grammar.tolerances.pin_ring_offset import PinRingOffsetSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.cycloid.grammar.parts import CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.cycloid.grammar.tolerances import (
+    BearingPlaySpec,
+    CarrierBearingSpec,
+    CarrierHoleSpec,
+    CrankEccentricitySpec,
+    DiscEccentricitySpec,
+    DiscHoleSpec,
+    LobePitchSpec,
+    LobeProfileSpec,
+    PinCircleSpec,
+    PinPositionSpec,
+    PinRadiusSpec,
+    PinRingOffsetSpec,
+)
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.torque_balance import Drive
-from tol3d.planetary.tooth_set import CARRIER, ToothSet, compound, simple, wolfrom
+from tol3d.planetary.design.efficiency import Drive
+from tol3d.planetary.model.tooth_set import CARRIER, ToothSet, compound, simple, wolfrom
 
 Counts = NDArray[np.int64]
 Ratios = NDArray[np.float64]

@@ -17,12 +17,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.adjacency import tip_gap
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift
-from tol3d.planetary.design.torque_balance import Drive, efficiency
-from tol3d.planetary.design.working_mesh import shift_sum
-from tol3d.planetary.tooth_set import ToothSet
+from tol3d.planetary.design.efficiency import Drive, efficiency
+from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift, tip_gap
+from tol3d.planetary.design.working_mesh import BasicRack, shift_sum
+from tol3d.planetary.model.tooth_set import ToothSet
 
 Array = NDArray[np.float64]
 

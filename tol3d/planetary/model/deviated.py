@@ -1,0 +1,192 @@
+"""Deviations of the gears, planets and pins of a set in some trials, and how far a shaft then turns by either road."""
+
+import math
+from dataclasses import dataclass, fields
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.planetary.model.planetary_set import PlanetarySet
+
+Array = NDArray[np.float64]
+
+Effect = Literal["thickness", "offset", "clocking", "pin"]
+
+
+@dataclass(frozen=True)
+class Acts:
+    """What a contributor acts on.
+
+    Args:
+        effect: thickness and clocking of a gear, offset of its teeth from its axis, or of pins from their places.
+        gear: the gear's name; "" of pins.
+        direction: of pins, "radial" or "tangential" where the deviation is one of them alone.
+        factor: what the deviation counts for, such as 1/cos(alpha) of a thickness along the normals.
+    """
+
+    effect: Effect
+    gear: str = ""
+    direction: Literal["radial", "tangential", ""] = ""
+    factor: float = 1.0
+
+
+@dataclass(frozen=True)
+class Deviated:
+    """Deviations of a set (trials, ...).
+
+    Args:
+        central_thickness: arc at the reference circle (trials, centrals) [mm], positive is thicker.
+        planet_thickness: of the gears of planets (trials, gears, planets).
+        central_offset: centre of the teeth off the axis where nothing has turned (trials, centrals, 2) [mm].
+        planet_offset: the same of planets (trials, gears, planets, 2), off the pin.
+        central_clocking, planet_clocking: turn of the teeth on what carries them [rad].
+        pins: outwards and counter-clockwise off their places (trials, planets, 2) [mm].
+        aside: the axis of the planets' circle off that of each central gear (trials, centrals, 2) [mm], in the frame of
+            the carrier, where it stands without backlash.
+    """
+
+    central_thickness: Array
+    planet_thickness: Array
+    central_offset: Array
+    planet_offset: Array
+    central_clocking: Array
+    planet_clocking: Array
+    pins: Array
+    aside: Array
+
+    @classmethod
+    def nothing(cls, own: PlanetarySet, trials: int) -> "Deviated":
+        """No deviations."""
+        centrals, gears, planets = len(own.meshes), len(own.gears), own.planets
+        return cls(
+            np.zeros((trials, centrals)),
+            np.zeros((trials, gears, planets)),
+            np.zeros((trials, centrals, 2)),
+            np.zeros((trials, gears, planets, 2)),
+            np.zeros((trials, centrals)),
+            np.zeros((trials, gears, planets)),
+            np.zeros((trials, planets, 2)),
+            np.zeros((trials, centrals, 2)),
+        )
+
+    def add(self, own: PlanetarySet, acts: Acts, components: Array) -> None:
+        """Add what a contributor does.
+
+        Args:
+            own: the set.
+            acts: on what.
+            components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
+                offsets in the gear's own frame, whose x goes through the middle of tooth 0.
+        """
+        if acts.effect == "pin":
+            if acts.direction:
+                self.pins[:, :, int(acts.direction == "tangential")] += components
+            else:
+                self.pins[...] += components.reshape(self.pins.shape)
+            return
+        centrals = [mesh.central.name for mesh in own.meshes]
+        of_planets = acts.gear not in centrals
+        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
+        into = self._array(acts.effect, of_planets)[:, place]
+        own_components = acts.factor * components.reshape(into.shape)
+        into += own_components if of_planets else _turned(own_components, acts, own.meshes[place].facing)
+
+    def of(self, own: PlanetarySet, acts: Acts) -> Array:
+        """What stands where a contributor acts, a component each (trials, components): of slopes, its own."""
+        if acts.effect == "pin":
+            found = self.pins[:, :, int(acts.direction == "tangential")] if acts.direction else self.pins
+            return found.reshape(len(found), -1)
+        centrals = [mesh.central.name for mesh in own.meshes]
+        of_planets = acts.gear not in centrals
+        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
+        found = self._array(acts.effect, of_planets)[:, place]
+        found = found if of_planets else _turned(found, acts, -own.meshes[place].facing)
+        return acts.factor * found.reshape(len(found), -1)
+
+    def plus(self, other: "Deviated") -> "Deviated":
+        """Both added up."""
+        return Deviated(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
+
+    def _array(self, effect: Effect, of_planets: bool) -> Array:
+        arrays = {
+            "thickness": (self.central_thickness, self.planet_thickness),
+            "offset": (self.central_offset, self.planet_offset),
+            "clocking": (self.central_clocking, self.planet_clocking),
+        }
+        return arrays[effect][of_planets]
+
+
+def _turned(components: Array, acts: Acts, angle: float) -> Array:
+    """Offsets of a central gear (trials, 2) turned by an angle [rad]; what is no offset as it is."""
+    if acts.effect != "offset" or not angle:
+        return components
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.stack(
+        [cos * components[:, 0] - sin * components[:, 1], sin * components[:, 0] + cos * components[:, 1]], -1
+    )
+
+
+Codes = NDArray[np.int8]
+
+
+@dataclass(frozen=True)
+class Free:
+    """What a shaft can turn in some trials.
+
+    Args:
+        ends: smallest and largest turn (trials, 2) [rad]; nan where the set cannot be assembled.
+        status: of the programme (trials,).
+        row: planet x meshes + mesh that has no room (trials,), -1 where all have.
+        lacking: how much each contact of a closed loop lacks [mm] (trials,).
+    """
+
+    ends: Array
+    status: Codes
+    row: NDArray[np.int64]
+    lacking: Array
+
+    @classmethod
+    def of(cls, trials: int) -> "Free":
+        """Room for some trials."""
+        return cls(
+            np.empty((trials, 2)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials, np.float64)
+        )
+
+
+def turned(vectors: Array, turns: Array) -> Array:
+    """Vectors (trials, ..., 2) turned by so many turns (trials, ...)."""
+    angles = 2 * np.pi * (turns - np.round(turns))
+    cos, sin = np.cos(angles), np.sin(angles)
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Where a shaft rests at positions one after another in some trials.
+
+    Args:
+        ends: its turn (trials, positions) [rad]; 0 where the set jams.
+        status: of the programme, the worst position's (trials,).
+        row: that has no room there, see Free (trials,).
+        lacking: how much each contact of a closed loop lacks at most [mm] (trials,).
+    """
+
+    ends: Array
+    status: Codes
+    row: NDArray[np.int64]
+    lacking: Array
+
+    @classmethod
+    def of(cls, trials: int, positions: int) -> "Followed":
+        """Room for some trials."""
+        return cls(
+            np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
+        )
+
+
+def cosines_and_sines(turns: Array) -> Array:
+    """Of turns (...), (..., 2)."""
+    angles = 2 * np.pi * (turns - np.round(turns))
+    return np.ascontiguousarray(np.stack([np.cos(angles), np.sin(angles)], axis=-1))
