@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 from tol3d.cycloid.grammar.measures import (
-    CycloidLostMotionSpec,
     CycloidMeasureSpec,
     CycloidPinsNearContactSpec,
     CycloidTransmissionErrorSpec,
@@ -27,11 +26,10 @@ from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.cylindrical_pair import SAME_LENGTH
 from tol3d.scene import Scene
-from tol3d.scene.direction import At
 from tol3d.scene.place import KeyPath
-from tol3d.system.plain import UNITS, PlainContributor, stated_of
+from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
 from tol3d.system.pooled_statistic import HalfSpan
-from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.positions import Positions, Take
 from tol3d.system.spectrum import Spectrum
 
 
@@ -211,51 +209,31 @@ def rv_system(scene: Scene) -> RVSystem:
         )
         for name, spec in scene.distributed.items()
     ]
-    measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
     disc = scene.parts[own.disc]
     assert isinstance(disc, CycloidDiscSpec)
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
-    found = implausible_stage(scene, own)
-    stated = tuple(contributors), tuple(measures.values())
-    return system(scene.scene, *stated, own, acts, measures, width, hole, steps, found)
+    stated = tuple(contributors), tuple(_measure(scene, name, spec) for name, spec in scene.measures.items())
+    return system(scene.scene, *stated, own, acts, width, hole, steps, implausible=implausible_stage(scene, own))
 
 
-def _measure(scene: Scene, own: RVSet, name: str, spec: Any) -> RVMeasure:
+def _measure(scene: Scene, name: str, spec: Any) -> RVMeasure:
     if not isinstance(spec, CycloidMeasureSpec):
         words = "cycloid_transmission_error, cycloid_lost_motion or cycloid_pins_near_contact"
         raise scene.refuse(("measures", name, "kind"), f"expected of an RV reducer {words}, got {spec.kind}")
-    if isinstance(spec, CycloidLostMotionSpec):
-        return _read(name, spec, "lost motion", _one(spec.over), "value")
-    assert isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec)
-    one = spec.over != "turn"
-    # over a turn it bends where another pin takes over
-    positions = _one(spec.over) if one else Positions("turn", 1, spec.positions, jumps=True)
+    reading: Reading = "lost motion"
+    take: Take = "value"
+    positions, spectrum, deflection = one_position(getattr(spec, "over", None)), None, None
+    if isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec):
+        reading, take = spec.flank, spec.taken
+        if spec.over == "turn":  # over it the curve bends where another pin takes over
+            positions = Positions("turn", 1, spec.positions, jumps=True)
     if isinstance(spec, CycloidPinsNearContactSpec):
-        return _read(name, spec, spec.flank, positions, spec.taken, deflection=spec.deflection.internal)
-    if one:
-        return _read(name, spec, spec.flank, positions, "value")
-    spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
-    if spec.taken == "curve":
-        spectrum = Spectrum.over(positions, spec.orders) if spec.orders else None
-    return _read(name, spec, spec.flank, positions, spec.taken, spectrum)
-
-
-def _one(over: Any) -> Positions:
-    """One position a trial."""
-    return Positions("at", 1, 1, over.at.internal) if isinstance(over, At) else AT_RANDOM
-
-
-def _read(
-    name: str,
-    spec: CycloidMeasureSpec,
-    reading: Reading,
-    positions: Positions,
-    take: Take,
-    spectrum: Spectrum | None = None,
-    deflection: float | None = None,
-) -> RVMeasure:
+        deflection = spec.deflection.internal
+    elif isinstance(spec, CycloidTransmissionErrorSpec) and take in ("harmonic", "curve"):
+        orders = (spec.order or 1,) if take == "harmonic" else spec.orders
+        spectrum = Spectrum.over(positions, orders) if orders else None
     return RVMeasure(
         *stated_of(name, spec),
         worse="high" if deflection is None else "low",

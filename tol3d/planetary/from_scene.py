@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any, Final
 
 from tol3d.assembly.grammar.zone import ProcessLawSpec
@@ -26,12 +25,11 @@ from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.planetary.trials import PlanetaryMeasure, Reading
 from tol3d.scene import Scene
-from tol3d.scene.direction import At
 from tol3d.scene.implausible import Implausible, farthest, warned
 from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.plain import UNITS, PlainContributor, stated_of
-from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
+from tol3d.system.positions import Positions, Take
 from tol3d.system.spectrum import Spectrum
 
 HALF: Final = Implausible(0.5)
@@ -105,20 +103,18 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         draw = draw_of(scene, own, spec)
         unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
         contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
-    measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
     made = made_gears(scene, own)
     return PlanetarySystem(
         scene.scene,
         tuple(contributors),
-        tuple(measures.values()),
+        tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items()),
         own,
         acts,
-        measures,
         made,
         scene.of(PlanetarySpec)[own.name].friction,
         scene.options(GearStudyOptions).profile_steps,
         _leaf_spring(scene.parts[own.carrier]),
-        implausible_set(scene, own, made),
+        implausible=implausible_set(scene, own, made),
     )
 
 
@@ -137,35 +133,30 @@ def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Planetary
     if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
         words = "expected a set on a flexible carrier whose springs press"
         raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
-    if isinstance(spec, PlanetaryFreeTurnSpec):
-        shaft = own.output if spec.at == "output" else own.input
-        positions = Positions("at", 1, 1, spec.over.at.internal) if isinstance(spec.over, At) else AT_RANDOM
-        reading: Reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
-        return _read(own, name, spec, reading, positions, "value", shaft)
-    assert isinstance(spec, PlanetaryTransmissionErrorSpec)
-    if spec.over == "long_period":
-        turns = own.period_planet_turns
-        raise scene.refuse(
-            ("measures", name, "over"),
-            f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the planets "
-            f"on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
-        )
-    reading = "lag" if spec.flank == "drive" else "lead"
-    positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
-    spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
-    return replace(_read(own, name, spec, reading, positions, spec.take, own.output), spectrum=spectrum)
-
-
-def _read(
-    own: PlanetarySet, name: str, spec: PlanetaryMeasureSpec, reading: Reading, at: Positions, take: Take, shaft: str
-) -> PlanetaryMeasure:
+    reading: Reading
+    take: Take
+    if isinstance(spec, PlanetaryTransmissionErrorSpec):
+        if spec.over == "long_period":
+            turns = own.period_planet_turns
+            raise scene.refuse(
+                ("measures", name, "over"),
+                f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the "
+                f"planets on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
+            )
+        reading, take, shaft = "lag" if spec.flank == "drive" else "lead", spec.take, own.output
+        positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
+    else:
+        assert isinstance(spec, PlanetaryFreeTurnSpec)
+        reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
+        take, shaft = "value", own.output if spec.at == "output" else own.input
+        positions = one_position(spec.over)
     return PlanetaryMeasure(
         *stated_of(name, spec),
         worse="high",
         adds_up=False,
-        positions=at,
+        positions=positions,
         take=take,
+        spectrum=Spectrum.over(positions, (spec.order or 1,)) if take == "harmonic" else None,
         reading=reading,
-        set_name=own.name,
         shaft=shaft,
     )

@@ -125,8 +125,7 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> N
         one, other = (getattr(scene.parts[gear.name], field) for gear in (central, own))
         if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
             raise scene.refuse(
-                ("moves", name, "meshes", central.name),
-                f"expected gears of the same {field}, got {one} and {other}",
+                ("moves", name, "meshes", central.name), f"expected gears of the same {field}, got {one} and {other}"
             )
 
 

@@ -24,9 +24,6 @@ from tol3d.planetary.summary_types import EfficiencySummary, PlanetarySetSummary
 from tol3d.runs.summary.values import made
 from tol3d.units import RAD_PER_ARCMIN
 
-LOCKED: Final = 0.0
-"""Of an efficiency: at most so much where the set cannot be driven in that sense."""
-
 
 @dataclass(frozen=True)
 class SetEfficiency:

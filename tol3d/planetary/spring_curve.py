@@ -123,9 +123,7 @@ class _Programme:
         lower = np.hstack([np.repeat(self.lower, count, axis=0), least])
         upper = np.hstack([np.repeat(self.upper, count, axis=0), largest])
         begun, wanted = own.begun(stands), np.stack([-turn, turn])
-        ranges(
-            own.rows(stands), lower, upper, turn, wanted, begun, free.ends, free.status, free.row, free.lacking
-        )  # fmt: skip
+        ranges(own.rows(stands), lower, upper, turn, wanted, begun, *free.written)
         return free
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.programme import NO_ROOM, STALLED
 from tol3d.planetary.first_order.levers import play_bound
-from tol3d.planetary.model.deviated import Acts, Deviated, Followed, Free
+from tol3d.planetary.model.deviated import Acts, Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
@@ -34,12 +34,10 @@ class PlanetaryMeasure(PlainMeasure):
     Args:
         reading: the whole free turn of a shaft, what it turns against springs alone, or where the output rests while
             its load resists (lag) or drives it.
-        set_name: of the set.
         shaft: that turns.
     """
 
     reading: Reading
-    set_name: str
     shaft: str
 
     @property
@@ -55,36 +53,6 @@ class PlanetaryMeasure(PlainMeasure):
     def sense(self, own: PlanetarySet) -> float:
         """1 where the output turns counter-clockwise while the input does, else -1."""
         return 1.0 if own.ratio > 0 else -1.0
-
-    def turns_of(self, at_random: Array) -> Array:
-        """Turns of the output (trials,) where a lost motion is read: those of the trials, or a fixed one."""
-        if self.positions.over == "random":
-            return at_random
-        return np.full(len(at_random), self.positions.angle / (2 * np.pi))
-
-    def weights(self, curves: Array) -> Array:
-        """What is taken of curves (trials, positions) is the sum of their values times these, near these curves.
-
-        Curves are read from their first position on. A harmonic is read along its own phase.
-        """
-        found, rows = np.zeros_like(curves), np.arange(len(curves))
-        if self.take == "harmonic":
-            assert self.spectrum is not None
-            count = self.positions.count
-            cycles = float(self.spectrum.orders[0]) * np.arange(count) / count
-            waves = np.exp(-2j * np.pi * cycles)
-            sums = curves[:, :count] @ waves
-            sizes = np.abs(sums)
-            phases = np.conj(sums) / np.where(sizes > 0.0, sizes, 1.0)
-            found[:, :count] = 4 / count * (phases[:, None] * waves).real
-            return found
-        if self.take in ("max", "range"):
-            found[rows, curves.argmax(axis=1)] += 1.0
-        if self.take in ("min", "range"):
-            found[rows, curves.argmin(axis=1)] += -1.0 if self.take == "range" else 1.0
-        if self.take != "range":
-            found[:, 0] -= 1.0
-        return found
 
     def end(self, own: PlanetarySet) -> int:
         """Which end of its free turn the output rests at: the lower (0) or the upper one (1)."""
@@ -107,12 +75,10 @@ class SetTrials(OutputSystem):
     Args:
         own: the set.
         acts: what each contributor acts on, by its name.
-        planetary_measures: the measures by their names.
     """
 
     own: PlanetarySet
     acts: Mapping[str, Acts]
-    planetary_measures: Mapping[str, PlanetaryMeasure]
 
     @cached_property
     def overcome(self) -> PlanetarySet:
@@ -136,7 +102,7 @@ class SetTrials(OutputSystem):
         Of a lost motion both ends may be off, of a transmission error the position and the first one; of a region of
         low stiffness both ends twice.
         """
-        own = self.planetary_measures[measure.name]
+        own = self.read[measure.name]
         ends = 4 if own.reading == "low stiffness" else 2
         return ends * play_bound(self.own, own.shaft, errors) * measure.per_internal
 
@@ -152,7 +118,7 @@ class Turning(Protocol):
         """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
         ...
 
-    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Followed:
+    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
         """The lower (0) or upper (1) end of that at turns (positions,) of the output that all trials share."""
         ...
 
@@ -182,19 +148,19 @@ class PlanetaryRoad:
         values: dict[str, Array] = {}
         status: dict[str, NDArray[np.int8]] = {}
         details: dict[str, NDArray[np.generic]] = {}
-        curves: dict[Hashable, tuple[Array, Followed]] = {}
+        curves: dict[Hashable, tuple[Array, Free]] = {}
         for measure in measures:
-            own = self.system.planetary_measures[measure.name]
-            found: Free | Followed
+            own: PlanetaryMeasure = self.system.read[measure.name]
             if own.is_free_turn:
-                turns = own.turns_of(trials.positions[self.system.own.name])
+                turns = np.broadcast_to(self.system.turns(own.positions, trials), (len(trials), 1))[:, 0]
                 values[own.name], found = self._lost(own, deviated, turns)
             else:
                 if own.curve_key not in curves:
                     curves[own.curve_key] = self._error(own, deviated)
                 values[own.name], found = curves[own.curve_key]
             status[own.name] = found.status
-            details |= self._details(own, found)
+            if found.status.any():  # how much each contact of a closed loop would have to give way
+                details[f"{own.name}: overlap [um]"] = 1e3 * found.lacking
         return Answers(values, details=details, status=status)
 
     def _lost(self, measure: PlanetaryMeasure, deviated: Deviated, turns: Array) -> tuple[Array, Free]:
@@ -215,7 +181,7 @@ class PlanetaryRoad:
         width[status == STALLED] = np.nan
         return width[:, None], replace(free, status=status)
 
-    def _error(self, measure: PlanetaryMeasure, deviated: Deviated) -> tuple[Array, Followed]:
+    def _error(self, measure: PlanetaryMeasure, deviated: Deviated) -> tuple[Array, Free]:
         """Transmission error (trials, positions), 0 at the first, and what it comes from."""
         own = self.system.own
         turns = np.array(measure.positions.fixed) / (2 * np.pi)
@@ -223,9 +189,3 @@ class PlanetaryRoad:
         error = measure.sense(own) * (found.ends - found.ends[:, :1])
         error[found.status == STALLED] = np.nan
         return error, found
-
-    def _details(self, measure: PlanetaryMeasure, found: Free | Followed) -> Mapping[str, NDArray[np.generic]]:
-        """Where a set that jams lacks room, and how much each contact of a closed loop would have to give way."""
-        if not found.status.any():
-            return {}
-        return {f"{measure.name}: overlap [um]": 1e3 * found.lacking}

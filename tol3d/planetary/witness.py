@@ -21,7 +21,7 @@ from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.gears.involute import involute
 from tol3d.numerics.programme import OK, STALLED, ranges
 from tol3d.planetary.exact.shown import Made, placed_gears
-from tol3d.planetary.model.deviated import Deviated, Followed, Free
+from tol3d.planetary.model.deviated import Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.trials import PlanetaryRoad, SetTrials
 from tol3d.solids import FlankStrips, PulledStrip
@@ -191,9 +191,9 @@ class StripContact:
                     break
         return found
 
-    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Followed:
+    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
         """The lower (0) or upper (1) end of that at turns (positions,) of the output that all trials share."""
-        found = Followed.of(len(deviated.pins), len(turns))
+        found = Free.of(len(deviated.pins), len(turns))
         found.status[:], found.row[:], found.lacking[:] = OK, -1, 0.0
         for trial, own in enumerate(_each(deviated)):
             at = np.zeros(self.own.all_rows.shape[1])
@@ -233,7 +233,7 @@ class StripContact:
             step = np.empty(len(unknowns))
             for place, readout in enumerate(readouts):
                 free = Free.of(1)
-                ranges(rows, lower, upper, readout, wanted, begun, free.ends, free.status, free.row, free.lacking)
+                ranges(rows, lower, upper, readout, wanted, begun, *free.written)
                 if free.status[0] != OK:
                     return at, int(free.status[0]), int(free.row[0]), float(free.lacking[0])
                 step[place] = free.ends[0, end]

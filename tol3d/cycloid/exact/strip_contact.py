@@ -135,10 +135,7 @@ class StripContact:
 
     @cached_property
     def _flanks(self) -> tuple[Surface, Surface]:
-        return (
-            mesh_surface(*self.strips.right.mesh(SLACK)),
-            mesh_surface(*self.strips.left.mesh(SLACK)),
-        )
+        return (mesh_surface(*self.strips.right.mesh(SLACK)), mesh_surface(*self.strips.left.mesh(SLACK)))
 
     @cached_property
     def _pin(self) -> Surface:

@@ -9,22 +9,14 @@ from tol3d.cycloid.model.limits import LEAST_GAP, least_gap
 from tol3d.cycloid.reducer.deviated import Acts, RVDeviated
 from tol3d.cycloid.reducer.draws import NOT_NEGATIVE
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.cycloid.reducer.trials import RVTrials
 from tol3d.system.contributor import Contributor
-from tol3d.system.stated import mean_build
 from tol3d.system.system import KeyPath
-
-
-def problems_of(system: RVTrials) -> Iterator[tuple[KeyPath, str]]:
-    """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there."""
-    mean = system.deviated(mean_build(system, system.measures[0]))
-    return problems_at(system.own, system.acts, system.contributors, mean)
 
 
 def problems_at(
     own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor], deviated: RVDeviated
 ) -> Iterator[tuple[KeyPath, str]]:
-    """The same of a reducer's mean build, of one trial.
+    """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there.
 
     Args:
         own: the reducer.

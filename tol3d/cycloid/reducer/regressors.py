@@ -17,9 +17,10 @@ from tol3d.cycloid.reducer.resting import linear_rates, linear_turning
 from tol3d.cycloid.reducer.trials import RVMeasure, RVTrials
 from tol3d.cycloid.reducer.turning import Turned
 from tol3d.system.contributor import Contributor
+from tol3d.system.output_system import Parts, component_values
 from tol3d.system.regressors import has_square
 from tol3d.system.system import Columns
-from tol3d.system.taken import ROWS_AT_ONCE
+from tol3d.system.taken import weights_taken
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -42,7 +43,7 @@ def regress_touching(
     )
     rates = [_rates(system, deviated, turns, sense) for sense in _senses(measure)]
     for own in contributors:
-        values = np.stack([np.asarray(columns[name], dtype=np.float64) * own.per_unit for name in own.columns], axis=1)
+        values = component_values(own, columns)
         scale = system.own.profile.pitch_radius / (own.draw.sigma or 1.0)
         if has_square(own):
             rows[own.name][0] = scale * _term(system, own.name, rates, values)
@@ -72,64 +73,20 @@ def _term(system: RVTrials, name: str, rates: Sequence[tuple[float, RVDeviated]]
 TAKEN = ("min", "max", "range")  # a harmonic would take the rates at every position
 
 
-def regress_over_turn(
-    system: RVTrials,
-    measure: RVMeasure,
-    contributors: Sequence[Contributor],
-    columns: Columns,
-    rows: Mapping[str, Array],
-) -> None:
-    """Write contributors' rows (regressors, trials) of an extreme or a range, first its part; see System.regress."""
-    values = {own.name: _values(own, columns) for own in system.contributors}
-    deviations = np.concatenate([values[own.name] for own in system.contributors], axis=1)
-    for own in contributors:
-        rows[own.name][...] = 0.0
-    at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
-    for first in range(0, len(deviations), at_once):
-        part = slice(first, first + at_once)
-        deviated = system.deviated(Trials(deviations[part], {}))
-        weights, rates = taken_rates(system, measure, deviated)
-        trials, positions = np.nonzero(weights)
-        for own in contributors:
-            off = values[own.name][part] - np.array(own.draw.mean(turning=False))
-            terms = weights[trials, positions] * rates.term(system.acts[own.name], off[trials])
-            rows[own.name][0, part] = measure.per_internal * np.bincount(trials, terms, minlength=len(off))
+def parts_over_turn(system: RVTrials, measure: RVMeasure, trials: Trials) -> Parts:
+    """Parts of contributors in an extreme or a range, by the rates at the positions that are taken of each trial."""
+    deviated, at = system.deviated(trials), system.turns(measure.positions, trials)
+    turned = linear_turning(system.own).turned(deviated, at, measure.sense)
+    weights = weights_taken(measure, turned.turns)
+    rows, positions = np.nonzero(weights)
+    places, planets = (
+        np.broadcast_to(own, weights.shape)[rows, positions][:, None] for own in (turned.places, turned.planets)
+    )
+    found = Turned(turned.turns[rows, positions][:, None], places, planets)
+    rates = linear_rates(system.own, deviated.rows(rows), at[0, positions], found, measure.sense)
 
+    def part_of(own: Contributor, off: Array) -> Array:
+        terms = weights[rows, positions] * rates.term(system.acts[own.name], off[rows])
+        return np.asarray(np.bincount(rows, terms, minlength=len(off)), dtype=np.float64)
 
-def taken_rates(system: RVTrials, measure: RVMeasure, deviated: RVDeviated) -> tuple[Array, RVDeviated]:
-    """What a measure takes of each trial's turns by the analytic road.
-
-    Returns:
-        Weights of the turns (trials, positions), most of them 0, and rates of those that are not, in their order.
-    """
-    turns = fixed_turns(measure)
-    found = linear_turning(system.own).turned(deviated, turns, measure.sense)
-    weights = weights_of(measure, found.turns)
-    trials, positions = np.nonzero(weights)
-    places = np.broadcast_to(found.places, weights.shape)[trials, positions][:, None]
-    planets = np.broadcast_to(found.planets, weights.shape)[trials, positions][:, None]
-    at = Turned(found.turns[trials, positions][:, None], places, planets)
-    return weights, linear_rates(system.own, deviated.rows(trials), turns[0, positions], at, measure.sense)
-
-
-def fixed_turns(measure: RVMeasure) -> Array:
-    """Turns of the output (1, positions) at which every trial is read."""
-    assert measure.positions.fixed is not None
-    return np.array([measure.positions.fixed]) / (2 * np.pi)
-
-
-def weights_of(measure: RVMeasure, turns: Array) -> Array:
-    """What a measure takes of turns (trials, positions), which are read from the first on, is their sum times these."""
-    found, rows = np.zeros_like(turns), np.arange(len(turns))
-    if measure.take in ("max", "range"):
-        found[rows, turns.argmax(axis=1)] += 1.0
-    if measure.take in ("min", "range"):
-        found[rows, turns.argmin(axis=1)] += -1.0 if measure.take == "range" else 1.0
-    if measure.take != "range":
-        found[:, 0] -= 1.0
-    return found
-
-
-def _values(contributor: Contributor, columns: Columns) -> Array:
-    read = (np.asarray(columns[name], dtype=np.float64) for name in contributor.columns)
-    return np.stack([own * contributor.per_unit for own in read], axis=1)
+    return part_of

@@ -70,12 +70,10 @@ class RVTrials(OutputSystem):
     Args:
         own: the reducer.
         acts: what each contributor acts on, by its name.
-        rv_measures: the measures by their names.
     """
 
     own: RVSet
     acts: Mapping[str, Acts]
-    rv_measures: Mapping[str, RVMeasure]
 
     def deviated(self, trials: Trials) -> RVDeviated:
         """What trials deviate by."""
@@ -84,19 +82,13 @@ class RVTrials(OutputSystem):
             found.add(self.acts[name], trials.deviations[:, own])
         return found
 
-    def turns(self, positions: Positions, trials: Trials) -> Array:
-        """Turns of the output (trials, 1) or (1, positions) at which a measure is read."""
-        if positions.fixed is None:
-            return trials.positions[self.own.name][:, None]
-        return np.array([positions.fixed]) / (2 * np.pi)
-
     def gap_bound(self, measure: Measure, error: float) -> float:
         """What errors of all gaps [mm] may make of a measure, in its unit.
 
         A working pin has a lever of the window's share at least. Of a lost motion both ends may be off, of a curve the
         position and the first one.
         """
-        own = self.rv_measures[measure.name]
+        own = self.read[measure.name]
         lever = self.own.window * self.own.profile.pitch_radius * (1 + self.own.rolling / self.own.profile.lobes)
         both = own.reading == "lost motion" or own.positions.over == "turn"
         return (2 if both else 1) * error / lever * measure.per_internal
@@ -136,7 +128,7 @@ class RVRoad:
         status: dict[str, NDArray[np.int8]] = {}
         details: Details = {}
         known: Curves = {}
-        read = [self.system.rv_measures[measure.name] for measure in measures]
+        read: list[RVMeasure] = [self.system.read[measure.name] for measure in measures]
         for own in (own for own in read if own.counts):  # what is turned for a count serves others too
             self._turned(own, deviated, trials, own.sense, known)
         for own in read:

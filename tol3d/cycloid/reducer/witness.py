@@ -54,7 +54,7 @@ class RVWitness(RVRoad):
 
     def reads(self, measure: Measure) -> bool:
         """See WitnessRoad: all but counts of pins near contact."""
-        own = self.system.rv_measures[measure.name]
+        own = self.system.read[measure.name]
         return not own.counts and measure.positions.in_a_trial <= MOST_POSITIONS
 
     def bounds(self, measure: Measure) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.gears.involute import involute
 from tol3d.planetary.exact.contact_kernel import placed_curve, seated_ranges
-from tol3d.planetary.model.deviated import Deviated, Followed, Free, cosines_and_sines, turned
+from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines, turned
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
 Array = NDArray[np.float64]
@@ -47,16 +47,27 @@ class Contact:
             *self.given(deviated, turns),
             np.stack(own.pushed),
             np.array(own.unknowns(stands)),
-            own.objective(stands, shaft),
-            own.wanted(stands, shaft),
-            own.begun(stands),
+            *own.asked(stands, shaft),
             found.ends,
             reached,
-            found.status,
-            found.row,
-            found.lacking,
+            *found.written[1:],
         )
         return found, reached
+
+    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
+        """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see free."""
+        own, found = self.own, Free.of(len(deviated.pins), len(turns))
+        rates, planet = own.gear_rates
+        placed_curve(
+            *self.given(deviated, np.zeros(len(found.ends))),
+            cosines_and_sines(turns[:, None] * rates),
+            cosines_and_sines(turns * planet),
+            np.stack(own.pushed),
+            np.array(own.unknowns(stands)),
+            *own.asked(stands, shaft, end),
+            *found.written,
+        )
+        return found
 
     def given(self, deviated: Deviated, turns: Array) -> tuple[Any, ...]:
         """What gaps_at takes of the set and of trials whose output stands at turns (trials,)."""
@@ -86,8 +97,7 @@ class Contact:
 
         The carrier's nominal turn is taken out of all of them; gears are turned as far as no backlash would have them.
         """
-        own, planet_turns = self.own, float(self.own.planet_turns)
-        rates = np.array([float(mesh.turn * self.own.planet_turns) for mesh in own.teeth.meshes])
+        own, (rates, planet_turns) = self.own, self.own.gear_rates
         clocked = deviated.central_clocking / (2 * np.pi), deviated.planet_clocking / (2 * np.pi)
         central = turned(deviated.central_offset, turns[:, None] * rates + clocked[0])
         phases = (own.phases + np.array(own.azimuths)) / (2 * np.pi)
@@ -96,29 +106,3 @@ class Contact:
         across = np.stack([-directions[:, 1], directions[:, 0]], axis=-1)
         pins = radial * directions + deviated.pins[..., 1:] * across
         return tuple(np.ascontiguousarray(each) for each in (central, planet, pins))  # type: ignore[return-value]
-
-
-@dataclass(frozen=True)
-class ContactCurves(Contact):
-    """Sets as they are placed, and where their shafts rest at positions one after another."""
-
-    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Followed:
-        """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see Contact.free."""
-        own, found = self.own, Followed.of(len(deviated.pins), len(turns))
-        planet = float(own.planet_turns)
-        rates = np.array([float(mesh.turn * own.planet_turns) for mesh in own.teeth.meshes])
-        placed_curve(
-            *self.given(deviated, np.zeros(len(found.ends))),
-            cosines_and_sines(turns[:, None] * rates),
-            cosines_and_sines(turns * planet),
-            np.stack(own.pushed),
-            np.array(own.unknowns(stands)),
-            own.objective(stands, shaft),
-            np.ascontiguousarray(own.wanted(stands, shaft)[end]),
-            own.begun(stands),
-            found.ends,
-            found.status,
-            found.row,
-            found.lacking,
-        )
-        return found

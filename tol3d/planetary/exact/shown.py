@@ -109,12 +109,7 @@ def _heights(own: PlanetarySet, made: Made) -> list[float]:
 
 
 def _centrals(
-    own: PlanetarySet,
-    made: Made,
-    deviated: Deviated,
-    turns: float,
-    at: Array,
-    carrier: float,
+    own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array, carrier: float
 ) -> Iterator[PlacedGear]:
     heights = _heights(own, made)
     for m, mesh in enumerate(own.meshes):
@@ -127,12 +122,7 @@ def _centrals(
 
 
 def _planets(
-    own: PlanetarySet,
-    made: Made,
-    deviated: Deviated,
-    turns: float,
-    at: Array,
-    carrier: float,
+    own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array, carrier: float
 ) -> Iterator[PlacedGear]:
     """Tooth 0 of the first planet's gears points outwards where nothing has turned."""
     heights, count = _heights(own, made), len(own.meshes)

@@ -6,16 +6,14 @@ counter-clockwise opens the flanks by s (sin(alpha_w) d_r +- cos(alpha_w) d_t); 
 them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows. Nothing here sees a pose.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.first_order.curve_kernel import first_order_curve
-from tol3d.planetary.model.deviated import Deviated, Followed, Free, cosines_and_sines, turned
+from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines, turned
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
 Array = NDArray[np.float64]
@@ -27,19 +25,13 @@ class StackUp:
 
     own: PlanetarySet
 
-    @cached_property
-    def _relative(self) -> tuple[tuple[float, ...], float]:
-        """Turns of the central gears and of a planet against the carrier, a turn of the output."""
-        planet = self.own.planet_turns
-        return tuple(float(mesh.turn * planet) for mesh in self.own.teeth.meshes), float(planet)
-
     def sides(self, deviated: Deviated, turns: Array) -> tuple[Array, Array]:
         """Lower and upper side (trials, planets x meshes) [mm] of n, at turns (trials,) of the output."""
         own = self.own
         lower = np.empty((len(turns), own.planets, len(own.meshes)))
         upper = np.empty_like(lower)
         azimuths = np.array(own.azimuths) / (2 * np.pi)
-        of_centrals, of_planet = self._relative
+        of_centrals, of_planet = own.gear_rates
         for place, mesh in enumerate(own.meshes):
             gear = own.gear_of(mesh)
             s, angle = mesh.sense, mesh.working_pressure_angle
@@ -64,79 +56,13 @@ class StackUp:
         own, found = self.own, Free.of(len(turns))
         sides = zip(self.sides(deviated, turns), own.pushed, strict=True)
         lower, upper = (np.hstack([side, np.tile(push, (len(turns), 1))]) for side, push in sides)
-        ranges(
-            own.rows(stands),
-            lower,
-            upper,
-            own.objective(stands, shaft),
-            own.wanted(stands, shaft),
-            own.begun(stands),
-            found.ends,
-            found.status,
-            found.row,
-            found.lacking,
-        )
+        ranges(own.rows(stands), lower, upper, *own.asked(stands, shaft), *found.written)
         return found
 
-
-@dataclass(frozen=True)
-class Slopes:
-    """What a sum of ends of some trials changes with.
-
-    Args:
-        on_sides: lower and upper sides of contacts and springs (trials, 2, rows).
-        on_central, on_planet: offsets of gears (trials, centrals, 2), (trials, gears, planets, 2).
-    """
-
-    on_sides: Array
-    on_central: Array
-    on_planet: Array
-
-    @classmethod
-    def of(cls, own: PlanetarySet, trials: int) -> "Slopes":
-        """Zeros."""
-        rows, centrals = len(own.all_rows), len(own.meshes)
-        planets = (trials, len(own.gears), own.planets, 2)
-        return cls(np.zeros((trials, 2, rows)), np.zeros((trials, centrals, 2)), np.zeros(planets))
-
-    def by_deviation(self, own: PlanetarySet) -> Deviated:
-        """Change a unit of each deviation of each trial, in the places of the deviations themselves."""
-        contacts = len(own.meshes) * own.planets
-        lower, upper = (
-            self.on_sides[:, side, :contacts].reshape(-1, own.planets, len(own.meshes)) for side in range(2)
-        )
-        opened, moved = upper - lower, upper + lower
-        found = Deviated.nothing(own, len(lower))
-        found.central_offset[...], found.planet_offset[...] = self.on_central, self.on_planet
-        for place, mesh in enumerate(own.meshes):
-            gear, s, angle = own.gear_of(mesh), mesh.sense, mesh.working_pressure_angle
-            thicker = -np.cos(mesh.central.pressure_angle) / 2 * opened[:, :, place]
-            found.central_thickness[:, place] += thicker.sum(axis=1)
-            found.planet_thickness[:, gear] += thicker
-            pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s
-            found.pins[...] += pushed
-            found.aside[:, place] += turned(pushed, np.array(own.azimuths) / (2 * np.pi)).sum(axis=1)
-            found.planet_clocking[:, gear] -= mesh.planet.base_radius * moved[:, :, place]
-            found.central_clocking[:, place] -= s * mesh.central.base_radius * moved[:, :, place].sum(axis=1)
-        return found
-
-
-@dataclass(frozen=True)
-class StackUpCurves(StackUp):
-    """First-order gaps of a set, and what they leave free at positions one after another."""
-
-    @cached_property
-    def _rates(self) -> tuple[Array, float]:
-        planet = self.own.planet_turns
-        return np.array([float(mesh.turn * planet) for mesh in self.own.teeth.meshes]), float(planet)
-
-    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Followed:
-        """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see StackUp.free."""
-        found = Followed.of(len(deviated.pins), len(turns))
-        self._run(deviated, turns, shaft, stands, end)(
-            np.zeros_like(found.ends), found, Slopes.of(self.own, len(found.ends))
-        )
-        return found
+    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
+        """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see free."""
+        coefficients = np.zeros((len(deviated.pins), len(turns)))
+        return self._run(deviated, turns, shaft, stands, end, coefficients)[0]
 
     def slopes(
         self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
@@ -151,16 +77,15 @@ class StackUpCurves(StackUp):
             shaft, stands, end: see `followed`.
             coefficients: of the ends in the sum (trials, positions).
         """
-        found = Followed.of(*coefficients.shape)
-        slopes = Slopes.of(self.own, len(coefficients))
-        self._run(deviated, turns, shaft, stands, end)(coefficients, found, slopes)
-        return slopes.by_deviation(self.own)
+        _, slopes = self._run(deviated, turns, shaft, stands, end, coefficients)
+        return self._by_deviation(*slopes)
 
     def _run(
-        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int
-    ) -> Callable[[Array, Followed, Slopes], None]:
+        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
+    ) -> tuple[Free, tuple[Array, Array, Array]]:
+        """Ends, and what their sum changes with; see first_order_curve."""
         own, trials = self.own, len(deviated.pins)
-        rates, planet = self._rates
+        rates, planet = own.gear_rates
         still = replace(
             deviated,
             central_offset=np.zeros_like(deviated.central_offset),
@@ -172,32 +97,52 @@ class StackUpCurves(StackUp):
             (m.sense * np.sin(m.working_pressure_angle), m.sense * np.cos(m.working_pressure_angle)) for m in own.meshes
         ]
         phases = own.phases / (2 * np.pi)
-        flat = np.ravel(turns)
+        flat, found = np.ravel(turns), Free.of(*coefficients.shape)
+        slopes = (
+            np.zeros((trials, 2, len(own.all_rows))),
+            np.zeros(deviated.central_offset.shape),
+            np.zeros(deviated.planet_offset.shape),
+        )
+        first_order_curve(
+            own.rows(stands),
+            lower,
+            upper,
+            np.ascontiguousarray(deviated.central_offset),
+            np.ascontiguousarray(deviated.planet_offset),
+            np.array(across),
+            np.array([own.gear_of(mesh) for mesh in own.meshes]),
+            cosines_and_sines(np.array(own.azimuths) / (2 * np.pi)),
+            cosines_and_sines(phases),
+            cosines_and_sines(flat[:, None] * rates),
+            cosines_and_sines(flat * planet),
+            *own.asked(stands, shaft, end),
+            coefficients,
+            *found.written,
+            *slopes,
+        )
+        return found, slopes
 
-        def run(coefficients: Array, found: Followed, slopes: Slopes) -> None:
-            first_order_curve(
-                own.rows(stands),
-                lower,
-                upper,
-                np.ascontiguousarray(deviated.central_offset),
-                np.ascontiguousarray(deviated.planet_offset),
-                np.array(across),
-                np.array([own.gear_of(mesh) for mesh in own.meshes]),
-                cosines_and_sines(np.array(own.azimuths) / (2 * np.pi)),
-                cosines_and_sines(phases),
-                cosines_and_sines(flat[:, None] * rates),
-                cosines_and_sines(flat * planet),
-                own.objective(stands, shaft),
-                np.ascontiguousarray(own.wanted(stands, shaft)[end]),
-                own.begun(stands),
-                coefficients,
-                found.ends,
-                found.status,
-                found.row,
-                found.lacking,
-                slopes.on_sides,
-                slopes.on_central,
-                slopes.on_planet,
-            )
+    def _by_deviation(self, on_sides: Array, on_central: Array, on_planet: Array) -> Deviated:
+        """Change a unit of each deviation of each trial, in the places of the deviations themselves.
 
-        return run
+        Args:
+            on_sides: by lower and upper sides of contacts and springs (trials, 2, rows).
+            on_central, on_planet: by offsets of gears (trials, centrals, 2), (trials, gears, planets, 2).
+        """
+        own = self.own
+        contacts = len(own.meshes) * own.planets
+        lower, upper = (on_sides[:, side, :contacts].reshape(-1, own.planets, len(own.meshes)) for side in range(2))
+        opened, moved = upper - lower, upper + lower
+        found = Deviated.nothing(own, len(lower))
+        found.central_offset[...], found.planet_offset[...] = on_central, on_planet
+        for place, mesh in enumerate(own.meshes):
+            gear, s, angle = own.gear_of(mesh), mesh.sense, mesh.working_pressure_angle
+            thicker = -np.cos(mesh.central.pressure_angle) / 2 * opened[:, :, place]
+            found.central_thickness[:, place] += thicker.sum(axis=1)
+            found.planet_thickness[:, gear] += thicker
+            pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s
+            found.pins[...] += pushed
+            found.aside[:, place] += turned(pushed, np.array(own.azimuths) / (2 * np.pi)).sum(axis=1)
+            found.planet_clocking[:, gear] -= mesh.planet.base_radius * moved[:, :, place]
+            found.central_clocking[:, place] -= s * mesh.central.base_radius * moved[:, :, place].sum(axis=1)
+        return found

@@ -127,31 +127,34 @@ def _turned(components: Array, acts: Acts, angle: float) -> Array:
     )
 
 
-Codes = NDArray[np.int8]
-
-
 @dataclass(frozen=True)
 class Free:
-    """What a shaft can turn in some trials.
+    """How far a shaft turns in some trials.
 
     Args:
-        ends: smallest and largest turn (trials, 2) [rad]; nan where the set cannot be assembled.
-        status: of the programme (trials,).
+        ends: smallest and largest turn (trials, 2) [rad], nan where the set cannot be assembled; or where the shaft
+            rests at positions one after another (trials, positions), 0 where the set jams.
+        status: of the programme, the worst position's (trials,).
         row: planet x meshes + mesh that has no room (trials,), -1 where all have.
-        lacking: how much each contact of a closed loop lacks [mm] (trials,).
+        lacking: how much each contact of a closed loop lacks at most [mm] (trials,).
     """
 
     ends: Array
-    status: Codes
+    status: NDArray[np.int8]
     row: NDArray[np.int64]
     lacking: Array
 
     @classmethod
-    def of(cls, trials: int) -> "Free":
+    def of(cls, trials: int, positions: int = 2) -> "Free":
         """Room for some trials."""
         return cls(
-            np.empty((trials, 2)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials, np.float64)
+            np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
         )
+
+    @property
+    def written(self) -> tuple[Array, NDArray[np.int8], NDArray[np.int64], Array]:
+        """What kernels write."""
+        return self.ends, self.status, self.row, self.lacking
 
 
 def turned(vectors: Array, turns: Array) -> Array:
@@ -160,30 +163,6 @@ def turned(vectors: Array, turns: Array) -> Array:
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
-
-
-@dataclass(frozen=True)
-class Followed:
-    """Where a shaft rests at positions one after another in some trials.
-
-    Args:
-        ends: its turn (trials, positions) [rad]; 0 where the set jams.
-        status: of the programme, the worst position's (trials,).
-        row: that has no room there, see Free (trials,).
-        lacking: how much each contact of a closed loop lacks at most [mm] (trials,).
-    """
-
-    ends: Array
-    status: Codes
-    row: NDArray[np.int64]
-    lacking: Array
-
-    @classmethod
-    def of(cls, trials: int, positions: int) -> "Followed":
-        """Room for some trials."""
-        return cls(
-            np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
-        )
 
 
 def cosines_and_sines(turns: Array) -> Array:

@@ -135,6 +135,11 @@ class PlanetarySet:
         """Turns of a planet on its pin a turn of the output."""
         return 1 / (self.turn(self.output) - self.turn(self.held))
 
+    @cached_property
+    def gear_rates(self) -> tuple[Array, float]:
+        """Turns of the central gears and of a planet against the carrier, a turn of the output."""
+        return np.array([float(mesh.turn * self.planet_turns) for mesh in self.teeth.meshes]), float(self.planet_turns)
+
     @property
     def period_planet_turns(self) -> int:
         """Turns of a planet on its pin until all teeth meet again as they did."""
@@ -245,6 +250,11 @@ class PlanetarySet:
     def objective(self, stands: str, shaft: str) -> Array:
         """The turn of a shaft among those unknowns."""
         return np.array([float(place == self.shafts.index(shaft)) for place in self.unknowns(stands)])
+
+    def asked(self, stands: str, shaft: str, end: int | slice = slice(None)) -> tuple[Array, Array, NDArray[np.int64]]:
+        """What a programme takes of a shaft's turn: its objective, what is made largest at an end, its first basis."""
+        wanted = np.ascontiguousarray(self.wanted(stands, shaft)[end])
+        return self.objective(stands, shaft), wanted, self.begun(stands)
 
     def opposite(self, shaft: str) -> str:
         """What stands while a shaft is turned: the input, for the input the output."""

@@ -70,7 +70,7 @@ class PlanetaryPresenter(GearPresenter):
 
 
 def _draw_curve(spring: SpringSummary, path: Path) -> None:
-    _lazily("torque_curve").draw_curve(spring.curve, path)
+    import_module("tol3d.planetary.hysteresis_picture").draw_curve(spring.curve, path)
 
 
 def _lazily(module: str) -> Any:
