@@ -28,6 +28,7 @@ from tol3d.cycloid.system import REST_COSTS
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.plane import turned
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
@@ -114,10 +115,10 @@ class RVLink(OutputLink):
         for acts, part, sun_turned in self._against_carrier if asides else ():
             none = np.zeros((len(seen), 2))
             aside = asides.get(part, none) - asides.get(self.own.carrier, none)
-            found.add(acts, _turned(aside, -sun_turned * turns))
+            found.add(acts, turned(aside, -sun_turned * turns))
         for k, (_, azimuth) in enumerate(self.pins):
             if pin_name(k) in asides:
-                found.stage.carrier_holes[:, k] += _turned(asides[pin_name(k)], _alike(seen, azimuth))
+                found.stage.carrier_holes[:, k] += turned(asides[pin_name(k)], _alike(seen, azimuth))
         return found
 
     @property
@@ -163,14 +164,14 @@ class RVLink(OutputLink):
         for piece, turns, rates in self.slopes(seen):
             against = np.zeros((len(piece), 2))
             for acts, part, sun_turned in self._against_carrier:
-                units = (_turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
+                units = (turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
                 by = np.stack([sum(n * each.term(acts, unit) for n, each in rates) for unit in units], axis=-1)
                 found[part].append(by)
                 against -= by
             found[self.own.carrier].append(against)
             for k, (_, azimuth) in enumerate(self.pins):
                 of_hole = np.sum([n * each.stage.carrier_holes[:, k] for n, each in rates], axis=0)
-                found[pin_name(k)].append(_turned(of_hole, _alike(piece, -azimuth)))
+                found[pin_name(k)].append(turned(of_hole, _alike(piece, -azimuth)))
         return {part: np.concatenate(each) for part, each in found.items()}
 
     def offset_by(self, contributor: str, part: str) -> "RVLink | None":
@@ -203,14 +204,6 @@ class RVLink(OutputLink):
 def _alike(seen: LinkTrials, angle: float) -> Array:
     """The turns of an angle [rad] in each of some trials (trials,)."""
     return np.full(len(seen), angle / (2 * math.pi))
-
-
-def _turned(vectors: Array, turns: Array) -> Array:
-    """Vectors (trials, 2) turned by so many turns (trials,)."""
-    angles = 2 * math.pi * (turns - np.round(turns))
-    cos, sin = np.cos(angles), np.sin(angles)
-    x, y = vectors.T
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 # from scenes ------------------------------------------------------------------------------------------

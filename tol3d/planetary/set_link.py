@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import NO_ROOM, ranges
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.exact.contact_kernel import seated_ranges
@@ -19,7 +20,7 @@ from tol3d.planetary.from_scene import implausible_set
 from tol3d.planetary.grammar.measures import PlanetaryMeasureSpec
 from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
-from tol3d.planetary.model.deviated import Acts, Deviated, turned
+from tol3d.planetary.model.deviated import Acts, Deviated
 from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at

@@ -6,8 +6,8 @@ The programme goes on with these gaps until nothing moves.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -19,6 +19,7 @@ from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.roads.witness import ALLOWANCE
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.gears.involute import involute
+from tol3d.numerics.plane import upright_pose
 from tol3d.numerics.programme import OK, STALLED, ranges
 from tol3d.planetary.exact.shown import Made, placed_gears
 from tol3d.planetary.model.deviated import Deviated, Free
@@ -154,9 +155,7 @@ def _flank_azimuth(gear: PlacedGear, flank: Flank, inv: float) -> float:
 def _flank_pose(gear: PlacedGear, tooth: int, flank: Flank) -> Array:
     """Of the flank of a tooth, (4, 4), from where the strip of tooth 0 lies; a thicker tooth turns its flanks apart."""
     angle = gear.gear.angular_pitch * tooth - flank * gear.flank_turn
-    turn = np.eye(4)
-    turn[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
-    return gear.world_from_gear @ turn
+    return gear.world_from_gear @ upright_pose(angle)
 
 
 LAST_MOVE: Final = 1e-4  # mm along the base circles; slopes are known to some thousandths, so 1e-7 mm are left
@@ -180,7 +179,7 @@ class StripContact:
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
         """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
         found = Free.of(len(turns))
-        for trial, own in enumerate(_each(deviated)):
+        for trial, own in enumerate(deviated[trial : trial + 1] for trial in range(len(deviated.pins))):
             for end in (0, 1):
                 begun = np.zeros(self.own.all_rows.shape[1])
                 at, status, row, lacking = self._seated(own, float(turns[trial]), (shaft, stands, end), begun)
@@ -195,7 +194,7 @@ class StripContact:
         """The lower (0) or upper (1) end of that at turns (positions,) of the output that all trials share."""
         found = Free.of(len(deviated.pins), len(turns))
         found.status[:], found.row[:], found.lacking[:] = OK, -1, 0.0
-        for trial, own in enumerate(_each(deviated)):
+        for trial, own in enumerate(deviated[trial : trial + 1] for trial in range(len(deviated.pins))):
             at = np.zeros(self.own.all_rows.shape[1])
             for position, turn in enumerate(turns.tolist()):
                 at, status, row, lacking = self._seated(own, turn, (shaft, stands, end), at)
@@ -241,12 +240,6 @@ class StripContact:
             if (np.abs(step) * arms).max() < LAST_MOVE:
                 return at, OK, -1, 0.0
         return at, STALLED, -1, 0.0
-
-
-def _each(deviated: Deviated) -> Iterator[Deviated]:
-    """The trials one by one."""
-    for trial in range(len(deviated.pins)):
-        yield Deviated(*(getattr(deviated, own.name)[trial : trial + 1] for own in fields(deviated)))
 
 
 MOST_POSITIONS: Final = 24

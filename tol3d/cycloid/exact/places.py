@@ -15,6 +15,7 @@ from tol3d.cycloid.model.limits import LEAST_WALL, largest_hole, lobe_reach
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.model.shapes import Carrier, CrankSection, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
 from tol3d.gears import SpurGear
+from tol3d.numerics.plane import as_complex, upright_pose
 from tol3d.solids import PosedGear, PosedPart, PosedShape
 
 Array = NDArray[np.float64]
@@ -31,6 +32,10 @@ class Place:
 
     at: complex
     turned: float
+
+    def pose(self, level: float = 0.0) -> Array:
+        """The same in space (4, 4), at a height [mm]."""
+        return upright_pose(self.turned, (self.at.real, self.at.imag), level)
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ class StagePlaces:
     @property
     def carrier(self) -> Place:
         """The carrier, displaced by its main bearing."""
-        offset = _complex(self.deviated.carrier_offsets[0])
+        offset = as_complex(self.deviated.carrier_offsets[0])
         return Place(complex(np.exp(1j * self.carrier_turned) * offset), self.carrier_turned)
 
     @property
@@ -75,7 +80,7 @@ class StagePlaces:
         """In the carrier's holes."""
         count = self.stage.cranks
         holes = self.stage.crank_circle * np.exp(2j * math.pi * np.arange(count) / count)
-        holes = holes + _complex(self.deviated.carrier_holes[0]) + _complex(self.deviated.carrier_offsets[0])
+        holes = holes + as_complex(self.deviated.carrier_holes[0]) + as_complex(self.deviated.carrier_offsets[0])
         axes = np.exp(1j * self.carrier_turned) * holes
         turns = self.cranks_turned + self.deviated.crank_phases[0]
         return tuple(Place(complex(at), float(turned)) for at, turned in zip(axes, turns, strict=True))
@@ -96,7 +101,7 @@ class StagePlaces:
         """Each turned to its azimuth."""
         count = self.stage.profile.pins
         azimuths = 2 * math.pi * np.arange(count) / count
-        off = self.stage.profile.pin_circle_radius + _complex(self.deviated.pins[0])
+        off = self.stage.profile.pin_circle_radius + as_complex(self.deviated.pins[0])
         return tuple(
             Place(complex(at), float(azimuth))
             for at, azimuth in zip(off * np.exp(1j * azimuths), azimuths, strict=True)
@@ -112,10 +117,6 @@ class StagePlaces:
         """Of contact_kinematics, as complex numbers (discs, 5)."""
         found = self.stage.as_made(self.deviated).linkage[0]
         return np.asarray(found[:, 0::2] + 1j * found[:, 1::2])
-
-
-def _complex(points: Array) -> NDArray[np.complex128]:
-    return np.asarray(points[..., 0] + 1j * points[..., 1])
 
 
 WALL: Final = 0.08  # of the cranks' circle: between holes
@@ -165,14 +166,14 @@ class StageShapes:
         yield PosedShape("pin ring", self.ring, np.eye(4))
         for number, (place, grown) in enumerate(zip(places.pins, places.deviated.pin_radii[0], strict=True), start=1):
             own = replace(self.pin, radius=self.pin.radius + float(grown)) if grown else self.pin
-            yield PosedShape(f"pin {number}", own, _pose(place))
+            yield PosedShape(f"pin {number}", own, place.pose())
         step = self.discs[0].width * (1 + GAP)
         for number, (disc, place) in enumerate(zip(self.discs, places.discs, strict=True)):
             level = step * (number - (len(self.discs) - 1) / 2)
-            yield PosedShape(f"disc {number + 1}", disc, _pose(place, level))
-        yield PosedShape("carrier", self.carrier, _pose(places.carrier))
+            yield PosedShape(f"disc {number + 1}", disc, place.pose(level))
+        yield PosedShape("carrier", self.carrier, places.carrier.pose())
         for number, place in enumerate(places.cranks, start=1):
-            yield PosedShape(f"crank {number}", self.crank, _pose(place))
+            yield PosedShape(f"crank {number}", self.crank, place.pose())
         if self.first is not None:
             yield from self._first_stage(places, *self.first)
 
@@ -181,12 +182,12 @@ class StageShapes:
         level = self.sun_level
         ratio, carried = sun.teeth / planet.teeth, -places.phi / places.stage.profile.lobes
         sun_turned = carried - (places.phi - carried) / ratio
-        yield PosedGear("sun", sun, _pose(Place(0j, sun_turned), level))
+        yield PosedGear("sun", sun, Place(0j, sun_turned).pose(level))
         for number, crank in enumerate(places.cranks):
             arm = carried + 2 * math.pi * number / len(places.cranks)
             facing = arm + math.pi + math.pi / planet.teeth - ratio * (sun_turned - arm)
             turned = Place(crank.at, facing + crank.turned - places.phi)
-            yield PosedGear(f"planet {number + 1}", planet, _pose(turned, level))
+            yield PosedGear(f"planet {number + 1}", planet, turned.pose(level))
 
 
 def usual_shapes(
@@ -270,11 +271,3 @@ def _holes(stage: ContactStage, crank_hole: float | None) -> DiscHoles:
     window = min(hole, 2 * beside - hole)
     posted = window - 2 * POST_ROOM * circle > least
     return DiscHoles(stage.cranks, circle, hole, window if posted else 0.0, max(2 * (circle - wall) - hole, 0.0))
-
-
-def _pose(place: Place, level: float = 0.0) -> Array:
-    pose = np.eye(4)
-    cos, sin = math.cos(place.turned), math.sin(place.turned)
-    pose[:2, :2] = [[cos, -sin], [sin, cos]]
-    pose[:3, 3] = (place.at.real, place.at.imag, level)
-    return pose

@@ -12,7 +12,7 @@ either way. Errors of lobes move whole strips: pitch turns them, profile acts al
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -66,7 +66,7 @@ class StripContact:
         turns = np.full((*positions.shape, len(senses)), np.nan)
         places = np.full(turns.shape, NO_PIN, dtype=np.int64)
         for trial in range(trials):
-            own = Deviated(*(getattr(deviated, field.name)[trial : trial + 1] for field in fields(deviated)))
+            own = deviated[trial : trial + 1]
             for position, phi in enumerate(positions[trial].tolist()):
                 for s, sense in enumerate(senses):
                     turns[trial, position, s], places[trial, position, s] = self._first(

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.profile import DiscProfile
+from tol3d.numerics.plane import as_complex, as_points
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -117,7 +118,7 @@ class LinearStage:
         normal, lever = self._normals(u, self._azimuths[pin]), -profile.lever(u)
         reach = lever * self._giving
         at_pin = normal * np.exp(-1j * self._azimuths[pin]) / reach
-        found.pins[rows, pin] = _plane(at_pin)
+        found.pins[rows, pin] = as_points(at_pin)
         found.pin_radii[rows, pin] = -1.0 / reach
         lobe = self._lobes(u)
         found.lobe_profile[rows, disc, lobe] = -1.0 / reach
@@ -211,12 +212,12 @@ class LinearStage:
         moment = 1j * self.crank_directions / (self.crank_circle * self.cranks) / self._giving
         carried = push * np.conj(carrier)
         holes = carried[:, None] / self.cranks - moment
-        found.carrier_offsets[...] = _plane(carried)
-        found.disc_offsets[rows, disc] = _plane(carried)
-        found.carrier_holes[...] = _plane(holes)
-        found.disc_holes[rows, disc] = -_plane(holes)
+        found.carrier_offsets[...] = as_points(carried)
+        found.disc_offsets[rows, disc] = as_points(carried)
+        found.carrier_holes[...] = as_points(holes)
+        found.disc_holes[rows, disc] = -as_points(holes)
         thrown = (push * np.conj(throw))[:, None] / self.cranks - moment * (carrier * np.conj(throw))[:, None]
-        found.crank_errors[rows, :, disc] = _plane(thrown)
+        found.crank_errors[rows, :, disc] = as_points(thrown)
         tangential = 1j * profile.eccentricity * np.exp(1j * self.throws[disc])
         found.crank_phases[...] = (np.conj(thrown) * tangential[:, None]).real
 
@@ -289,12 +290,3 @@ class PlacedDisc:
 def picked(own: Array, lobes: Places) -> Array:
     """Values of lobes (trials, lobes) at (trials, pins) or (1, pins)."""
     return own[:, lobes[0]] if len(lobes) == 1 else np.take_along_axis(own, lobes, axis=1)
-
-
-def as_complex(points: Array) -> Complex:
-    """Points or displacements (..., 2) as complex numbers."""
-    return np.asarray(points[..., 0] + 1j * points[..., 1])
-
-
-def _plane(values: Complex) -> Array:
-    return np.stack([values.real, values.imag], axis=-1)

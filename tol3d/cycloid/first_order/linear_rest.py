@@ -27,6 +27,7 @@ from tol3d.cycloid.exact.rest import Play
 from tol3d.cycloid.first_order.linear import LinearStage, Sense
 from tol3d.cycloid.model.deviated import Deviated
 from tol3d.numerics.cone_programme import ConeProgramme, Solved, farthest_between
+from tol3d.numerics.plane import as_complex
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -139,13 +140,13 @@ class LinearRest:
                 slopes[:, row, own : own + 2] = -1.0, -1j
                 slopes[:, row, own + 2] = -swung / stage.crank_circle
                 slopes[:, row, 0] = -stage.rolling * swung / stage.crank_circle
-                thrown = ahead * _complex(deviated.crank_errors[:, crank, disc])
-                bored = _complex(deviated.disc_holes[:, disc, crank]) - _complex(deviated.disc_offsets[:, disc])
+                thrown = ahead * as_complex(deviated.crank_errors[:, crank, disc])
+                bored = as_complex(deviated.disc_holes[:, disc, crank]) - as_complex(deviated.disc_offsets[:, disc])
                 off[:, row] = bored - thrown - swung * deviated.crank_phases[:, crank]
             row = stage.cranks * discs + crank
             slopes[:, row, own : own + 2] = 1.0, 1j
             slopes[:, row, 0] = -hole
-            off[:, row] = -_complex(deviated.carrier_holes[:, crank]) - _complex(deviated.carrier_offsets)
+            off[:, row] = -as_complex(deviated.carrier_holes[:, crank]) - as_complex(deviated.carrier_offsets)
         return slopes, off
 
     def _planets(self, slopes: Complex, off: Complex, play: Play) -> tuple[Array, Array]:
@@ -195,7 +196,3 @@ class LinearRest:
     def _unknowns(self) -> int:
         """The carrier's turn, places and turns of discs and cranks, and what all parts give."""
         return 2 + 3 * (self.stage.discs + self.stage.cranks)
-
-
-def _complex(points: Array) -> Complex:
-    return np.asarray(points[..., 0] + 1j * points[..., 1])

@@ -5,11 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.trial_arrays import TrialArrays
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Deviated:
+class Deviated(TrialArrays):
     """Deviations from nominal (trials, ...), counter-clockwise and outwards positive.
 
     Args:

@@ -16,6 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
+from tol3d.numerics.plane import as_points
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
 
 @dataclass(frozen=True)
 class Modification:
@@ -40,9 +45,6 @@ class Modification:
 
 UNMODIFIED: Final = Modification()
 
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 AZIMUTH_XTOL: Final = 1e-15  # rad; times 100 mm it is far below a double's last digit of a coordinate
 
@@ -160,31 +162,31 @@ class DiscProfile:
 
     def pin_centres(self, u: ArrayLike) -> Array:
         """Path of the centres of the nominal pins, (..., 2) [mm]; a modified disc leaves gaps to pins on it."""
-        return _plane(self._path(np.asarray(u, dtype=np.float64)))
+        return as_points(self._path(np.asarray(u, dtype=np.float64)))
 
     def pitch_points(self, u: ArrayLike) -> Array:
         """Where normals cross the pitch circle, (..., 2) [mm], for a disc that is not modified."""
-        return _plane(self.pitch_radius * np.exp(1j * self.pins * np.asarray(u, dtype=np.float64)))
+        return as_points(self.pitch_radius * np.exp(1j * self.pins * np.asarray(u, dtype=np.float64)))
 
     def points(self, u: ArrayLike) -> Array:
         """Points of the profile, (..., 2) [mm]; where flanks were rotated see `flank_ends`."""
         u, own = np.asarray(u, dtype=np.float64), self.ground
-        return _plane((own._path(u) - own.pin_radius * own._normal(u)) * self._turn(u))
+        return as_points((own._path(u) - own.pin_radius * own._normal(u)) * self._turn(u))
 
     def normals(self, u: ArrayLike) -> Array:
         """Unit normals out of the disc, (..., 2)."""
         u = np.asarray(u, dtype=np.float64)
-        return _plane(self.ground._normal(u) * self._turn(u))
+        return as_points(self.ground._normal(u) * self._turn(u))
 
     def nominal_normals(self, u: ArrayLike) -> Array:
         """Unit normals out of the disc where it is not modified, (..., 2): lines of action of the nominal pins."""
-        return _plane(self._normal(np.asarray(u, dtype=np.float64)))
+        return as_points(self._normal(np.asarray(u, dtype=np.float64)))
 
     def slopes(self, u: ArrayLike) -> Array:
         """dp/du of the profile, (..., 2) [mm/rad]; 0 where it would be undercut."""
         u, own = np.asarray(u, dtype=np.float64), self.ground
         along = 1j * own._normal(u) * own.path_speed(u) * (1 - own.pin_radius * own.path_curvature(u))
-        return _plane(along * self._turn(u))
+        return as_points(along * self._turn(u))
 
     def path_curvature(self, u: ArrayLike) -> Array:
         """Curvature of the path of pin centres that the disc is ground for [1/mm], positive where the disc is convex.
@@ -259,8 +261,3 @@ class DiscProfile:
     def _normal(self, u: Array) -> Complex:
         t = self.phase(u)
         return np.asarray(np.exp(1j * u) * (1 - self.shortening * np.exp(1j * t)) / self._speed(t))
-
-
-def _plane(values: Complex) -> Array:
-    """Complex numbers as coordinates."""
-    return np.stack([values.real, values.imag], axis=-1)

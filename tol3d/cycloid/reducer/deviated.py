@@ -1,7 +1,7 @@
 """What contributors do to an RV reducer: deviations of its cycloid stage, and of the gears before it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.numerics.trial_arrays import TrialArrays
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ class Acts:
 
 
 @dataclass(frozen=True)
-class RVDeviated:
+class RVDeviated(TrialArrays):
     """Deviations of an RV reducer (trials, ...), or what something changes by per deviation.
 
     Args:
@@ -89,18 +90,6 @@ class RVDeviated:
             np.zeros((trials, own.discs, own.cranks)),
             np.zeros((trials, own.cranks)),
         )
-
-    def rows(self, own: NDArray[np.int64]) -> "RVDeviated":
-        """Those of some trials, in some order."""
-        stage = Deviated(*(getattr(self.stage, field.name)[own] for field in fields(self.stage)))
-        return RVDeviated(stage, *(getattr(self, field.name)[own] for field in fields(self)[1:]))
-
-    def put(self, own: NDArray[np.int64], part: "RVDeviated") -> None:
-        """Write those of some trials."""
-        for field in fields(self.stage):
-            getattr(self.stage, field.name)[own] = getattr(part.stage, field.name)
-        for field in fields(self)[1:]:
-            getattr(self, field.name)[own] = getattr(part, field.name)
 
     def add(self, acts: Acts, components: Array) -> None:
         """Add what a contributor does.

@@ -18,6 +18,7 @@ from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank
+from tol3d.numerics.plane import as_complex, as_points
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
@@ -83,7 +84,7 @@ def placed_mesh(
     sun = angles(own, first, turns, crank)[0] - carried
     planet = first.pair.driven_angle(sun)
     origins = np.zeros((*shape, 2, 3))
-    origins[..., 0, :2] = _plane(_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
+    origins[..., 0, :2] = as_points(as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
     place = first.pair.centre_distance + _carried(own, deviated, crank)[:, None]
     thicker = np.stack([deviated.sun_thickness, deviated.planet_thickness[:, crank]], axis=-1)
     reference = np.array([gear.module * gear.teeth for gear in (first.pair.pinion, first.pair.wheel)])
@@ -91,8 +92,8 @@ def placed_mesh(
     rows = np.broadcast_to(sun, shape).reshape(-1)
     upright, turn = np.zeros((len(rows), 2, 3)), np.zeros(shape)
     for _ in range(ROUNDS):
-        off = _complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
-        origins[..., 1, :2] = _plane(place + off)
+        off = as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
+        origins[..., 1, :2] = as_points(place + off)
         displaced = Displaced(origins.reshape(-1, 2, 3), upright, flank_turn)
         turn = (first.pair.touching_angle(rows, flank, displaced) - first.pair.driven_angle(rows)).reshape(shape)
     return turn
@@ -113,10 +114,10 @@ def first_order_mesh(
     sun, planet = angles(own, first, turns, crank)
     pair = first.pair
     alpha = pair.working_pressure_angle
-    apart = _carried(own, deviated, crank)[:, None] + _complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
+    apart = _carried(own, deviated, crank)[:, None] + as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
         1j * planet
     )
-    apart = apart - _complex(deviated.sun_offset)[:, None] * np.exp(1j * sun)
+    apart = apart - as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun)
     thicker = (deviated.sun_thickness + deviated.planet_thickness[:, crank])[:, None]
     closing = thicker * math.cos(pair.pinion.pressure_angle) / 2 - math.sin(alpha) * apart.real
     closing = closing - pair.normal_backlash / 2
@@ -145,9 +146,9 @@ def add_rates(
     relative = own.azimuths[planets]
     sun = _sun_angle(own, turns) - relative
     planet = first.pair.driven_angle(sun)
-    carried = _plane(push * np.exp(1j * relative))
-    rates.sun_offset[...] += _plane(-push * np.exp(-1j * sun))
-    rates.planet_offset[rows, planets] += _plane(push * np.exp(-1j * planet))
+    carried = as_points(push * np.exp(1j * relative))
+    rates.sun_offset[...] += as_points(-push * np.exp(-1j * sun))
+    rates.planet_offset[rows, planets] += as_points(push * np.exp(-1j * planet))
     rates.sun_thickness[...] += thicker
     rates.planet_thickness[rows, planets] += thicker
     rates.stage.crank_phases[rows, planets] += factor
@@ -168,13 +169,5 @@ def _sun_angle(own: RVSet, turns: Array) -> Array:
 
 def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> NDArray[np.complex128]:
     """By how much a crank's axis lies off its place (trials,) in the frame of its mesh [mm]."""
-    off = _complex(deviated.stage.carrier_offsets) + _complex(deviated.stage.carrier_holes[:, crank])
+    off = as_complex(deviated.stage.carrier_offsets) + as_complex(deviated.stage.carrier_holes[:, crank])
     return np.asarray(off * np.exp(-1j * own.azimuths[crank]))
-
-
-def _complex(points: Array) -> NDArray[np.complex128]:
-    return np.asarray(points[..., 0] + 1j * points[..., 1])
-
-
-def _plane(values: NDArray[np.complex128]) -> Array:
-    return np.stack([values.real, values.imag], axis=-1)

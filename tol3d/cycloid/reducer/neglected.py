@@ -15,10 +15,11 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.first_order.linear import Array, LinearStage, PlacedDisc, Places, Sense, as_complex, picked
+from tol3d.cycloid.first_order.linear import Array, LinearStage, PlacedDisc, Places, Sense, picked
 from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.reducer.trials import RVMeasure, RVRoad, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
+from tol3d.numerics.plane import as_complex
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
 

@@ -83,7 +83,7 @@ def parts_over_turn(system: RVTrials, measure: RVMeasure, trials: Trials) -> Par
         np.broadcast_to(own, weights.shape)[rows, positions][:, None] for own in (turned.places, turned.planets)
     )
     found = Turned(turned.turns[rows, positions][:, None], places, planets)
-    rates = linear_rates(system.own, deviated.rows(rows), at[0, positions], found, measure.sense)
+    rates = linear_rates(system.own, deviated[rows], at[0, positions], found, measure.sense)
 
     def part_of(own: Contributor, off: Array) -> Array:
         terms = weights[rows, positions] * rates.term(system.acts[own.name], off[rows])

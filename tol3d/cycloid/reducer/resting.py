@@ -30,6 +30,7 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.trials import NO_CONTACT, NO_FIT, NO_REST
 from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
 from tol3d.gears import LEFT, RIGHT
+from tol3d.numerics.plane import as_complex, as_points
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
 
 Array = NDArray[np.float64]
@@ -75,37 +76,29 @@ def _of_pins(own: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: F
         force = forces.pins[:, disc]
         _, lever, normal = stage.nominal_gaps(nothing, disc, phis, None)
         lobes = stage.lobes_at(disc, phis)
-        found.stage.pins[...] += _plane(force * normal * np.exp(-1j * azimuths))
+        found.stage.pins[...] += as_points(force * normal * np.exp(-1j * azimuths))
         found.stage.pin_radii[...] -= force
         np.add.at(found.stage.lobe_profile[:, disc], (rows, lobes), -force)
         pitch = lever * profile.shortening / profile.pitch_radius
         np.add.at(found.stage.lobe_pitch[:, disc], (rows, lobes), -force * pitch)
         if own.width is not None:
             across = -1j * normal * np.exp(1j * phis / profile.lobes)[:, None]
-            side = np.sign((np.conj(across) * _complex(tilts[:, disc])[:, None]).real)
-            found.disc_tilts[:, disc] = _plane(-own.width / 2 * (force * side * across).sum(axis=1))
+            side = np.sign((np.conj(across) * as_complex(tilts[:, disc])[:, None]).real)
+            found.disc_tilts[:, disc] = as_points(-own.width / 2 * (force * side * across).sum(axis=1))
 
 
 def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> None:
     ahead = np.exp(1j * phis * (1 + 1 / own.profile.lobes))
-    discs, carrier = _complex(forces.discs), -_complex(forces.carrier)
+    discs, carrier = as_complex(forces.discs), -as_complex(forces.carrier)
     swung = 1j * own.profile.eccentricity * np.exp(1j * own.linear.throws)
     thrown = -discs * np.conj(ahead)[:, None, None]
     found.disc_holes[...] = np.swapaxes(forces.discs, 1, 2)
-    found.disc_offsets[...] = -_plane(discs.sum(axis=1))
-    found.crank_errors[...] = _plane(thrown)
+    found.disc_offsets[...] = -as_points(discs.sum(axis=1))
+    found.crank_errors[...] = as_points(thrown)
     if own.first is None:  # else those of planets
         found.crank_phases[...] = (np.conj(thrown) * swung).real.sum(axis=2)
-    found.carrier_holes[...] = _plane(carrier)
-    found.carrier_offsets[...] = _plane(carrier.sum(axis=1))
-
-
-def _complex(points: Array) -> Complex:
-    return np.asarray(points[..., 0] + 1j * points[..., 1])
-
-
-def _plane(values: Complex) -> Array:
-    return np.stack([values.real, values.imag], axis=-1)
+    found.carrier_holes[...] = as_points(carrier)
+    found.carrier_offsets[...] = as_points(carrier.sum(axis=1))
 
 
 AT_ONCE: Final = 1024  # rests of the analytic road in memory, some 10 kB each
@@ -168,7 +161,7 @@ class LinearResting:
         for position in range(beta.shape[1]):
             for first in range(0, trials, AT_ONCE):
                 rows = np.arange(first, min(first + AT_ONCE, trials))
-                forces = self._forces(deviated.rows(rows), phis[rows, position], play, (rows, position), sense)
+                forces = self._forces(deviated[rows], phis[rows, position], play, (rows, position), sense)
                 found[rows, position] = forces.turns
                 near[rows, position] = (forces.gaps <= (deflection or 0.0)).sum(axis=1)
                 places[rows, position] = np.abs(forces.pins).reshape(len(rows), -1).argmax(axis=1)
@@ -183,9 +176,9 @@ class LinearResting:
         play = play_of(own, deviated, at, beta, first_order_mesh)
         for first in range(0, len(turns), AT_ONCE):
             rows = np.arange(first, min(first + AT_ONCE, len(turns)))
-            part = deviated.rows(rows)
+            part = deviated[rows]
             forces = self._forces(part, phis[rows, 0], play, (rows, 0), sense)
-            rates.put(rows, rest_rates(own, part, turns[rows], phis[rows, 0], forces))
+            rates[rows] = rest_rates(own, part, turns[rows], phis[rows, 0], forces)
         return rates
 
     def _forces(

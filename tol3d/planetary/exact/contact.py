@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears.involute import involute
+from tol3d.numerics.plane import turned
 from tol3d.planetary.exact.contact_kernel import placed_curve, seated_ranges
-from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines, turned
+from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
 Array = NDArray[np.float64]

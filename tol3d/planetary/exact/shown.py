@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from tol3d.errors import InputError
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import InternalGear, SpurGear
+from tol3d.numerics.plane import upright_pose
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
@@ -117,7 +118,7 @@ def _centrals(
         angle += at[m] + deviated.central_clocking[0, m]
         place = _turned(deviated.central_offset[0, m], angle) - _turned(deviated.aside[0, m], carrier)
         thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
-        pose = _pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
+        pose = upright_pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
         yield PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0)
 
 
@@ -132,21 +133,13 @@ def _planets(
             angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]
             place = pin + _turned(deviated.planet_offset[0, g, k], angle)
             thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
-            pose = _pose(angle, place, heights[g])
+            pose = upright_pose(angle, place, heights[g])
             yield PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0)
 
 
 def _turned(vector: Array, angle: float) -> Array:
     cos, sin = math.cos(angle), math.sin(angle)
     return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
-
-
-def _pose(angle: float, place: Array, height: float) -> Array:
-    pose = np.eye(4)
-    cos, sin = math.cos(angle), math.sin(angle)
-    pose[:2, :2] = [[cos, -sin], [sin, cos]]
-    pose[:3, 3] = (place[0], place[1], height)
-    return pose
 
 
 LOW, HIGH = 0, 1
@@ -240,8 +233,9 @@ def _seated(own: PlanetarySet, deviated: Deviated, turns: Array) -> tuple[Array,
     Raises:
         InputError: the set jams.
     """
-    rows = Deviated(*(np.repeat(getattr(deviated, own.name), len(turns), axis=0) for own in fields(deviated)))
-    free, reached = Contact(own).seated(rows, turns, own.output, own.opposite(own.output))
+    free, reached = Contact(own).seated(
+        deviated[np.zeros(len(turns), dtype=np.int64)], turns, own.output, own.opposite(own.output)
+    )
     if free.status.any():
         raise InputError("the set jams, so that nothing of it moves; choose another trial")
     return free.ends, reached

@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.first_order.curve_kernel import first_order_curve
-from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines, turned
+from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
 Array = NDArray[np.float64]

@@ -1,12 +1,13 @@
 """Deviations of the gears, planets and pins of a set in some trials, and how far a shaft then turns by either road."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.trial_arrays import TrialArrays
 from tol3d.planetary.model.planetary_set import PlanetarySet
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ class Acts:
 
 
 @dataclass(frozen=True)
-class Deviated:
+class Deviated(TrialArrays):
     """Deviations of a set (trials, ...).
 
     Args:
@@ -104,10 +105,6 @@ class Deviated:
         found = found if of_planets else _turned(found, acts, -own.meshes[place].facing)
         return acts.factor * found.reshape(len(found), -1)
 
-    def plus(self, other: "Deviated") -> "Deviated":
-        """Both added up."""
-        return Deviated(*(getattr(self, each.name) + getattr(other, each.name) for each in fields(self)))
-
     def _array(self, effect: Effect, of_planets: bool) -> Array:
         arrays = {
             "thickness": (self.central_thickness, self.planet_thickness),
@@ -155,14 +152,6 @@ class Free:
     def written(self) -> tuple[Array, NDArray[np.int8], NDArray[np.int64], Array]:
         """What kernels write."""
         return self.ends, self.status, self.row, self.lacking
-
-
-def turned(vectors: Array, turns: Array) -> Array:
-    """Vectors (trials, ..., 2) turned by so many turns (trials, ...)."""
-    angles = 2 * np.pi * (turns - np.round(turns))
-    cos, sin = np.cos(angles), np.sin(angles)
-    x, y = vectors[..., 0], vectors[..., 1]
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
 
 
 def cosines_and_sines(turns: Array) -> Array:

@@ -15,6 +15,7 @@ from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body, plain_body
 from tol3d.gears import LEFT, SpurGear
+from tol3d.numerics.plane import upright_pose
 from tol3d.planetary.exact.flank_gaps import flank_gaps
 from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shaft_turn, swung, turned
 from tol3d.planetary.model.planetary_set import PlanetarySet
@@ -60,11 +61,7 @@ def arm_name(own: PlanetarySet, planet: int) -> str:
 
 def arm_pose(pin: Array, level: float) -> Array:
     """Of an arm whose pin has its axis there (2,) [mm], as far as it turns about the common axis."""
-    angle = math.atan2(pin[1], pin[0])
-    pose = np.eye(4)
-    pose[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
-    pose[2, 3] = level
-    return pose
+    return upright_pose(math.atan2(pin[1], pin[0]), level=level)
 
 
 TURN, SWING, OPENING = "turn", "swing", "opening"
