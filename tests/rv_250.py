@@ -6,8 +6,8 @@ from dataclasses import fields
 import numpy as np
 
 from tol3d.cycloid.first_order.linear import LinearStage
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.formula import Source
 
 SHORTENING = 88.0 / 114.5

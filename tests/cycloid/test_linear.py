@@ -13,8 +13,8 @@ from rv_250 import CRANK_CIRCLE, SHORTENING, nothing, random_deviations, rv_250,
 
 from tol3d.cycloid.exact.contact import ContactStage
 from tol3d.cycloid.first_order.linear import LinearStage, Sense
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.profile import DiscProfile
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.neglected import BentStage
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ from tol3d.cycloid.exact.contact import ContactStage
 from tol3d.cycloid.exact.rest import Play, RestStage
 from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.first_order.linear_rest import LinearRest
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
 
 Array = NDArray[np.float64]
 

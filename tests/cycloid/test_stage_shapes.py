@@ -14,11 +14,11 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
 from tol3d.cycloid.exact.contact import ContactStage
 from tol3d.cycloid.exact.places import StagePlaces, StageShapes, usual_shapes
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.limits import circle_fault, hole_faults, largest_hole, lobe_reach
 from tol3d.cycloid.model.profile import DiscProfile, Modification
 from tol3d.cycloid.model.shapes import CrankSection, Crankshaft, DiscHoles
 from tol3d.cycloid.model.shapes_cad import carrier_of, crank, ring
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.errors import GeometryError
 from tol3d.gears import SpurGear
 from tol3d.solids import PosedPart, export_step

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.rest_kernel import rests
@@ -28,12 +27,11 @@ from tol3d.cycloid.system import REST_COSTS
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-
-Array = NDArray[np.float64]
 
 PARTS: Final = (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec)
 """Kinds of part that stand in reducers alone."""

@@ -6,9 +6,6 @@ from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.places import usual_shapes
 from tol3d.cycloid.exact.rest_kernel import rests
@@ -20,6 +17,7 @@ from tol3d.cycloid.reducer.regressors import TAKEN, parts_over_turn, regress_tou
 from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import STATUSES, RVRoad, RVTrials
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
@@ -28,8 +26,6 @@ from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 FCL: Final = "fcl"
 REST_COSTS: Final = 80  # times a first contact

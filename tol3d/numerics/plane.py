@@ -3,10 +3,8 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from tol3d.numerics.arrays import Array, Complex
 
 
 def as_complex(points: Array) -> Complex:

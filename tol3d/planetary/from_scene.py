@@ -39,8 +39,6 @@ def implausible_set(scene: Scene, own: PlanetarySet, made: Made) -> tuple[str, .
     """Warnings of a set.
 
     Args:
-        scene: with its tolerances.
-        own: the set.
         made: its gears by their names, nominal.
 
     Raises:

@@ -13,7 +13,6 @@ the variance of the sum.
 from functools import reduce
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.model.deviated import Deviated
@@ -21,8 +20,6 @@ from tol3d.planetary.trials import PlanetaryMeasure, SetTrials
 from tol3d.system.output_system import Parts
 from tol3d.system.taken import weights_taken
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def parts_met(system: SetTrials, measure: PlanetaryMeasure, trials: Trials) -> Parts:

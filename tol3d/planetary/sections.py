@@ -86,7 +86,6 @@ def set_sections(
     """The set by its name; nothing where neither friction of the teeth nor a spring of the carrier is given.
 
     Args:
-        own: the set.
         friction: coefficient of friction of the teeth.
         spring: what that of a flexible carrier holds.
     """

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import NO_ROOM, ranges
 from tol3d.planetary.exact.contact import Contact
@@ -29,8 +29,6 @@ from tol3d.planetary.sections import set_sections
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

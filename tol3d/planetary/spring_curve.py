@@ -10,15 +10,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.model.deviated import Deviated, Free
 from tol3d.planetary.model.planetary_set import MOST_PUSH, PlanetarySet
-
-Array = NDArray[np.float64]
 
 STRAIGHT: Final = 1e-11  # rad; a point lies on a line: the programme keeps rows to 1e-12 mm
 KNOT: Final = 1e-9  # rad; bends of less are none: 0.0002 arcsec
@@ -77,7 +75,6 @@ def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: flo
     """Those of a set with one spring, by first-order gaps; the opposite shaft stands.
 
     Args:
-        own: the set.
         deviated: of one trial.
         shaft: the input or the output.
         turns: of the output, at which gears stand.

@@ -6,9 +6,7 @@ from functools import cached_property, partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.exact.contact_kernel import seated_ranges
@@ -29,8 +27,6 @@ from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 FCL: Final = "fcl"
 WITNESS: Final = "tol3d.planetary.witness"  # it loads FCL, in the worker

@@ -8,6 +8,7 @@ from typing import Final, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import NO_ROOM, STALLED
 from tol3d.planetary.first_order.levers import play_bound
 from tol3d.planetary.model.deviated import Acts, Deviated, Free
@@ -21,8 +22,6 @@ from tol3d.system.road import Answers
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 Reading = Literal["lost motion", "low stiffness", "lag", "lead"]
 

@@ -12,13 +12,13 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.engines.fcl import OUT_OF_REACH, SLACK, Found, read_strips
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.roads.witness import ALLOWANCE
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.gears.involute import involute
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose
 from tol3d.numerics.programme import OK, STALLED, ranges
 from tol3d.planetary.exact.shown import Made, placed_gears
@@ -28,8 +28,6 @@ from tol3d.planetary.trials import PlanetaryRoad, SetTrials
 from tol3d.solids import FlankStrips, PulledStrip
 from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 from tol3d.system.measure import Measure
-
-Array = NDArray[np.float64]
 
 BESIDE: Final = (-1, 0, 1)
 """Pairs of teeth that are asked, from the one at the pitch point on; no more than three can touch at once."""

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
@@ -16,7 +17,6 @@ from tol3d.system.system import Columns, StreamKey
 from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Parts = Callable[[Contributor, Array], Array]
 """What a contributor that lies off its mean (trials, components) adds to a measure (trials,), in mm or rad."""
 

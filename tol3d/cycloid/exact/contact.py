@@ -37,14 +37,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.pin_contact import ContactShape
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.profile import DiscProfile
-
-Array = NDArray[np.float64]
+from tol3d.cycloid.model.stage import CycloidStage, Deviated
+from tol3d.numerics.arrays import Array, Places
 
 CENTRE: Final = slice(0, 2)  # of the carrier's holes, in the carrier's frame
 THROW: Final = slice(2, 4)  # mean of the cranks' throws, in the cranks' frame
@@ -140,8 +138,6 @@ def _turned(points: Array, others: Array) -> Array:
     return np.asarray(_mean(np.stack([x * u + y * v, y * u - x * v], axis=-1)) * points.shape[1])
 
 
-Places = NDArray[np.int64]
-
 BOTH: Final = (1.0, -1.0)
 """Counter-clockwise, and back."""
 NONE_COUNTED: Final = -1.0
@@ -184,25 +180,8 @@ class AsMade:
 
 
 @dataclass(frozen=True)
-class ContactStage:
-    """A cycloid stage as its exact first contacts need it: discs, cranks and carrier without bearing play.
-
-    Args:
-        profile: of the discs.
-        discs, cranks: how many.
-        crank_circle: radius of the circle of crank axes [mm].
-        rolling: turns of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet teeth
-            while the sun stands and 0 while the cranks do.
-        window: pins work whose nominal lever is more than this share of the pitch radius; others stop nothing, and may
-            lie in the disc by some micrometres where clearance is small.
-    """
-
-    profile: DiscProfile
-    discs: int
-    cranks: int
-    crank_circle: float
-    rolling: float
-    window: float
+class ContactStage(CycloidStage):
+    """A cycloid stage as its exact first contacts need it."""
 
     def touches(
         self,
@@ -218,9 +197,7 @@ class ContactStage:
         to turn back before pins of the other flanks are clear.
 
         Args:
-            deviated: trials.
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
-            senses: of the turn.
             deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
             leans: of discs, see `leaning`; None where they lie flat.
         """

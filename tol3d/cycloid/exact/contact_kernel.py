@@ -267,7 +267,6 @@ def first_contacts(
     """First contacts of trials at crank angles.
 
     Args:
-        shape: nominal numbers.
         throws: directions of the cranks' throws (discs,) [rad].
         around: cosine and sine of the pins' azimuths (pins, 2).
         linkage: of the trials' discs (trials, discs, 10), see contact_kinematics.

@@ -7,18 +7,16 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact import CARRIER_TURN, CENTRE, CRANK_TURN, HOLES, THROW, ContactStage, throws
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.limits import LEAST_WALL, largest_hole, lobe_reach
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.model.shapes import Carrier, CrankSection, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.gears import SpurGear
+from tol3d.numerics.arrays import Array, Complex
 from tol3d.numerics.plane import as_complex, upright_pose
 from tol3d.solids import PosedGear, PosedPart, PosedShape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ class StagePlaces:
         return throws(self.stage.discs)
 
     @cached_property
-    def _linkage(self) -> NDArray[np.complex128]:
+    def _linkage(self) -> Complex:
         """Of contact_kinematics, as complex numbers (discs, 5)."""
         found = self.stage.as_made(self.deviated).linkage[0]
         return np.asarray(found[:, 0::2] + 1j * found[:, 1::2])
@@ -199,7 +197,6 @@ def usual_shapes(
     """Shapes of a reducer of which only what acts is known; all else by the proportions above.
 
     Args:
-        stage: what acts.
         width: of a disc [mm].
         crank_hole: diameter of the discs' crank holes [mm].
         first: sun and planet.

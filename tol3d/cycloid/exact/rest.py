@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.exact.contact import NONE_COUNTED, Array, ContactStage, contact_shape, throws
+from tol3d.cycloid.exact.contact import NONE_COUNTED, ContactStage, contact_shape, throws
 from tol3d.cycloid.exact.rest_kernel import rests
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.numerics.arrays import Array, Places
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Resting:
 
     turns: Array
     loads: Array
-    near: NDArray[np.int64]
+    near: Places
     status: NDArray[np.int8]
 
 
@@ -73,10 +74,7 @@ class RestStage:
         """Turn the carrier by a torque, counter-clockwise (+1) or back (-1), until contacts hold it.
 
         Args:
-            deviated: trials.
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
-            play: of bearings.
-            sense: of the torque.
             deflection, leans: see ContactStage.touches.
         """
         own = self.contact

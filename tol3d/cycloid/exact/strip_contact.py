@@ -17,17 +17,14 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tol3d.cycloid.exact.contact import BOTH, ContactStage, Touching
 from tol3d.cycloid.exact.places import StagePlaces
-from tol3d.cycloid.model.deviated import Deviated
 from tol3d.cycloid.model.shapes import LobeStrips
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
-
-Array = NDArray[np.float64]
-Places = NDArray[np.int64]
 
 SLACK: Final = 0.05  # mm; overlaps up to it are measured
 LAST_STEP: Final = 1e-7  # mm over the pitch radius

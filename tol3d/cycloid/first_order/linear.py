@@ -20,15 +20,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.cycloid.model.deviated import Deviated
-from tol3d.cycloid.model.profile import DiscProfile
+from tol3d.cycloid.model.stage import CycloidStage, Deviated
+from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.plane import as_complex, as_points
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Places = NDArray[np.int64]
 Sense = Literal[1, -1]
 
 
@@ -48,24 +44,8 @@ class FirstTouches:
 
 
 @dataclass(frozen=True)
-class LinearStage:
-    """A cycloid stage as its first-order turns need it.
-
-    Args:
-        profile: of the discs.
-        discs, cranks: how many.
-        crank_circle: radius of the circle of crank axes [mm].
-        rolling: turns rho of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet
-            teeth while the sun stands and 0 while the cranks do.
-        window: pins work whose lever is more than this share of the pitch radius.
-    """
-
-    profile: DiscProfile
-    discs: int
-    cranks: int
-    crank_circle: float
-    rolling: float
-    window: float
+class LinearStage(CycloidStage):
+    """A cycloid stage as its first-order turns need it."""
 
     def touches(
         self,
@@ -78,9 +58,7 @@ class LinearStage:
         """Where the first working pin stops the carrier on its way counter-clockwise (1) or back (-1).
 
         Args:
-            deviated: trials.
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
-            sense: of the turn.
             aside: tilts of discs about x and y of their frames, times half their width (trials, discs, 2) [mm]: a pin
                 sees the faces so far off to either side, and the nearer one closes its gap; None for no tilts.
             deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
@@ -134,7 +112,6 @@ class LinearStage:
         """How far each working pin lets one disc turn the carrier.
 
         Args:
-            deviated: trials.
             disc: which.
             phis: crank angles (trials,), or (1,) that of every trial [rad].
             sense, aside: see touches.

@@ -21,17 +21,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.rest import Play
 from tol3d.cycloid.first_order.linear import LinearStage, Sense
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.cone_programme import ConeProgramme, Solved, farthest_between
 from tol3d.numerics.plane import as_complex
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Places = NDArray[np.int64]
 
 LEAST_PLAY: Final = 1e-6  # mm on the radius; of a bearing without, so that logarithms have room
 FAR: Final = 1.0  # mm, the gap of a pin that does not work
@@ -81,10 +77,8 @@ class LinearRest:
         """Turn the carrier by a torque, counter-clockwise (1) or back (-1), until contacts hold it.
 
         Args:
-            deviated: trials.
             phis: crank angles (trials,) [rad].
             play: of the trials, its turns of cranks (trials, cranks, 2).
-            sense: of the torque.
             aside: tilts of discs, see LinearStage.touches.
         """
         stage, sizes = self.stage, (len(phis), self.stage.cranks, self.stage.discs)

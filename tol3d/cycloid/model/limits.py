@@ -10,12 +10,10 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.model.profile import UNMODIFIED, DiscProfile
 from tol3d.cycloid.model.shapes import DiscHoles
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 FEWEST_PINS: Final = 4
 LEAST_GAP: Final = (
@@ -174,7 +172,6 @@ def least_gap(profile: DiscProfile, circle_growth: float = 0.0, pin_growth: floa
     no turn of the disc makes the smallest gap larger than this.
 
     Args:
-        profile: whose modification leaves the gap.
         circle_growth: of the pins' circle, its radius against the nominal one [mm].
         pin_growth: of the pins, their radius against the nominal one [mm].
     """

@@ -4,11 +4,11 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.model.shapes import Carrier, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
+from tol3d.numerics.arrays import Array
 from tol3d.parts.carrier import carrier
 from tol3d.parts.crankshaft import crankshaft
 from tol3d.parts.cycloid_disc import LobeFlank, cycloid_disc
@@ -16,8 +16,6 @@ from tol3d.parts.named_solid import NamedSolid
 from tol3d.parts.pin_ring import pin_ring
 from tol3d.parts.round_hole import RoundHole
 from tol3d.parts.shaft import shaft
-
-Array = NDArray[np.float64]
 
 FLANK_ERROR: Final = 1e-6  # mm; how far a spline may leave the profile, a tenth of the 0.01 um asked for
 LOOKED_AT: Final = 4096  # steps of a flank over which knots are laid

@@ -5,11 +5,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from tol3d.gearing.links import LinkTrials, StatedLink
     from tol3d.gearing.presenting.shown_train import ShownLink
+    from tol3d.numerics.arrays import Array
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Which
     from tol3d.runs.run import Run
@@ -18,8 +16,6 @@ if TYPE_CHECKING:
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
     from tol3d.system.contributor import Contributor
-
-    Array = NDArray[np.float64]
 
 
 class CycloidPresenter:

@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.places import StagePlaces
 from tol3d.cycloid.reducer.rv_set import RVSet
@@ -20,6 +19,7 @@ from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World
 from tol3d.report.built_body import built_body
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
@@ -28,8 +28,6 @@ from tol3d.runs.run import Run
 from tol3d.simulate import Replay, replayed
 from tol3d.solids import PosedGear, PosedPart, PosedShape
 from tol3d.system.stated import magnified
-
-Array = NDArray[np.float64]
 
 TURN, SWING = "turn", "swing"
 MOTIONS: Final = (TURN, SWING)
@@ -44,9 +42,7 @@ def motion(shown: ShownReducer, world: World, name: str, frames: int | None) -> 
     """One of MOTIONS.
 
     Args:
-        shown: the reducer of a trial.
         world: its parts, all pins as one body.
-        name: of the motion.
         frames: how many; None: FRAMES.
 
     Raises:
@@ -183,7 +179,7 @@ def _body(part: PosedPart) -> Body:
 # in trains ----------------------------------------------------------------------------------------
 
 
-def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: NDArray[np.float64]) -> ShownLink:
+def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
     """A reducer in the world of its train, its load turning the output back; see ShowsLinks."""
     assert isinstance(link, RVLink)
     shown, note, above = link.shown(seen), "", np.eye(4)

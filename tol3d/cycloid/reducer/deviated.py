@@ -5,39 +5,19 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.trial_arrays import TrialArrays
 
-Array = NDArray[np.float64]
-
 Effect = Literal[
-    "pin circle",
-    "pin ring",
-    "pin outwards",
-    "pin round",
-    "pin place",
-    "pin radius",
-    "lobe pitch",
-    "lobe profile",
-    "disc offset",
-    "disc hole",
-    "disc tilt",
-    "disc play",
-    "carrier play",
-    "crank throw",
-    "crank throw of a disc",
-    "crank phase",
-    "carrier hole",
-    "carrier circle",
-    "carrier offset",
-    "sun thickness",
-    "planet thickness",
-    "sun offset",
-    "planet offset",
-]
+    "pin circle", "pin ring", "pin outwards", "pin round", "pin place", "pin radius", "lobe pitch", "lobe profile",
+    "disc offset", "disc hole", "disc tilt", "disc play", "carrier play", "crank throw", "crank throw of a disc",
+    "crank phase", "carrier hole", "carrier circle", "carrier offset", "sun thickness", "planet thickness",
+    "sun offset", "planet offset",
+]  # fmt: skip
+Along = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -95,7 +75,6 @@ class RVDeviated(TrialArrays):
         """Add what a contributor does.
 
         Args:
-            acts: on what.
             components: of the contributor (trials, components) [mm or rad].
         """
         into, along = self._reached(acts.effect)
@@ -109,7 +88,7 @@ class RVDeviated(TrialArrays):
         rates, along = self._reached(acts.effect)
         return np.asarray(acts.factor * (rates * along(components)).reshape(len(rates), -1).sum(axis=1))
 
-    def _reached(self, effect: Effect) -> "tuple[Array, Along]":
+    def _reached(self, effect: Effect) -> tuple[Array, Along]:
         """The array that an effect reaches, and what of it a contributor's components are."""
         stage = self.stage
         reached: dict[Effect, tuple[Array, Along]] = {
@@ -138,9 +117,6 @@ class RVDeviated(TrialArrays):
             "planet offset": (self.planet_offset, _shaped(self.planet_offset[0])),
         }
         return reached[effect]
-
-
-Along = Callable[[Array], Array]
 
 
 def _alike(components: Array) -> Array:

@@ -12,16 +12,14 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank
+from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.plane import as_complex, as_points
 
-Array = NDArray[np.float64]
-Places = NDArray[np.int64]
 OneMesh = Callable[[RVSet, FirstStage, RVDeviated, Array, int, Flank], Array]
 
 ROUNDS: Final = 2
@@ -34,11 +32,8 @@ def crank_turns(
     """How far the throws turn beyond their place (trials, positions) [rad], and which planet stops them.
 
     Args:
-        own: the reducer.
-        deviated: of the trials.
         turns: of the output (trials, positions) or (1, positions).
         sense: of the carrier's turn; cranks turn the other way.
-        one_mesh: how far one planet turns.
     """
     shape = len(deviated.sun_thickness), turns.shape[1]
     if own.first is None:
@@ -130,7 +125,6 @@ def add_rates(
     """Add what the first planet's turn changes by per deviation, times a factor.
 
     Args:
-        own: the reducer.
         rates: of the trials; written.
         turns: of the output (trials,).
         planets: which planet stops the cranks (trials,).
@@ -167,7 +161,7 @@ def _sun_angle(own: RVSet, turns: Array) -> Array:
     return np.asarray(2 * math.pi * np.mod(float(own.gear_ratio * own.profile.pins) * turns, own.gear_ratio.numerator))
 
 
-def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> NDArray[np.complex128]:
+def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> Complex:
     """By how much a crank's axis lies off its place (trials,) in the frame of its mesh [mm]."""
     off = as_complex(deviated.stage.carrier_offsets) + as_complex(deviated.stage.carrier_holes[:, crank])
     return np.asarray(off * np.exp(-1j * own.azimuths[crank]))

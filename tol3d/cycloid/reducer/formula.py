@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import erf
 
@@ -20,6 +19,7 @@ from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.reducer.deviated import Acts
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.summary_types import CycloidStageSummary, FormulaTotals, SourceByFormula, StageTotals
+from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.values import made
 from tol3d.system.contributor import Contributor
 
@@ -72,7 +72,7 @@ class SineSum:
         return self.sigma * float(brentq(lambda x: unit.coverage(x) - share, 0.0, reach, xtol=QUANTILE_XTOL))
 
     @property
-    def _spreads(self) -> NDArray[np.float64]:
+    def _spreads(self) -> Array:
         phases = (np.arange(PHASES) + 0.5) * (np.pi / 2 / PHASES)
         return np.asarray(np.hypot(self.normal, self.length * np.sin(phases)))
 
@@ -161,7 +161,6 @@ def terms(profile: DiscProfile, tolerances: Mapping[Source, float]) -> tuple[Ter
     """Each source's part, by both.
 
     Args:
-        profile: of the discs.
         tolerances: tolerance or run-out of each source [mm].
     """
     found = []
@@ -281,7 +280,6 @@ def stage_by_formula(profile: DiscProfile, sources: PaperSources, sun_held: floa
     """Each source by both, and totals.
 
     Args:
-        profile: of the discs.
         sources: of the scene, see PaperSources.
         sun_held: see paper_formula.sun_held_factor; None where the cranks are the input.
     """

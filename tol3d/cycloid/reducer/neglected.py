@@ -10,15 +10,16 @@ what is neglected is the difference that both make, trial by trial.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.first_order.linear import Array, LinearStage, PlacedDisc, Places, Sense, picked
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.first_order.linear import LinearStage, PlacedDisc, Sense, picked
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.trials import RVMeasure, RVRoad, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import as_complex
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
@@ -27,11 +28,6 @@ from tol3d.system.trials import Trials
 @dataclass(frozen=True)
 class BentStage(LinearStage):
     """A cycloid stage whose first-order turns have the bend of the path of each pin besides."""
-
-    @classmethod
-    def of(cls, stage: LinearStage) -> "BentStage":
-        """The same stage."""
-        return cls(*(getattr(stage, field.name) for field in fields(stage)))
 
     def _allowed(
         self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, sense: Sense, aside: Array | None
@@ -70,7 +66,7 @@ class BentTurning(LinearTurning):
     @property
     def stage(self) -> LinearStage:
         """See LinearTurning."""
-        return BentStage.of(self.own.linear)
+        return BentStage.of(self.own)
 
     def phis(self, turns: Array, beta: Array) -> Array:
         """See LinearTurning."""

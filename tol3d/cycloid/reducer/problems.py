@@ -19,10 +19,7 @@ def problems_at(
     """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there.
 
     Args:
-        own: the reducer.
         acts: what contributors act on, by their names.
-        contributors: those of the reducer.
-        deviated: of its mean build.
     """
     for contributor in contributors:
         mean = contributor.draw.mean(turning=False)[0]

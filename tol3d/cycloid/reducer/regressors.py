@@ -10,20 +10,18 @@ the measure.
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.resting import linear_rates, linear_turning
 from tol3d.cycloid.reducer.trials import RVMeasure, RVTrials
 from tol3d.cycloid.reducer.turning import Turned
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.output_system import Parts, component_values
 from tol3d.system.regressors import has_square
 from tol3d.system.system import Columns
 from tol3d.system.taken import weights_taken
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def regress_touching(

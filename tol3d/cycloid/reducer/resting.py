@@ -10,12 +10,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.rest import Play, RestStage
 from tol3d.cycloid.exact.rest_kernel import NOT_HELD
 from tol3d.cycloid.first_order.linear_rest import Forces, LinearRest
-from tol3d.cycloid.model.deviated import Deviated
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import (
     OneMesh,
@@ -30,11 +29,9 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.trials import NO_CONTACT, NO_FIT, NO_REST
 from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
 from tol3d.gears import LEFT, RIGHT
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import as_complex, as_points
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forces: Forces) -> RVDeviated:
@@ -43,11 +40,8 @@ def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forc
     A tilt closes gaps whatever its sign: its rates are those on its side.
 
     Args:
-        own: the reducer.
-        deviated: of the trials.
         turns: of the output (trials,).
         phis: crank angles (trials,) [rad].
-        forces: of the trials.
     """
     found = RVDeviated.nothing(own, len(turns))
     _of_planets(own, found, turns, forces)
@@ -181,9 +175,7 @@ class LinearResting:
             rates[rows] = rest_rates(own, part, turns[rows], phis[rows, 0], forces)
         return rates
 
-    def _forces(
-        self, part: RVDeviated, phis: Array, play: Play, at: tuple[NDArray[np.int64], int], sense: int
-    ) -> Forces:
+    def _forces(self, part: RVDeviated, phis: Array, play: Play, at: tuple[Places, int], sense: int) -> Forces:
         """Of some trials (rows) at a position, given the play of all."""
         own, (rows, position) = self.own, at
         played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)

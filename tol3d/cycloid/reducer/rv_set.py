@@ -15,14 +15,12 @@ from fractions import Fraction
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact import ContactStage
 from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.gears import SpurPair
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -116,9 +114,9 @@ class RVSet:
     @property
     def linear(self) -> LinearStage:
         """Its cycloid stage to first order."""
-        return LinearStage(self.profile, self.discs, self.cranks, self.crank_circle, self.rolling, self.window)
+        return LinearStage.of(self)
 
     @property
     def contact(self) -> ContactStage:
         """Its cycloid stage in finite geometry."""
-        return ContactStage(self.profile, self.discs, self.cranks, self.crank_circle, self.rolling, self.window)
+        return ContactStage.of(self)

@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.places import StagePlaces, StageShapes, usual_shapes
 from tol3d.cycloid.reducer.deviated import RVDeviated
@@ -15,8 +14,7 @@ from tol3d.cycloid.reducer.first_stage import crank_turns, held_stage, placed_me
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.turning import led_angles, output_turns
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 BACK, AHEAD = -1, 1
 NOWHERE: Final = -1

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.cycloid.reducer.deviated import Acts, RVDeviated
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.turning import Turned, Turning
+from tol3d.numerics.arrays import Array, Places
 from tol3d.system.measure import Measure
 from tol3d.system.output_system import OutputSystem
 from tol3d.system.plain import PlainMeasure
@@ -58,9 +59,6 @@ STATUSES: Final = Statuses(
     },
 )
 """Builds whose pins press on both sides keep a value, a lost motion below 0: the discs give way."""
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -160,7 +158,7 @@ class RVRoad:
             known[key] = self.turning.turned(deviated, turns, sense, measure.deflection)
         return known[key]
 
-    def _details(self, measure: RVMeasure, places: NDArray[np.int64], values: Array) -> Details:
+    def _details(self, measure: RVMeasure, places: Places, values: Array) -> Details:
         """Disc and pin that touch, counted from 1; over a turn where the measure is highest and lowest; 0 for none."""
         if measure.positions.over != "turn":
             return self._named(measure.name, "", places[:, 0])
@@ -168,7 +166,7 @@ class RVRoad:
         high, low = places[rows, values.argmax(axis=1)], places[rows, values.argmin(axis=1)]
         return self._named(measure.name, " at highest", high) | self._named(measure.name, " at lowest", low)
 
-    def _named(self, measure: str, where: str, places: NDArray[np.int64]) -> Details:
+    def _named(self, measure: str, where: str, places: Places) -> Details:
         disc, pin = np.divmod(places, self.system.own.profile.pins)
         none = places < 0
         return {

@@ -22,9 +22,7 @@ from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import add_rates, crank_turns, first_order_mesh, held_stage, placed_mesh
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.gears import LEFT, RIGHT
-
-Array = NDArray[np.float64]
-Places = NDArray[np.int64]
+from tol3d.numerics.arrays import Array, Places
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,6 @@ class Turning(Protocol):
         """Until the first contact while the input stands.
 
         Args:
-            deviated: of the trials.
             turns: of the output (trials, positions) or (1, positions).
             sense: 1 counter-clockwise, -1 back.
             deflection: pins are counted whose gap is at most so much [mm].

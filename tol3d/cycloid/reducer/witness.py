@@ -11,7 +11,8 @@ from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import crank_turns, held_stage, placed_mesh
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.trials import RVRoad, RVTrials
-from tol3d.cycloid.reducer.turning import Array, Turned, led_angles, output_turns
+from tol3d.cycloid.reducer.turning import Turned, led_angles, output_turns
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
 
 MOST_POSITIONS: Final = 24

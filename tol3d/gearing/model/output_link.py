@@ -9,14 +9,12 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.links import LinkTrials, StatedLink
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.part import PartSpec
 from tol3d.system.taken import ROWS_AT_ONCE
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -112,9 +112,7 @@ def balances(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive) -
     """Every equilibrium, the most efficient first; a set that locks itself backwards has a jammed one forwards too.
 
     Args:
-        teeth: of the set.
         efficiencies: of each mesh, by its central gear.
-        drive: input, output, held.
     """
     return tuple(sorted(_equilibria(teeth, efficiencies, drive), key=lambda own: -own.efficiency))
 

@@ -13,16 +13,14 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 
 from tol3d.errors import GeometryError
+from tol3d.numerics.arrays import Array
 from tol3d.planetary.design.efficiency import Drive, efficiency
 from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift, tip_gap
 from tol3d.planetary.design.working_mesh import BasicRack, shift_sum
 from tol3d.planetary.model.tooth_set import ToothSet
-
-Array = NDArray[np.float64]
 
 LEAST_WORKING_ANGLE: Final = math.radians(12)  # below it paths of contact leave the involutes of any usual gear
 LARGEST_WORKING_ANGLE: Final = math.radians(32)

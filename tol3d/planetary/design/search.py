@@ -97,7 +97,6 @@ def find(wish: Wish, most: int = 10) -> Found:
     """Candidates for a wish.
 
     Args:
-        wish: what is wanted.
         most: so many candidates are found at most.
 
     Raises:

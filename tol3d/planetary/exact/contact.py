@@ -6,15 +6,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.involute import involute
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.planetary.exact.contact_kernel import placed_curve, seated_ranges
 from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
+from tol3d.numerics.arrays import Array
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +42,6 @@ def flank_gaps(own: PlanetarySet, gears: Sequence[PlacedGear]) -> Iterator[Flank
     """Both gaps of each mesh of each planet.
 
     Args:
-        own: the set.
         gears: central gears, then those of each planet, as ShownSet has them.
     """
     count, steps = len(own.meshes), len(own.gears)

@@ -5,19 +5,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import InternalGear, SpurGear
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 Made = Mapping[str, SpurGear | InternalGear]
 """Nominal gears by their names."""
@@ -52,7 +50,6 @@ def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -
     """A set of one trial where its output stands after so many turns.
 
     Args:
-        own: the set.
         made: its gears by name, nominal.
         deviated: of one trial.
         turns: of the output.
@@ -169,10 +166,6 @@ def turned(shown: ShownSet, frames: int) -> tuple[MovedSet, ...]:
     """The input turns counter-clockwise and the output follows in contact, its load resisting.
 
     Planets go as far as from their place to the next, or turn once where the carrier stands.
-
-    Args:
-        shown: the set of a trial.
-        frames: how many.
     """
     own = shown.own
     carrier = -float(own.turn(own.held) * own.planet_turns)  # turns a turn of the output
@@ -202,7 +195,6 @@ def opened(shown: ShownSet, frames: int) -> tuple[MovedSet, ...]:
 
     Args:
         shown: a set with springs.
-        frames: how many.
 
     Raises:
         InputError: springs do not open it.

@@ -9,11 +9,9 @@ from itertools import combinations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Array = NDArray[np.float64]
 
 INDEPENDENT: Final = 1e-9  # of relations in mm a turn; those of less decide nothing
 ALIKE: Final = 12  # decimals; planets that stand alike have the same relations
@@ -23,7 +21,6 @@ def play_bound(own: PlanetarySet, shaft: str, errors: Sequence[float]) -> float:
     """Largest change of a shaft's end [rad] where each gap of a mesh is off by up to an error.
 
     Args:
-        own: the set.
         shaft: the input or the output; the other one stands.
         errors: of each mesh [mm].
     """

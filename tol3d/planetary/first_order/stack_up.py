@@ -9,15 +9,13 @@ them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows. N
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.first_order.curve_kernel import first_order_curve
 from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -73,7 +71,6 @@ class StackUp:
         Positions with a coefficient of 0 are left out.
 
         Args:
-            deviated: of the trials.
             turns: of the output, (positions,) of all trials or (trials, positions) of each.
             shaft, stands, end: see `followed`.
             coefficients: of the ends in the sum (trials, positions).

@@ -7,10 +7,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.trial_arrays import TrialArrays
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Array = NDArray[np.float64]
 
 Effect = Literal["thickness", "offset", "clocking", "pin"]
 
@@ -75,8 +74,6 @@ class Deviated(TrialArrays):
         """Add what a contributor does.
 
         Args:
-            own: the set.
-            acts: on what.
             components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
                 offsets in the gear's own frame, whose x goes through the middle of tooth 0.
         """
@@ -138,7 +135,7 @@ class Free:
 
     ends: Array
     status: NDArray[np.int8]
-    row: NDArray[np.int64]
+    row: Places
     lacking: Array
 
     @classmethod
@@ -149,7 +146,7 @@ class Free:
         )
 
     @property
-    def written(self) -> tuple[Array, NDArray[np.int8], NDArray[np.int64], Array]:
+    def written(self) -> tuple[Array, NDArray[np.int8], Places, Array]:
         """What kernels write."""
         return self.ends, self.status, self.row, self.lacking
 

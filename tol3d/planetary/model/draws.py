@@ -17,6 +17,7 @@ from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
 from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
 from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.planetary.model.deviated import Acts
 from tol3d.planetary.model.planetary_set import PlanetarySet
@@ -25,8 +26,6 @@ from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
 from tol3d.system.draw import Draw, Each, Planar, Scalar, Values
 from tol3d.system.each_planar import EachPlanar
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

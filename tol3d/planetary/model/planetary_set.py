@@ -10,13 +10,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.programme import first_basis
 from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.planetary.model.tooth_set import CentralMesh, ToothSet
-
-Array = NDArray[np.float64]
 
 SMALL_TORQUE: Final = 1.0  # N mm a N of the first spring's force, at the output
 OVERCOME: Final = 1e-6  # of the springs' force; breakaway torques are hundreds of times under what that leaves
@@ -251,7 +249,7 @@ class PlanetarySet:
         """The turn of a shaft among those unknowns."""
         return np.array([float(place == self.shafts.index(shaft)) for place in self.unknowns(stands)])
 
-    def asked(self, stands: str, shaft: str, end: int | slice = slice(None)) -> tuple[Array, Array, NDArray[np.int64]]:
+    def asked(self, stands: str, shaft: str, end: int | slice = slice(None)) -> tuple[Array, Array, Places]:
         """What a programme takes of a shaft's turn: its objective, what is made largest at an end, its first basis."""
         wanted = np.ascontiguousarray(self.wanted(stands, shaft)[end])
         return self.objective(stands, shaft), wanted, self.begun(stands)
@@ -260,6 +258,6 @@ class PlanetarySet:
         """What stands while a shaft is turned: the input, for the input the output."""
         return self.output if shaft == self.input else self.input
 
-    def begun(self, stands: str) -> NDArray[np.int64]:
+    def begun(self, stands: str) -> Places:
         """Rows of the first basis (unknowns,) of the programme; fewer where something is not held."""
         return first_basis(self.rows(stands))

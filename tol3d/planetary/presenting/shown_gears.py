@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.display import replayed_of
@@ -15,6 +14,7 @@ from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body, plain_body
 from tol3d.gears import LEFT, SpurGear
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose
 from tol3d.planetary.exact.flank_gaps import flank_gaps
 from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shaft_turn, swung, turned
@@ -28,8 +28,6 @@ from tol3d.simulate import Replay, replayed
 from tol3d.solids import PosedBody
 from tol3d.solids.bodies import ArmBody
 from tol3d.system.stated import magnified
-
-Array = NDArray[np.float64]
 
 PIN: Final = 0.7  # of the smallest bore of a planet
 BELOW: Final = 0.75  # of a pin's diameter, from the lowest face to the axis of an arm
@@ -83,9 +81,6 @@ def motion(shown: ShownSet, world: World, name: str, frames: int | None) -> Moti
     """One of them.
 
     Args:
-        shown: the set of a trial.
-        world: its gears as bodies.
-        name: of the motion.
         frames: how many; None: FRAMES.
 
     Raises:
@@ -209,7 +204,7 @@ def bodies_of(shown: ShownSet) -> tuple[Body, ...]:
     return tuple(gear_body(gear, colour) for gear, colour in zip(shown.gears, colours, strict=True))
 
 
-def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: NDArray[np.float64]) -> ShownLink:
+def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
     """A set in the world of its train; see ShowsLinks."""
     assert isinstance(link, SetLink)
     shown, above = link.shown(seen), np.eye(4)

@@ -1,13 +1,13 @@
-"""What pins, discs, cranks and carrier of a cycloid stage deviate by in some trials, as both roads get it."""
+"""A cycloid stage without bearing play, and what its parts deviate by in some trials, as both roads get them."""
 
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.cycloid.model.profile import DiscProfile
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.trial_arrays import TrialArrays
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -54,3 +54,30 @@ class Deviated(TrialArrays):
             np.zeros((trials, cranks, 2)),
             np.zeros((trials, 2)),
         )
+
+
+@dataclass(frozen=True)
+class CycloidStage:
+    """A cycloid stage: discs, cranks and carrier without bearing play.
+
+    Args:
+        profile: of the discs.
+        discs, cranks: how many.
+        crank_circle: radius of the circle of crank axes [mm].
+        rolling: turns rho of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet
+            teeth while the sun stands and 0 while the cranks do.
+        window: pins work whose nominal lever is more than this share of the pitch radius; others stop nothing, and may
+            lie in the disc by some micrometres where clearance is small.
+    """
+
+    profile: DiscProfile
+    discs: int
+    cranks: int
+    crank_circle: float
+    rolling: float
+    window: float
+
+    @classmethod
+    def of(cls, own: Any) -> Self:
+        """That of a reducer, or of another road."""
+        return cls(own.profile, own.discs, own.cranks, own.crank_circle, own.rolling, own.window)
