@@ -9,7 +9,7 @@ from tol3d.cycloid.grammar.measures import (
     CycloidTransmissionErrorSpec,
 )
 from tol3d.cycloid.grammar.moves import RVReducerSpec
-from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.cycloid.grammar.parts import CycloidDiscSpec
 from tol3d.cycloid.grammar.tolerances import BearingPlaySpec
 from tol3d.cycloid.model.limits import circle_fault, faults, hole_faults, largest_window, lobes_fault
 from tol3d.cycloid.model.profile import DiscProfile, Modification
@@ -62,9 +62,7 @@ def reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
     Raises:
         SceneError: it cannot be put together.
     """
-    carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
-    assert isinstance(carrier, CrankCarrierSpec)
-    assert isinstance(disc, CycloidDiscSpec)
+    _, disc, _, carrier = spec.parts_among(scene.parts)
     profile = _profile(scene, spec)
     _refuse_window(scene, name, spec, profile)
     _refuse_holes(scene, name, spec, profile)
@@ -91,10 +89,7 @@ def _profile(scene: Scene, spec: RVReducerSpec) -> DiscProfile:
     Raises:
         SceneError: it cannot be made, or does not run among the pins; at the field of the part that decides.
     """
-    ring, disc, crank = scene.parts[spec.pin_ring], scene.parts[spec.disc], scene.parts[spec.crankshaft]
-    assert isinstance(ring, PinRingSpec)
-    assert isinstance(disc, CycloidDiscSpec)
-    assert isinstance(crank, CrankshaftSpec)
+    ring, disc, crank, _ = spec.parts_among(scene.parts)
     if (fault := lobes_fault(disc.lobes, ring.pins)) is not None:
         raise scene.refuse(("parts", spec.disc, fault.field), fault.words)
     profile = DiscProfile(
@@ -125,9 +120,7 @@ def _refuse_window(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscPr
 
 def _refuse_holes(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscProfile) -> None:
     """Refuse crankshafts that do not go through the discs, and holes too small for them or that leave no walls."""
-    carrier, disc = scene.parts[spec.carrier], scene.parts[spec.disc]
-    assert isinstance(carrier, CrankCarrierSpec)
-    assert isinstance(disc, CycloidDiscSpec)
+    _, disc, _, carrier = spec.parts_among(scene.parts)
     if (fault := circle_fault(profile, spec.cranks, carrier.radius.internal)) is not None:
         place: KeyPath = ("parts", spec.carrier, "radius") if fault.field == "radius" else ("moves", name, fault.field)
         raise scene.refuse(place, fault.words)
@@ -209,8 +202,7 @@ def rv_system(scene: Scene) -> RVSystem:
         )
         for name, spec in scene.distributed.items()
     ]
-    disc = scene.parts[own.disc]
-    assert isinstance(disc, CycloidDiscSpec)
+    disc = scene.of(CycloidDiscSpec)[own.disc]
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem

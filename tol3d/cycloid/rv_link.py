@@ -238,8 +238,7 @@ def reducers_as_links(scene: Scene) -> Brought:
 def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RVLink:
     """A reducer as a link of the shafts that turn with its input and its carrier."""
     (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.carrier))
-    disc = scene.parts[own.disc]
-    assert isinstance(disc, CycloidDiscSpec)
+    disc = scene.of(CycloidDiscSpec)[own.disc]
     hole = None if disc.hole is None else disc.hole.internal
     sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
     height = first - sun_level

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Final
 
 from tol3d.planetary.design.efficiency import (
     Drive,
+    Efficiencies,
     MeshEfficiencies,
     Sharing,
     efficiency,
@@ -23,14 +23,6 @@ from tol3d.planetary.spring_curve import LeafSpring, breakaway, displaced_ends
 from tol3d.planetary.summary_types import EfficiencySummary, PlanetarySetSummary, SpringSummary, TorqueCurve
 from tol3d.runs.summary.values import made
 from tol3d.units import RAD_PER_ARCMIN
-
-
-@dataclass(frozen=True)
-class SetEfficiency:
-    """Of a set, driven at its input and driven at its output; at most 0 where it locks itself."""
-
-    forward: float
-    backward: float
 
 
 def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
@@ -54,14 +46,14 @@ def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> M
     }
 
 
-def set_efficiency(own: PlanetarySet, friction: float) -> SetEfficiency:
+def set_efficiency(own: PlanetarySet, friction: float) -> Efficiencies:
     """By equilibrium of the torques; pairs of teeth in contact carry alike."""
     drive = Drive(*(CARRIER if shaft == own.carrier else shaft for shaft in (own.input, own.output, own.held)))
     meshes = mesh_efficiencies(own, friction, "equal shares")
-    return SetEfficiency(efficiency(own.teeth, meshes, drive), efficiency(own.teeth, meshes, drive.reversed))
+    return Efficiencies(efficiency(own.teeth, meshes, drive), efficiency(own.teeth, meshes, drive.reversed))
 
 
-def formula_efficiency(own: PlanetarySet, friction: float) -> SetEfficiency | None:
+def formula_efficiency(own: PlanetarySet, friction: float) -> Efficiencies | None:
     """By the published closed form of a 3K set, with the published E; None of any other set."""
     central = {mesh.central.name: mesh for mesh in own.meshes}
     if len(central) != 3 or own.carrier in (own.held, own.input, own.output):
@@ -72,8 +64,7 @@ def formula_efficiency(own: PlanetarySet, friction: float) -> SetEfficiency | No
     meshes = mesh_efficiencies(own, friction, "formula")
     given = MeshEfficiencies(*(meshes[mesh.central.name] for mesh in (sun, ring_1, ring_2)))
     teeth = ToothSet(tuple(own.teeth.mesh(mesh.central.name) for mesh in (sun, ring_1, ring_2)))
-    found = published_efficiencies(teeth, given)
-    return SetEfficiency(found.forward, found.backward)
+    return published_efficiencies(teeth, given)
 
 
 BEYOND: Final = 1.4  # times the torque at which the region of low stiffness is crossed
@@ -135,5 +126,5 @@ def spring_summary(own: PlanetarySet, mean: Deviated, spring: LeafSpring) -> Spr
     )
 
 
-def _percents(found: SetEfficiency) -> EfficiencySummary:
+def _percents(found: Efficiencies) -> EfficiencySummary:
     return made(EfficiencySummary, forward_percent=100 * found.forward, backward_percent=100 * found.backward)

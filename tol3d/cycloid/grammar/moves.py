@@ -1,6 +1,7 @@
 """The RV reducer as a move: cycloid discs on crankshafts, with a first stage of spur gears."""
 
-from typing import ClassVar, Literal, Self
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, model_validator
 
@@ -10,6 +11,15 @@ from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
+
+
+class ReducerParts(NamedTuple):
+    """Parts of the cycloid stage of a reducer."""
+
+    ring: PinRingSpec
+    disc: CycloidDiscSpec
+    crank: CrankshaftSpec
+    carrier: CrankCarrierSpec
 
 
 class RVReducerSpec(MoveSpec):
@@ -55,3 +65,7 @@ class RVReducerSpec(MoveSpec):
             Reference(("carrier",), self.carrier, (CrankCarrierSpec,)),
             *(Reference((role,), name, (SpurGearSpec,)) for role, name in gears.items() if name is not None),
         )
+
+    def parts_among(self, parts: Mapping[str, Any]) -> ReducerParts:
+        """Its own among the parts of a scene."""
+        return ReducerParts(*(parts[name] for name in (self.pin_ring, self.disc, self.crankshaft, self.carrier)))

@@ -1,7 +1,7 @@
 """A set as it stands in one trial, and moved: turned in contact, swung through its play, or opened by its carrier."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -62,15 +62,16 @@ def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -
 
 def placed_pins(own: PlanetarySet, deviated: Deviated, turns: float, at: Array) -> tuple[Array, ...]:
     """Axes of the planets (2,) [mm]; arguments as of placed_gears."""
-    return tuple(_pins(own, deviated, at, -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns))
-
-
-def _pins(own: PlanetarySet, deviated: Deviated, at: Array, carrier: float) -> Iterator[Array]:
-    count = len(own.meshes)
+    count, carrier, pins = len(own.meshes), _carrier_angle(own, turns), []
     for k in range(own.planets):
         pushed = sum(at[count + 1 + own.planets + j] * spring.sense(k) for j, spring in enumerate(own.springs))
         arm = carrier + own.azimuths[k] + at[count] + pushed / own.centre_distance
-        yield _turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm)
+        pins.append(_turned(np.array([own.centre_distance + deviated.pins[0, k, 0], deviated.pins[0, k, 1]]), arm))
+    return tuple(pins)
+
+
+def _carrier_angle(own: PlanetarySet, turns: float) -> float:
+    return -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns
 
 
 def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array) -> tuple[PlacedGear, ...]:
@@ -81,8 +82,24 @@ def placed_gears(own: PlanetarySet, made: Made, deviated: Deviated, turns: float
         at: turns of shafts and planets [rad] and displacements by springs [mm], beyond where no backlash would have
             them.
     """
-    carrier = -2 * math.pi * float(own.turn(own.held) * own.planet_turns) * turns
-    return (*_centrals(own, made, deviated, turns, at, carrier), *_planets(own, made, deviated, turns, at, carrier))
+    carrier, heights, count = _carrier_angle(own, turns), _heights(own, made), len(own.meshes)
+    found = []
+    for m, mesh in enumerate(own.meshes):
+        angle = carrier + 2 * math.pi * float(own.turn(mesh.central.name) * own.planet_turns) * turns
+        angle += at[m] + deviated.central_clocking[0, m]
+        place = _turned(deviated.central_offset[0, m], angle) - _turned(deviated.aside[0, m], carrier)
+        thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
+        pose = upright_pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
+        found.append(PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0))
+    for k, pin in enumerate(placed_pins(own, deviated, turns, at)):
+        for g, gear in enumerate(own.gears):  # tooth 0 of the first planet's points outwards where nothing has turned
+            angle = carrier + 2 * math.pi * float(own.planet_turns) * turns + own.azimuths[k] + own.phase(k)
+            angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]
+            place = pin + _turned(deviated.planet_offset[0, g, k], angle)
+            thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
+            pose = upright_pose(angle, place, heights[g])
+            found.append(PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0))
+    return tuple(found)
 
 
 def made_gears(scene: Scene, own: PlanetarySet) -> Made:
@@ -104,34 +121,6 @@ def _heights(own: PlanetarySet, made: Made) -> list[float]:
         heights.append(above + width / 2 if k else 0.0)
         above = heights[-1] + width * (0.5 + BETWEEN)
     return heights
-
-
-def _centrals(
-    own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array, carrier: float
-) -> Iterator[PlacedGear]:
-    heights = _heights(own, made)
-    for m, mesh in enumerate(own.meshes):
-        angle = carrier + 2 * math.pi * float(own.turn(mesh.central.name) * own.planet_turns) * turns
-        angle += at[m] + deviated.central_clocking[0, m]
-        place = _turned(deviated.central_offset[0, m], angle) - _turned(deviated.aside[0, m], carrier)
-        thick = deviated.central_thickness[0, m] / (mesh.central.module * mesh.central.teeth)
-        pose = upright_pose(angle + mesh.facing, place, heights[own.gear_of(mesh)])
-        yield PlacedGear(mesh.central.name, made[mesh.central.name], pose, float(thick), 1.0)
-
-
-def _planets(
-    own: PlanetarySet, made: Made, deviated: Deviated, turns: float, at: Array, carrier: float
-) -> Iterator[PlacedGear]:
-    """Tooth 0 of the first planet's gears points outwards where nothing has turned."""
-    heights, count = _heights(own, made), len(own.meshes)
-    for k, pin in enumerate(_pins(own, deviated, at, carrier)):
-        for g, gear in enumerate(own.gears):
-            angle = carrier + 2 * math.pi * float(own.planet_turns) * turns + own.azimuths[k] + own.phase(k)
-            angle += at[count + 1 + k] + deviated.planet_clocking[0, g, k]
-            place = pin + _turned(deviated.planet_offset[0, g, k], angle)
-            thick = deviated.planet_thickness[0, g, k] / (gear.module * gear.teeth)
-            pose = upright_pose(angle, place, heights[g])
-            yield PlacedGear(f"{gear.name} of planet {k + 1}", made[gear.name], pose, float(thick), 1.0)
 
 
 def _turned(vector: Array, angle: float) -> Array:

@@ -77,38 +77,27 @@ class Deviated(TrialArrays):
             components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
                 offsets in the gear's own frame, whose x goes through the middle of tooth 0.
         """
-        if acts.effect == "pin":
-            if acts.direction:
-                self.pins[:, :, int(acts.direction == "tangential")] += components
-            else:
-                self.pins[...] += components.reshape(self.pins.shape)
-            return
-        centrals = [mesh.central.name for mesh in own.meshes]
-        of_planets = acts.gear not in centrals
-        place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
-        into = self._array(acts.effect, of_planets)[:, place]
-        own_components = acts.factor * components.reshape(into.shape)
-        into += own_components if of_planets else _turned(own_components, acts, own.meshes[place].facing)
+        into, facing = self._reached(own, acts)
+        into += _turned(acts.factor * components.reshape(into.shape), acts, facing)
 
     def of(self, own: PlanetarySet, acts: Acts) -> Array:
         """What stands where a contributor acts, a component each (trials, components): of slopes, its own."""
+        found, facing = self._reached(own, acts)
+        return acts.factor * _turned(found, acts, -facing).reshape(len(found), -1)
+
+    def _reached(self, own: PlanetarySet, acts: Acts) -> tuple[Array, float]:
+        """The array that is acted on, and the azimuth of tooth 0 of a central gear [rad]; 0 of planets and pins."""
         if acts.effect == "pin":
-            found = self.pins[:, :, int(acts.direction == "tangential")] if acts.direction else self.pins
-            return found.reshape(len(found), -1)
+            return self.pins[:, :, int(acts.direction == "tangential")] if acts.direction else self.pins, 0.0
         centrals = [mesh.central.name for mesh in own.meshes]
         of_planets = acts.gear not in centrals
         place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
-        found = self._array(acts.effect, of_planets)[:, place]
-        found = found if of_planets else _turned(found, acts, -own.meshes[place].facing)
-        return acts.factor * found.reshape(len(found), -1)
-
-    def _array(self, effect: Effect, of_planets: bool) -> Array:
         arrays = {
             "thickness": (self.central_thickness, self.planet_thickness),
             "offset": (self.central_offset, self.planet_offset),
             "clocking": (self.central_clocking, self.planet_clocking),
         }
-        return arrays[effect][of_planets]
+        return arrays[acts.effect][of_planets][:, place], 0.0 if of_planets else own.meshes[place].facing
 
 
 def _turned(components: Array, acts: Acts, angle: float) -> Array:
