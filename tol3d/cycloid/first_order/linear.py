@@ -106,21 +106,6 @@ class LinearStage(CycloidStage):
 
     # one disc -------------------------------------------------------------------------------------------
 
-    def allowed(
-        self, deviated: Deviated, disc: int, phis: Array, sense: Sense, aside: Array | None = None
-    ) -> tuple[Array, Places]:
-        """How far each working pin lets one disc turn the carrier.
-
-        Args:
-            disc: which.
-            phis: crank angles (trials,), or (1,) that of every trial [rad].
-            sense, aside: see touches.
-
-        Returns:
-            Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
-        """
-        return self._allowed(deviated, disc, PlacedDisc.of(self, deviated, disc), phis, sense, aside)
-
     def gaps(self, phis: Array, disc: int, pins: Places, further: Array) -> Array:
         """What gaps of a disc's pins close [mm] by further turns of the carrier (trials, pins), at phis (trials,)."""
         lever = self.profile.lever(self._parameters(phis + self.throws[disc])[:, pins])
@@ -138,6 +123,11 @@ class LinearStage(CycloidStage):
     def _allowed(
         self, deviated: Deviated, disc: int, placed: "PlacedDisc", phis: Array, sense: Sense, aside: Array | None
     ) -> tuple[Array, Places]:
+        """How far each working pin lets one disc turn the carrier, at phis (trials,), or (1,) of every trial.
+
+        Returns:
+            Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
+        """
         profile = self.profile
         u = self._parameters(phis + self.throws[disc])
         pins = np.flatnonzero((-sense * profile.lever(u) > self.window * profile.pitch_radius).any(axis=0))
@@ -154,7 +144,7 @@ class LinearStage(CycloidStage):
     ) -> tuple[Array, Array, Complex]:
         """Gaps of all pins at a disc in its nominal place [mm], levers, and normals in the world (trials, pins).
 
-        Args: see allowed; phis (trials,).
+        Args: see touches; phis (trials,).
         """
         pins = np.arange(self.profile.pins)
         gap, lever, normal = self._gaps(deviated, disc, phis, aside, (np.zeros(len(phis), dtype=np.complex128), pins))

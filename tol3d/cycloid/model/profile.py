@@ -162,10 +162,6 @@ class DiscProfile:
         """Path of the centres of the nominal pins, (..., 2) [mm]; a modified disc leaves gaps to pins on it."""
         return as_points(self._path(np.asarray(u, dtype=np.float64)))
 
-    def pitch_points(self, u: ArrayLike) -> Array:
-        """Where normals cross the pitch circle, (..., 2) [mm], for a disc that is not modified."""
-        return as_points(self.pitch_radius * np.exp(1j * self.pins * np.asarray(u, dtype=np.float64)))
-
     def points(self, u: ArrayLike) -> Array:
         """Points of the profile, (..., 2) [mm]; where flanks were rotated see `flank_ends`."""
         u, own = np.asarray(u, dtype=np.float64), self.ground
@@ -175,10 +171,6 @@ class DiscProfile:
         """Unit normals out of the disc, (..., 2)."""
         u = np.asarray(u, dtype=np.float64)
         return as_points(self.ground._normal(u) * self._turn(u))
-
-    def nominal_normals(self, u: ArrayLike) -> Array:
-        """Unit normals out of the disc where it is not modified, (..., 2): lines of action of the nominal pins."""
-        return as_points(self._normal(np.asarray(u, dtype=np.float64)))
 
     def slopes(self, u: ArrayLike) -> Array:
         """dp/du of the profile, (..., 2) [mm/rad]; 0 where it would be undercut."""
@@ -196,11 +188,6 @@ class DiscProfile:
         return np.asarray(
             (1 + own.pins * k**2 - (own.pins + 1) * k * np.cos(t)) / (own.pin_circle_radius * own._speed(t) ** 3)
         )
-
-    def curvature(self, u: ArrayLike) -> Array:
-        """Curvature of the profile [1/mm], positive where it is convex: its radius is the path's less the pin's."""
-        bent = self.path_curvature(u)
-        return np.asarray(bent / (1 - self.ground.pin_radius * bent))
 
     @cached_property
     def smallest_convex_radius(self) -> float:

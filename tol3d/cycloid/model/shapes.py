@@ -4,8 +4,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.solids import BuiltShape, FaceStrip, SweptShape, face_strips
 
@@ -150,26 +148,17 @@ class LobeStrips:
 
     Args:
         right, left: strips; their parameter is the u of the profile that the disc is ground for.
-        chord_error: of either [mm].
-        flank_error: largest distance [mm] of their points from those of the profile at the same parameter.
     """
 
     right: FaceStrip
     left: FaceStrip
-    chord_error: float
-    flank_error: float
+
+    @property
+    def chord_error(self) -> float:
+        """Of either [mm]."""
+        return self.right.chord_error
 
 
 def lobe_strips(disc: CycloidDisc, steps: int) -> LobeStrips:
     """Strips with that many steps a flank; from the cache, or from the disc's solid, built for it."""
-    right, left = face_strips(disc, (RIGHT_FLANK, LEFT_FLANK), steps)
-    errors = (
-        _off(disc, strip, turn * disc.profile.modification.rotation) for strip, turn in ((right, 1.0), (left, -1.0))
-    )
-    return LobeStrips(right, left, right.chord_error, max(errors))
-
-
-def _off(disc: CycloidDisc, strip: FaceStrip, rotation: float) -> float:
-    found = (strip.points[:, 0] + 1j * strip.points[:, 1]) * np.exp(-1j * (disc.clocking + rotation))
-    x, y = disc.profile.ground.points(strip.parameter).T
-    return float(np.abs(found - (x + 1j * y)).max())
+    return LobeStrips(*face_strips(disc, (RIGHT_FLANK, LEFT_FLANK), steps))

@@ -17,7 +17,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise, product
-from typing import Final, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from tol3d.planetary.design.working_mesh import WorkingMesh
 from tol3d.planetary.model.tooth_set import ToothSet
 
 Sharing = Literal["formula", "equal shares"]
-PAPER_FRICTION: Final = 0.08
 
 
 def sliding_factor(epsilon_1: float, epsilon_2: float) -> float:

@@ -1,9 +1,8 @@
 """Tolerances of planetary sets: which there are, on what each acts, and how it is drawn."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,17 +24,19 @@ from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
 from tol3d.system.draw import Draw, Each, Planar, Scalar, Values
-from tol3d.system.each_planar import EachPlanar
+from tol3d.system.each_planar import EachOwn, EachPlanar, parts_of
 
 
 @dataclass(frozen=True)
-class EachZone:
+class EachZone(EachOwn):
     """As many displacements as there are planets, each in a zone of its own: outwards and across, one after the other.
 
     Args:
         each: that of one planet, of two components.
         names: of the planets.
     """
+
+    axes: ClassVar[tuple[str, str]] = ("radial", "tangential")
 
     each: ZoneDraw
     names: tuple[str, ...]
@@ -51,32 +52,9 @@ class EachZone:
         return f"{self.each.words}, each of {len(self.names)}"
 
     @property
-    def uniforms(self) -> int:
-        """Those of one a planet."""
-        return len(self.names) * self.each.uniforms
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Both of each."""
-        return tuple(f"{name} {axis}" for name in self.names for axis in ("radial", "tangential"))
-
-    @property
-    def sigma(self) -> float:
-        """Standard deviation of one component [mm]."""
-        return self.each.sigma
-
-    @property
     def covariance(self) -> Array:
         """See JointDraw: planets are independent."""
         return np.asarray(np.kron(np.eye(len(self.names)), self.each.covariance), dtype=np.float64)
-
-    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
-        """See Draw."""
-        return tuple(own for part in self._parts(uniforms, self.each.uniforms) for own in self.each.deviations(*part))
-
-    def mean(self, *, turning: bool) -> tuple[float, ...]:
-        """See Draw."""
-        return self.each.mean(turning=turning) * len(self.names)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
@@ -98,9 +76,6 @@ class EachZone:
         ]
         return np.concatenate(ends)
 
-    def _parts(self, given: Sequence[Array], count: int) -> list[Sequence[Array]]:
-        return [given[start : start + count] for start in range(0, len(given), count)]
-
 
 @dataclass(frozen=True)
 class EachJudgedZone(EachZone):
@@ -108,7 +83,7 @@ class EachJudgedZone(EachZone):
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
         """See JudgedDraw: where any bore lies outside its zone."""
-        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in self._parts(components, 2)]
+        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in parts_of(components, 2)]
         return np.asarray(np.any(outside, axis=0))
 
 

@@ -8,7 +8,6 @@ omega_i / omega_o = (u_i - u_h) / (u_o - u_h): Willis' equation for any two memb
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from typing import Final
 
 from tol3d.errors import GeometryError
@@ -43,11 +42,6 @@ class CentralMesh:
     def turn(self) -> Fraction:
         """Turns of the central gear per turn of the planet, both seen from the carrier."""
         return Fraction(self.planet_teeth if self.internal else -self.planet_teeth, self.teeth)
-
-    def working_radii(self, centre_distance: float) -> tuple[float, float]:
-        """Radii [mm] of the working pitch circles of central gear and planet at a centre distance [mm]."""
-        one = centre_distance / self.tooth_sum
-        return one * self.teeth, one * self.planet_teeth
 
 
 @dataclass(frozen=True)
@@ -87,11 +81,6 @@ class ToothSet:
                     f"mesh, got {mesh.planet_teeth}"
                 )
 
-    @property
-    def members(self) -> tuple[str, ...]:
-        """Names of the central gears, and the carrier."""
-        return (*(mesh.central for mesh in self.meshes), CARRIER)
-
     def mesh(self, central: str) -> CentralMesh:
         """The mesh of a central gear, by its name."""
         return next(mesh for mesh in self.meshes if mesh.central == central)
@@ -113,12 +102,6 @@ class ToothSet:
                 f"{output_member} does not turn while {held} is held: their teeth over their planets' are alike"
             )
         return (self.turn(input_member) - at_rest) / output
-
-    @property
-    def sum_difference(self) -> int:
-        """Largest difference of the tooth sums; 0: no profile shift is needed for one centre distance."""
-        sums = [mesh.tooth_sum for mesh in self.meshes]
-        return max(sums) - min(sums)
 
     @property
     def steps(self) -> tuple[int, ...]:
@@ -151,11 +134,6 @@ class ToothSet:
             if (fault := _assembly_fault(first, second, planets)) is not None
         )
 
-    @cached_property
-    def assembled_numbers(self) -> tuple[int, ...]:
-        """Numbers of identical planets, up to 12, that can be put in at equal angles; adjacency is another matter."""
-        return tuple(n for n in range(1, MOST_PLANETS + 1) if self.assembles(n))
-
     def clocking(self, planets: int, step: int = 1) -> tuple[Fraction, ...]:
         """Turn of a step against step 1 [turns] that each planet at equal angles needs beyond planet 0's; smallest.
 
@@ -175,9 +153,6 @@ class ToothSet:
         again = Fraction(1, math.lcm(*(own[k][0].planet_teeth for k in (0, step))))
         turns = (((second - first) * Fraction(k, planets)) % again for k in range(planets))
         return tuple(turn - again if turn > again / 2 else turn for turn in turns)
-
-
-MOST_PLANETS: Final = 12
 
 
 @dataclass(frozen=True)
