@@ -17,6 +17,11 @@ def as_points(values: Complex) -> Array:
     return np.stack([values.real, values.imag], axis=-1)
 
 
+def evenly(count: int) -> Array:
+    """Azimuths of so many, evenly around from 0 on (count,) [rad]."""
+    return 2 * np.pi * np.arange(count) / count
+
+
 def turned(vectors: Array, turns: Array) -> Array:
     """Vectors (trials, ..., 2) turned by so many turns (trials, ...)."""
     angles = 2 * np.pi * (turns - np.round(turns))

@@ -72,7 +72,6 @@ class SetTrials(OutputSystem):
     """What a System of a planetary set says of trials.
 
     Args:
-        own: the set.
         acts: what each contributor acts on, by its name.
     """
 
@@ -127,8 +126,6 @@ class PlanetaryRoad:
     """Implements Road.
 
     Args:
-        system: whose trials these are.
-        turning: how far shafts turn.
         overcome: the same under torques that springs give way to.
     """
 

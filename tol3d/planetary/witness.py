@@ -38,7 +38,6 @@ class StripGaps:
     """Made in the worker: FCL's objects do not pickle.
 
     Args:
-        own: the set.
         strips: of each of its gears, by name.
     """
 
@@ -165,9 +164,7 @@ class StripContact:
     """How far shafts turn by FCL's gaps, with slopes of the first order; see Contact.
 
     Args:
-        own: the set.
         made: its gears by name, nominal.
-        engine: their gaps.
     """
 
     own: PlanetarySet

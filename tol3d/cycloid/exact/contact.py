@@ -43,17 +43,13 @@ from tol3d.cycloid.exact.pin_contact import ContactShape
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.model.stage import CycloidStage, Deviated
 from tol3d.numerics.arrays import Array, Places
+from tol3d.numerics.plane import evenly
 
 CENTRE: Final = slice(0, 2)  # of the carrier's holes, in the carrier's frame
 THROW: Final = slice(2, 4)  # mean of the cranks' throws, in the cranks' frame
 HOLES: Final = slice(4, 6)  # mean of the disc's holes, in its profile's frame
 CARRIER_TURN: Final = slice(6, 8)  # S
 CRANK_TURN: Final = slice(8, 10)  # Q
-
-
-def throws(discs: int) -> Array:
-    """Directions of the throws of a crank for its discs (discs,) [rad], evenly around."""
-    return 2 * np.pi * np.arange(discs) / discs
 
 
 @dataclass(frozen=True)
@@ -94,9 +90,9 @@ def bearings(
         carrier_offsets: by its main bearing, in its frame (trials, 2) [mm].
     """
     cranks, discs = crank_errors.shape[1:3]
-    around = 2 * np.pi * np.arange(cranks) / cranks
+    around = evenly(cranks)
     nominal = crank_circle * np.stack([np.cos(around), np.sin(around)], axis=-1)
-    directions = throws(discs)
+    directions = evenly(discs)
     own = eccentricity * np.stack([np.cos(directions), np.sin(directions)], axis=-1) + crank_errors
     cos_b, sin_b = np.cos(crank_phases)[..., None], np.sin(crank_phases)[..., None]
     x, y = own[..., 0], own[..., 1]
@@ -266,7 +262,7 @@ def first_contact(shape: ContactShape, made: AsMade, phis: Array, senses: tuple[
     near = np.empty(turns.shape if counted else (0, 0, 0), dtype=np.int64)
     first_contacts(
         shape,
-        throws(made.linkage.shape[1]),
+        evenly(made.linkage.shape[1]),
         pin_directions(int(shape.pins)),
         *(
             np.require(each, dtype=np.float64, requirements=["C", "W"])
@@ -286,7 +282,7 @@ def first_contact(shape: ContactShape, made: AsMade, phis: Array, senses: tuple[
 
 def pin_directions(pins: int) -> Array:
     """Cosine and sine of the pins' azimuths (pins, 2)."""
-    azimuths = 2 * math.pi * np.arange(pins) / pins
+    azimuths = evenly(pins)
     return np.stack([np.cos(azimuths), np.sin(azimuths)], axis=-1)
 
 

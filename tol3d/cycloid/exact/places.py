@@ -8,14 +8,14 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.contact import CARRIER_TURN, CENTRE, CRANK_TURN, HOLES, THROW, ContactStage, throws
+from tol3d.cycloid.exact.contact import CARRIER_TURN, CENTRE, CRANK_TURN, HOLES, THROW, ContactStage
 from tol3d.cycloid.model.limits import LEAST_WALL, largest_hole, lobe_reach
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.cycloid.model.shapes import Carrier, CrankSection, Crankshaft, CycloidDisc, DiscHoles, PinRing, RingPin
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.gears import SpurGear
 from tol3d.numerics.arrays import Array, Complex
-from tol3d.numerics.plane import as_complex, upright_pose
+from tol3d.numerics.plane import as_complex, evenly, upright_pose
 from tol3d.solids import PosedGear, PosedPart, PosedShape
 
 
@@ -41,8 +41,6 @@ class StagePlaces:
     """One trial of a cycloid stage with its cranks at an angle and its carrier turned.
 
     Args:
-        stage: the stage.
-        deviated: of that trial alone.
         phi: crank angle [rad].
         turn: of the carrier beyond -phi / Zc [rad], as `ContactStage.touches` finds it; 0 for the nominal place.
     """
@@ -98,17 +96,12 @@ class StagePlaces:
     def pins(self) -> tuple[Place, ...]:
         """Each turned to its azimuth."""
         count = self.stage.profile.pins
-        azimuths = 2 * math.pi * np.arange(count) / count
+        azimuths = evenly(count)
         off = self.stage.profile.pin_circle_radius + as_complex(self.deviated.pins[0])
         return tuple(
             Place(complex(at), float(azimuth))
             for at, azimuth in zip(off * np.exp(1j * azimuths), azimuths, strict=True)
         )
-
-    @property
-    def throws(self) -> Array:
-        """Directions in which the cranks' eccentrics point for each disc (discs,) [rad]."""
-        return throws(self.stage.discs)
 
     @cached_property
     def _linkage(self) -> Complex:
@@ -207,7 +200,7 @@ def usual_shapes(
     gap, flange = GAP * width, FLANGE * width
     length = stage.discs * width + (stage.discs - 1) * gap
     rim = profile.pin_circle_radius + (1 + RIM) * profile.pin_radius
-    discs = (CycloidDisc(width, profile, holes, -throw / profile.lobes) for throw in throws(stage.discs).tolist())
+    discs = (CycloidDisc(width, profile, holes, -throw / profile.lobes) for throw in stage.throws.tolist())
     return StageShapes(
         tuple(discs),
         PinRing(length, profile.pins, profile.pin_circle_radius, profile.pin_radius, _bore_radius(profile), rim),
@@ -236,7 +229,7 @@ def _sections(
     journal = JOURNAL * (eccentric - 2 * own)
     recess = RECESS * gap
     yield CrankSection(journal, flange + gap - recess)
-    for number, throw in enumerate(throws(stage.discs).tolist()):
+    for number, throw in enumerate(stage.throws.tolist()):
         if number:
             yield CrankSection(journal, gap)
         yield CrankSection(eccentric, width, own, throw)

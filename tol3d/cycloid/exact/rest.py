@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.cycloid.exact.contact import NONE_COUNTED, ContactStage, contact_shape, throws
+from tol3d.cycloid.exact.contact import NONE_COUNTED, ContactStage, contact_shape
 from tol3d.cycloid.exact.rest_kernel import rests
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.numerics.arrays import Array, Places
@@ -101,7 +101,7 @@ class RestStage:
         )
         rests(
             contact_shape(own.profile, own.window, own.rolling, NONE_COUNTED if deflection is None else deflection),
-            throws(own.discs),
+            own.throws,
             *(np.require(each, dtype=np.float64, requirements=["C", "W"]) for each in given),
             sense,
             found.turns,

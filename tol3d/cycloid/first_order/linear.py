@@ -23,7 +23,7 @@ import numpy as np
 
 from tol3d.cycloid.model.stage import CycloidStage, Deviated
 from tol3d.numerics.arrays import Array, Complex, Places
-from tol3d.numerics.plane import as_complex, as_points
+from tol3d.numerics.plane import as_complex, as_points, evenly
 
 Sense = Literal[1, -1]
 
@@ -196,18 +196,13 @@ class LinearStage(CycloidStage):
         return 1.0 + self.rolling / self.profile.lobes
 
     @property
-    def throws(self) -> Array:
-        """Phase of each disc on a crank [rad]."""
-        return 2 * np.pi * np.arange(self.discs) / self.discs
-
-    @property
     def crank_directions(self) -> Complex:
         """Unit vectors to the cranks' axes (cranks,)."""
         return np.asarray(np.exp(2j * np.pi * np.arange(self.cranks) / self.cranks))
 
     @property
     def _azimuths(self) -> Array:
-        return 2 * np.pi * np.arange(self.profile.pins) / self.profile.pins
+        return evenly(self.profile.pins)
 
     def _parameters(self, phases: Array) -> Array:
         """Places of all pins on the profile of a disc whose eccentricity points at phases (rows,): (rows, pins)."""

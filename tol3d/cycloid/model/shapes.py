@@ -35,8 +35,6 @@ class CycloidDisc(SweptShape):
 
     Args:
         width: along z [mm].
-        profile: of its lobes.
-        holes: through it.
         clocking: of the lobes, counter-clockwise against the holes [rad]; without it a root lies on +x.
     """
 
@@ -53,7 +51,6 @@ class PinRing(SweptShape):
 
     Args:
         width: along z.
-        pins: how many.
         pin_circle_radius: of the circle on which they stand.
         pin_radius: of the half-holes.
         bore_radius: of the lands between the half-holes.
@@ -105,7 +102,6 @@ class Crankshaft(BuiltShape):
     """A crankshaft about z; its lowest eccentric points along +x.
 
     Args:
-        sections: from its lower end on.
         start: z of its lower end [mm].
     """
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import evenly
 from tol3d.numerics.trial_arrays import TrialArrays
 
 
@@ -61,8 +62,6 @@ class CycloidStage:
     """A cycloid stage: discs, cranks and carrier without bearing play.
 
     Args:
-        profile: of the discs.
-        discs, cranks: how many.
         crank_circle: radius of the circle of crank axes [mm].
         rolling: turns rho of the cranks in space per turn of the carrier beyond its place, 1 + sun teeth over planet
             teeth while the sun stands and 0 while the cranks do.
@@ -81,3 +80,8 @@ class CycloidStage:
     def of(cls, own: Any) -> Self:
         """That of a reducer, or of another road."""
         return cls(own.profile, own.discs, own.cranks, own.crank_circle, own.rolling, own.window)
+
+    @property
+    def throws(self) -> Array:
+        """Phase of each disc on a crank (discs,) [rad]."""
+        return evenly(self.discs)

@@ -14,7 +14,7 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import SeatedReducer, ShownReducer, carrier_angles, swung, turned
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.errors import InputError
-from tol3d.gearing.display import replayed_of
+from tol3d.gearing.display import magnified_of
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.presenting.shown_train import ShownLink
@@ -25,9 +25,8 @@ from tol3d.report.built_body import built_body
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.simulate import Replay, replayed
+from tol3d.simulate import Replay
 from tol3d.solids import PosedGear, PosedPart, PosedShape
-from tol3d.system.stated import magnified
 
 TURN, SWING = "turn", "swing"
 MOTIONS: Final = (TURN, SWING)
@@ -223,14 +222,8 @@ def display(run: Run, which: Which, *, magnify: float) -> RVDisplay:
     Raises:
         InputError: no such build, or one that no pin touches.
     """
-    if not (math.isfinite(magnify) and magnify >= 0.0):
-        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = replayed_of(run, which)
-    if magnify == 1.0:
-        return replayed_display(seen, label)
-    again = replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, magnify))
-    notes = (f"deviations magnified {magnify:g} times", *_left_out(again.build))
-    return RVDisplay(f"{label}-x{magnify:g}", again.build, notes)
+    label, seen, notes = magnified_of(run, which, magnify)
+    return RVDisplay(label, seen.build, (*notes, *_left_out(seen.build)))
 
 
 def replayed_display(seen: Replay, label: str) -> RVDisplay:

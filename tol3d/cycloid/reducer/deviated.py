@@ -9,6 +9,7 @@ import numpy as np
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import evenly
 from tol3d.numerics.trial_arrays import TrialArrays
 
 Effect = Literal[
@@ -25,7 +26,6 @@ class Acts:
     """What a contributor acts on.
 
     Args:
-        effect: on what.
         factor: what the deviation counts for, such as 1/cos(alpha) of a thickness along the normals.
     """
 
@@ -131,7 +131,7 @@ def _shaped(like: Array) -> Along:
 
 def _ring_moved(pins: int) -> Along:
     """A displacement x, y of all pins, outwards and counter-clockwise at each."""
-    azimuths = 2 * np.pi * np.arange(pins) / pins
+    azimuths = evenly(pins)
     cos, sin = np.cos(azimuths), np.sin(azimuths)
 
     def moved(components: Array) -> Array:

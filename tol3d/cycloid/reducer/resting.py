@@ -30,7 +30,7 @@ from tol3d.cycloid.reducer.trials import NO_CONTACT, NO_FIT, NO_REST
 from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
 from tol3d.gears import LEFT, RIGHT
 from tol3d.numerics.arrays import Array, Places
-from tol3d.numerics.plane import as_complex, as_points
+from tol3d.numerics.plane import as_complex, as_points, evenly
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
 
 
@@ -64,8 +64,7 @@ def _of_planets(own: RVSet, found: RVDeviated, turns: Array, forces: Forces) -> 
 
 def _of_pins(own: RVSet, found: RVDeviated, tilts: Array, phis: Array, forces: Forces) -> None:
     profile, stage, rows = own.profile, own.linear, np.arange(len(phis))[:, None]
-    nothing, azimuths = Deviated.nothing(1, profile.pins, own.discs, own.cranks), 2 * np.pi * np.arange(profile.pins)
-    azimuths = azimuths / profile.pins
+    nothing, azimuths = Deviated.nothing(1, profile.pins, own.discs, own.cranks), evenly(profile.pins)
     for disc in range(own.discs):
         force = forces.pins[:, disc]
         _, lever, normal = stage.nominal_gaps(nothing, disc, phis, None)

@@ -21,6 +21,7 @@ from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.gears import SpurPair
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import evenly
 
 
 @dataclass(frozen=True)
@@ -47,10 +48,6 @@ class RVSet:
     """Nominal numbers of an RV reducer.
 
     Args:
-        name: of the move.
-        ring, disc, crankshaft, carrier: names of the parts.
-        profile: of the discs.
-        discs, cranks: how many.
         crank_circle: radius of the circle of crank axes [mm].
         window: pins work whose lever is more than this share of the pitch radius.
         first: its first stage; None where the cranks are the input.
@@ -105,7 +102,7 @@ class RVSet:
     @cached_property
     def azimuths(self) -> Array:
         """Of the cranks on the carrier (cranks,) [rad]."""
-        return 2 * np.pi * np.arange(self.cranks) / self.cranks
+        return evenly(self.cranks)
 
     def crank_angles(self, turns: Array) -> Array:
         """Crank angles phi [rad] where the output has made so many turns."""

@@ -44,7 +44,7 @@ class SeatedReducer:
             return None
         disc, pin = self.touching
         stage = self.places.stage
-        azimuth = self.places.cranks_turned + float(self.places.throws[disc])
+        azimuth = self.places.cranks_turned + float(self.places.stage.throws[disc])
         pole = stage.profile.eccentricity * stage.profile.pins * np.exp(1j * azimuth)
         at = self.places.pins[pin].at
         radius = stage.profile.pin_radius + float(self.places.deviated.pin_radii[0, pin])
@@ -57,7 +57,6 @@ class ShownReducer:
     """A reducer of one trial, its output turned back by its load.
 
     Args:
-        own: the reducer.
         deviated: of one trial.
         turns: of the output, nominally.
         width: of a disc [mm]; None: a usual one.

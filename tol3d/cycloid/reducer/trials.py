@@ -66,7 +66,6 @@ class RVTrials(OutputSystem):
     """What a System of an RV reducer knows of trials.
 
     Args:
-        own: the reducer.
         acts: what each contributor acts on, by its name.
     """
 

@@ -29,6 +29,7 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.trials import RVRoad, RVTrials
 from tol3d.cycloid.reducer.turning import Turned, led_angles, output_turns
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import evenly
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 from tol3d.system.measure import Measure
 
@@ -47,7 +48,6 @@ class StripContact:
     """Made in the worker: FCL's objects do not pickle.
 
     Args:
-        stage: the stage.
         strips: of one disc whose lobes are not clocked.
     """
 
@@ -116,7 +116,7 @@ class StripContact:
         found = []
         for place in asked:
             disc, pin = divmod(place, profile.pins)
-            throw = float(at.throws[disc])
+            throw = float(self.stage.throws[disc])
             u = 2 * math.pi * pin / profile.pins + (at.phi + throw) / profile.lobes
             lobe = math.floor(u / profile.lobe_pitch) % profile.lobes
             side = int(math.sin(profile.lobes * u) < 0.0)
@@ -132,9 +132,7 @@ class StripContact:
     def _levers(self, phi: float) -> Array:
         """Nominal levers of all discs' pins (discs pins,) [mm], positive where they stop counter-clockwise turning."""
         profile = self.stage.profile
-        around = 2 * math.pi * np.arange(profile.pins) / profile.pins
-        throws = 2 * math.pi * np.arange(self.stage.discs) / self.stage.discs
-        return -profile.lever(around + (phi + throws[:, None]) / profile.lobes).ravel()
+        return -profile.lever(evenly(profile.pins) + (phi + self.stage.throws[:, None]) / profile.lobes).ravel()
 
     @cached_property
     def _flanks(self) -> tuple[Surface, Surface]:
@@ -189,11 +187,7 @@ class StripTurning:
 
 @dataclass(frozen=True)
 class RVWitness(RVRoad):
-    """Implements WitnessRoad.
-
-    Args:
-        strips: of a disc.
-    """
+    """Implements WitnessRoad."""
 
     strips: LobeStrips
 

@@ -43,7 +43,6 @@ class LimitsNotKeptError(GeometryError):
 
     Args:
         margin: the one that fails in the nearest try.
-        words: the message.
     """
 
     def __init__(self, margin: Margin, words: str) -> None:
@@ -56,11 +55,7 @@ class Task:
     """A set whose shifts are sought.
 
     Args:
-        teeth, rack: of the set.
         drive: its input, output and held member.
-        planets: how many.
-        limits: what the teeth must keep.
-        friction: coefficient in the meshes.
         centre_distance: stated [mm], or None where it is free.
     """
 

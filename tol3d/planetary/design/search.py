@@ -17,15 +17,11 @@ class Wish:
     """What a set is wanted for.
 
     Args:
-        family: kind of set.
         ratio: speed of the input over that of the output; negative where they turn in opposite senses.
         tolerance: of the ratio, either way.
         planets: how many, alike and at equal angles.
         teeth: numbers of teeth allowed.
-        rack: of all gears.
-        limits: what the teeth must keep.
         goal: what profile shifts are chosen for.
-        friction: coefficient in the meshes.
         centre_distance: stated [mm], or None.
 
     Raises:

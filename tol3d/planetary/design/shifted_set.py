@@ -82,8 +82,6 @@ class ShiftedSet:
     """Tooth numbers, their rack, one centre distance, and how its shift sums are divided.
 
     Args:
-        teeth: of the set.
-        rack: of all gears.
         centre_distance: a [mm].
         planet_shifts: x of each step of the planets; central gears take the rest of their mesh's sum.
     """

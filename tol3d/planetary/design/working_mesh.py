@@ -78,8 +78,6 @@ class WorkingMesh:
     """A central gear and a planet in mesh without backlash.
 
     Args:
-        mesh: their teeth.
-        rack: of both.
         centre_distance: a [mm].
         central_shift, planet_shift: x of both; their sum is `shift_sum`.
     """

@@ -28,7 +28,6 @@ class ShownSet:
     """Gears of a set, the output turned as far as it goes counter-clockwise; nominal where the set jams.
 
     Args:
-        own: the set.
         gears: central gears, then those of each planet.
         status: 0 where it seats; see tol3d.numerics.programme.
         made: its gears by name, nominal.

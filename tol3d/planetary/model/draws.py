@@ -33,7 +33,6 @@ class EachZone(EachOwn):
 
     Args:
         each: that of one planet, of two components.
-        names: of the planets.
     """
 
     axes: ClassVar[tuple[str, str]] = ("radial", "tangential")

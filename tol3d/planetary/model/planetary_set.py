@@ -54,12 +54,8 @@ class PlanetarySet:
     about the common axis.
 
     Args:
-        name: of the move.
         meshes: central gears in their order; each has one mesh with every planet.
-        planets: how many there are.
         gears: of a planet, which turn as one.
-        carrier: the name of the carrier.
-        held, input, output: names of shafts.
         azimuths: of the planets [rad].
         springs: of a flexible carrier; none of a rigid one.
         overcome: whether torques are read that springs give way to, so that contacts alone stop the planets.

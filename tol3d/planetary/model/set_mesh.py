@@ -16,8 +16,6 @@ class SetGear:
     """A gear of a set; of a ring the radii are positive and the tooth points inwards.
 
     Args:
-        name: as in the scene.
-        teeth: number of teeth.
         module: [mm].
         pressure_angle: at the reference circle [rad].
         profile_shift: in modules; positive is a thicker tooth, of rings too.

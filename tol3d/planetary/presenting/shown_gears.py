@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.errors import InputError
-from tol3d.gearing.display import replayed_of
+from tol3d.gearing.display import magnified_of
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body, plain_body
@@ -24,10 +24,9 @@ from tol3d.report.body import Body, World
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.simulate import Replay, replayed
+from tol3d.simulate import Replay
 from tol3d.solids import PosedBody
 from tol3d.solids.bodies import ArmBody
-from tol3d.system.stated import magnified
 
 PIN: Final = 0.7  # of the smallest bore of a planet
 BELOW: Final = 0.75  # of a pin's diameter, from the lowest face to the axis of an arm
@@ -221,16 +220,13 @@ def display(run: Run, which: Which, *, magnify: float) -> PlanetaryDisplay:
     Raises:
         InputError: no such build, or a magnification with which it jams.
     """
-    if not (math.isfinite(magnify) and magnify >= 0.0):
-        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
-    label, seen = replayed_of(run, which)
-    if magnify == 1.0:
+    label, seen, notes = magnified_of(run, which, magnify)
+    if not notes:
         return replayed_display(seen, label)
-    again = replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, magnify))
-    shown: ShownSet = again.build
-    if shown.status:
-        raise InputError(f"magnify: {label} jams with its deviations magnified {magnify:g} times; take less")
-    return PlanetaryDisplay(f"{label}-x{magnify:g}", shown, (f"deviations magnified {magnify:g} times",))
+    if seen.build.status:
+        plain = label.removesuffix(f"-x{magnify:g}")
+        raise InputError(f"magnify: {plain} jams with its deviations magnified {magnify:g} times; take less")
+    return PlanetaryDisplay(label, seen.build, notes)
 
 
 def replayed_display(seen: Replay, label: str) -> PlanetaryDisplay:
