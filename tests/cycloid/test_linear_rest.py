@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from rv_250 import rv_250
 
 from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.exact.rest import Play, RestStage
+from tol3d.cycloid.exact.rest import RestStage
 from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.first_order.linear_rest import LinearRest
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.model.stage import Deviated, Play
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from tol3d.cycloid.exact.contact import ContactStage
-from tol3d.cycloid.exact.rest import Play, RestStage
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.exact.rest import RestStage
+from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.programme import NO_ROOM, OK
 
 Array = NDArray[np.float64]

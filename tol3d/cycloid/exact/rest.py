@@ -7,27 +7,8 @@ from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact import NONE_COUNTED, ContactStage, contact_shape
 from tol3d.cycloid.exact.rest_kernel import rests
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.arrays import Array, Places
-
-
-@dataclass(frozen=True)
-class Play:
-    """What lets discs and cranks of a stage move.
-
-    Args:
-        disc: diametral clearance of each throw in its disc (trials, cranks, discs) [mm], or what broadcasts to it.
-        carrier: the same of each crank in the carrier (trials, cranks) [mm].
-        crank: least and most turn that the first stage leaves each crank in the middle of its bearing (trials,
-            positions, cranks, 2) [rad], or what broadcasts to it.
-        leaving: by how much both change for a crank that lies off by 1 mm round the carrier, and outwards [rad/mm]:
-            flanks lean, so that outwards there is more room either way.
-    """
-
-    disc: Array
-    carrier: Array
-    crank: Array
-    leaving: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)

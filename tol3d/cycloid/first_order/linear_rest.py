@@ -22,9 +22,8 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.rest import Play
 from tol3d.cycloid.first_order.linear import LinearStage, Sense
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.cone_programme import ConeProgramme, Solved, farthest_between
 from tol3d.numerics.plane import as_complex

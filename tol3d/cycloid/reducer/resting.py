@@ -11,10 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.rest import Play, RestStage
+from tol3d.cycloid.exact.rest import RestStage
 from tol3d.cycloid.exact.rest_kernel import NOT_HELD
 from tol3d.cycloid.first_order.linear_rest import Forces, LinearRest
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import (
     OneMesh,
