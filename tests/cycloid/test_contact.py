@@ -9,7 +9,6 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE, SHORTENING, Array, digest_draw
 
 from tol3d.cycloid.exact.contact import (
     AsMade,
-    Touching,
     bearings,
     contact_shape,
     first_contact,
@@ -18,6 +17,7 @@ from tol3d.cycloid.exact.contact import (
     pin_centres,
 )
 from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.stage import Touching
 
 WINDOW = 0.7  # least lever of a working pin over a Zc
 SUN_HELD = 1.5  # turns of a planet in space per turn of the carrier: 1 + zs / zp with zp = 2 zs

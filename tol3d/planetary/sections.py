@@ -37,7 +37,7 @@ def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
 
 
 def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
-    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see design.mesh_loss."""
+    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see design.efficiency."""
     factor = sliding_factor if sharing == "formula" else shared_sliding_factor
     return {
         mesh.central.name: 1

@@ -41,8 +41,8 @@ import numpy as np
 from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.pin_contact import ContactShape
 from tol3d.cycloid.model.profile import DiscProfile
-from tol3d.cycloid.model.stage import CycloidStage, Deviated
-from tol3d.numerics.arrays import Array, Places
+from tol3d.cycloid.model.stage import CycloidStage, Deviated, Touching
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
 
 CENTRE: Final = slice(0, 2)  # of the carrier's holes, in the carrier's frame
@@ -140,27 +140,11 @@ NONE_COUNTED: Final = -1.0
 
 
 @dataclass(frozen=True)
-class Touching:
-    """First contacts of trials at crank angles, by senses on the last axis.
-
-    Attributes:
-        turns: the carrier's beyond -phi / Zc (trials, positions, senses) [rad], counter-clockwise; NaN where no contact
-            was found.
-        places: the pin that touches, disc times pins + pin (trials, positions, senses); -1 for none.
-        near: working pins that have a gap of at most the stated deflection then; None where none was stated.
-    """
-
-    turns: Array
-    places: Places
-    near: Places | None
-
-
-@dataclass(frozen=True)
 class AsMade:
     """Discs, cranks, carrier and pins as they are made.
 
     Attributes:
-        linkage: of contact_kinematics (trials, discs, 10).
+        linkage: of `linkage` (trials, discs, 10).
         pins: centres (trials, pins, 2) [mm].
         pin_radii: (trials, pins) [mm].
         lobe_pitch, lobe_profile: errors (trials, discs, lobes) [mm].

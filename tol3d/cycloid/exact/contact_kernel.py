@@ -76,7 +76,7 @@ def screened(
     Args:
         around: cosine and sine of the pins' azimuths (pins, 2).
         sense: +1 where the disc turns counter-clockwise, -1 back; turns are counted in it.
-        lean: see contact_newton.touched, with half the disc's width for the height.
+        lean: see touched, with half the disc's width for the height.
         firsts, slacks: of all discs' pins (discs pins,); written. A slack of inf is that of a pin whose bound is none.
     """
     lobe_pitch, lobe_profile = flanks
@@ -269,7 +269,7 @@ def first_contacts(
     Args:
         throws: directions of the cranks' throws (discs,) [rad].
         around: cosine and sine of the pins' azimuths (pins, 2).
-        linkage: of the trials' discs (trials, discs, 10), see contact_kinematics.
+        linkage: of the trials' discs (trials, discs, 10), see contact.linkage.
         places, radii: of pins (trials, pins, 2) and (trials, pins) [mm].
         lobe_pitch, lobe_profile: errors (trials, discs, lobes) [mm].
         leans: of the discs (trials, discs, 3): tau in the frame of a disc's holes, and half its width [mm].

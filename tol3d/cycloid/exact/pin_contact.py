@@ -62,7 +62,7 @@ class ContactShape(NamedTuple):
 
 @part
 def placed(linkage: Any, cos_phi: float, sin_phi: float, cos_chi: float, sin_chi: float) -> Any:
-    """The disc's turn off the nominal frame's, as cosine and sine, and its centre [mm]; see contact_kinematics."""
+    """The disc's turn off the nominal frame's, as cosine and sine, and its centre [mm]; see contact.linkage."""
     x = cos_chi * linkage[6] - sin_chi * linkage[7] + cos_phi * linkage[8] - sin_phi * linkage[9]
     y = sin_chi * linkage[6] + cos_chi * linkage[7] + sin_phi * linkage[8] + cos_phi * linkage[9]
     size = 1.0 / np.sqrt(x * x + y * y)
@@ -171,7 +171,7 @@ def standing_gap(
     """Gap along the normal [mm] between a pin and a section of a disc; below 0 they overlap, -inf where it is unknown.
 
     Args:
-        shape, linkage, clock, flanks, pin, phi, u, lean: see contact_newton.touched.
+        shape, linkage, clock, flanks, pin, phi, u, lean: see touched.
         turn: of the carrier beyond -phi / Zc [rad].
     """
     lobe_pitch, lobe_profile = flanks

@@ -105,7 +105,7 @@ class StagePlaces:
 
     @cached_property
     def _linkage(self) -> Complex:
-        """Of contact_kinematics, as complex numbers (discs, 5)."""
+        """Of contact.linkage, as complex numbers (discs, 5)."""
         found = self.stage.as_made(self.deviated).linkage[0]
         return np.asarray(found[:, 0::2] + 1j * found[:, 1::2])
 

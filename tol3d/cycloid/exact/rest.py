@@ -30,18 +30,13 @@ class Resting:
 
 
 @dataclass(frozen=True)
-class RestStage:
+class RestStage(ContactStage):
     """A cycloid stage with discs and cranks as bodies that move and turn in the plane, all of them rigid.
 
     Pins stop discs by the flanks that the torque presses, as in `ContactStage`; those of the other flanks, which a
     tight build has in the discs, stop nothing. Without play this is first contact, as long as the errors of holes and
     throws let all cranks fit; where they do not, no place is found for the discs, as no bearing gives.
-
-    Args:
-        contact: the stage without play.
     """
-
-    contact: ContactStage
 
     def rests(
         self,
@@ -58,31 +53,30 @@ class RestStage:
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
             deflection, leans: see ContactStage.touches.
         """
-        own = self.contact
         trials, positions = len(deviated.pins), phis.shape[1]
-        made, joined = own.as_made(deviated), own.joined(deviated)
-        radial = np.empty((trials, own.cranks * (own.discs + 1)))
-        discs = np.broadcast_to(play.disc, (trials, own.cranks, own.discs))
-        radial[:, : own.cranks * own.discs] = discs.reshape(trials, -1) / 2
-        radial[:, own.cranks * own.discs :] = np.broadcast_to(play.carrier, (trials, own.cranks)) / 2
+        made, joined = self.as_made(deviated), self.joined(deviated)
+        radial = np.empty((trials, self.cranks * (self.discs + 1)))
+        discs = np.broadcast_to(play.disc, (trials, self.cranks, self.discs))
+        radial[:, : self.cranks * self.discs] = discs.reshape(trials, -1) / 2
+        radial[:, self.cranks * self.discs :] = np.broadcast_to(play.carrier, (trials, self.cranks)) / 2
         found = Resting(
             np.empty((trials, positions)),
-            np.empty((trials, positions, own.discs * own.profile.pins)),
+            np.empty((trials, positions, self.discs * self.profile.pins)),
             np.empty((trials, positions), dtype=np.int64),
             np.empty((trials, positions), dtype=np.int8),
         )
         given = (
             *(made.linkage, joined.holes, joined.thrown, joined.bored, made.pins, made.pin_radii),
             *(made.lobe_pitch, made.lobe_profile),
-            np.zeros((trials, own.discs, 3)) if leans is None else leans,
+            np.zeros((trials, self.discs, 3)) if leans is None else leans,
             radial,
-            np.broadcast_to(play.crank, (trials, positions, own.cranks, 2)),
+            np.broadcast_to(play.crank, (trials, positions, self.cranks, 2)),
             np.array(play.leaving),
             np.broadcast_to(phis, (trials, positions)),
         )
         rests(
-            contact_shape(own.profile, own.window, own.rolling, NONE_COUNTED if deflection is None else deflection),
-            own.throws,
+            contact_shape(self.profile, self.window, self.rolling, NONE_COUNTED if deflection is None else deflection),
+            self.throws,
             *(np.require(each, dtype=np.float64, requirements=["C", "W"]) for each in given),
             sense,
             found.turns,

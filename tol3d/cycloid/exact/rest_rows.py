@@ -21,7 +21,7 @@ def pin_gap(shape: Any, pose: Any, clock: float, flanks: Any, pin: Any, u: float
 
     Args:
         pose: cosine and sine of the disc's turn, and its centre.
-        clock, flanks, pin, u: see contact_newton.touched.
+        clock, flanks, pin, u: see touched.
     """
     lobe_pitch, lobe_profile = flanks
     cos_psi, sin_psi, centre_x, centre_y = pose

@@ -21,26 +21,11 @@ from typing import Literal
 
 import numpy as np
 
-from tol3d.cycloid.model.stage import CycloidStage, Deviated
+from tol3d.cycloid.model.stage import CycloidStage, Deviated, Touching
 from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.plane import as_complex, as_points, evenly
 
 Sense = Literal[1, -1]
-
-
-@dataclass(frozen=True)
-class FirstTouches:
-    """Which pin stops the carrier, and where.
-
-    Args:
-        turns: of the carrier beyond -phi / Zc (trials, positions) [rad], counter-clockwise.
-        places: disc times pins + pin (trials, positions).
-        near: working pins with a gap within a deflection then (trials, positions); None where none was stated.
-    """
-
-    turns: Array
-    places: Places
-    near: Places | None = None
 
 
 @dataclass(frozen=True)
@@ -54,7 +39,7 @@ class LinearStage(CycloidStage):
         sense: Sense = 1,
         aside: Array | None = None,
         deflection: float | None = None,
-    ) -> FirstTouches:
+    ) -> Touching:
         """Where the first working pin stops the carrier on its way counter-clockwise (1) or back (-1).
 
         Args:
@@ -79,14 +64,14 @@ class LinearStage(CycloidStage):
             places[:, position] = pins[first, rows] + first * self.profile.pins
             if near is not None and deflection is not None:
                 near[:, position] = self._within(turns[:, position], at, found, deflection)
-        return FirstTouches(turns, places, near)
+        return Touching(turns, places, near)
 
     def rates(self, phis: Array, places: Places) -> Deviated:
         """What the turn (rows,) [rad] changes by per deviation while a pin touches, in the form of the deviations.
 
         Args:
             phis: crank angles (rows,) [rad].
-            places: the pins that touch (rows,), see FirstTouches.
+            places: the pins that touch (rows,), see Touching.
         """
         profile, rows = self.profile, np.arange(len(phis))
         disc, pin = np.divmod(places, profile.pins)

@@ -6,7 +6,7 @@ from typing import Any, Self
 import numpy as np
 
 from tol3d.cycloid.model.profile import DiscProfile
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import evenly
 from tol3d.numerics.trial_arrays import TrialArrays
 
@@ -104,3 +104,19 @@ class Play:
     carrier: Array
     crank: Array
     leaving: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Touching:
+    """Which pins stop the carrier, and where.
+
+    Args:
+        turns: the carrier's beyond -phi / Zc (trials, positions) [rad], counter-clockwise, of the exact road by senses
+            on a further axis; NaN where no contact was found.
+        places: the pin that touches, disc times pins + pin, in the same shape; -1 for none.
+        near: working pins that have a gap of at most the stated deflection then; None where none was stated.
+    """
+
+    turns: Array
+    places: Places
+    near: Places | None = None

@@ -281,7 +281,7 @@ def stage_by_formula(profile: DiscProfile, sources: PaperSources, sun_held: floa
 
     Args:
         sources: of the scene, see PaperSources.
-        sun_held: see paper_formula.sun_held_factor; None where the cranks are the input.
+        sun_held: see sun_held_factor; None where the cranks are the input.
     """
     own = terms(profile, sources.tolerances)
     cycloid, carrier = first_principles_totals(own)

@@ -109,7 +109,7 @@ class ExactResting:
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         play = play_of(own, deviated, turns, beta, placed_mesh)
-        stage = RestStage(own.contact)
+        stage = RestStage.of(own)
         phis, leans = led_angles(own, turns, beta), leans_of(own, deviated)
         found = stage.rests(held_stage(own, deviated), phis, play, float(sense), deflection, leans)
         codes = np.zeros(found.status.shape, dtype=np.int8)

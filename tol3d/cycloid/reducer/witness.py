@@ -19,10 +19,10 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tol3d.cycloid.exact.contact import BOTH, ContactStage, Touching
+from tol3d.cycloid.exact.contact import BOTH, ContactStage
 from tol3d.cycloid.exact.places import StagePlaces
 from tol3d.cycloid.model.shapes import LobeStrips
-from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.model.stage import Deviated, Touching
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import crank_turns, held_stage, placed_mesh
 from tol3d.cycloid.reducer.rv_set import RVSet
