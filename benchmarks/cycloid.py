@@ -27,10 +27,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tol3d.cycloid.contact import BOTH, AsMade, contact_shape, first_contact, pin_centres
-from tol3d.cycloid.contact_kinematics import bearings, linkage
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.exact.contact import BOTH, AsMade, bearings, contact_shape, first_contact, linkage, pin_centres
+from tol3d.cycloid.model.profile import DiscProfile, Modification
 
 BLOCK = 500  # units
 PROFILE = DiscProfile(40, 114.5, 5.0, 2.2, Modification(-0.02, -0.02 * math.sqrt(1 - (2.2 * 40 / 114.5) ** 2)))

@@ -8,6 +8,7 @@ The disc of scene rv_250aii; shift and offset in um, the rotation in arc seconds
 import argparse
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -16,9 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from tol3d.cycloid.limits import least_gap, neighbours_touch_at
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.model.limits import least_gap, neighbours_touch_at
+from tol3d.cycloid.model.profile import UNMODIFIED, DiscProfile, Modification
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, legend_below, new_figure, plain_axes, save_figure
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def _draw_lobes(axes: Axes, profile: DiscProfile) -> None:
     best = profile.best_phase / profile.lobes
     shown = np.array([0.0, best, profile.lobe_pitch / 2])
     u = np.linspace(-0.15, 1.15, STEPS) * profile.lobe_pitch
-    normals, centres = profile.nominal_normals(u), profile.pin_centres(u)
+    normals, centres = replace(profile, modification=UNMODIFIED).normals(u), profile.pin_centres(u)
     plain, factor = centres - profile.pin_radius * normals, magnified_by(profile)
     ground = plain - factor * profile.clearance(u)[:, None] * normals
     for place in _upright(profile, profile.pin_centres(np.concatenate([shown, profile.lobe_pitch - shown[:2]]))):

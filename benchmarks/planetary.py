@@ -20,11 +20,9 @@ from rich.table import Table
 
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.execution.pools import Execution
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.contact_curves import ContactCurves
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.stack_up import StackUp
-from tol3d.planetary.stack_up_curves import StackUpCurves
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 
@@ -72,8 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     count = max(1, given.trials // POSITIONS)
     around, some = np.arange(POSITIONS) / POSITIONS, system.deviated(trials.part(0, count))
     for name, road in (
-        ("a turn's positions, first order", StackUpCurves(own)),
-        ("the same, placed", ContactCurves(own)),
+        ("a turn's positions, first order", StackUp(own)),
+        ("the same, placed", Contact(own)),
     ):
         clock, used = least(given.rounds, lambda: road.followed(some, around, own.output, own.input, 0))  # noqa: B023
         table.add_row(name, "1", f"{count * POSITIONS / clock:,.0f}", f"{count * POSITIONS / used:,.0f}")

@@ -7,10 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tol3d.cycloid.contact import AsMade, pin_centres
-from tol3d.cycloid.contact_kinematics import bearings, linkage
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.exact.contact import AsMade, bearings, linkage, pin_centres
+from tol3d.cycloid.model.profile import DiscProfile, Modification
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.set_mesh import SetGear, SetMesh
+from tol3d.planetary import CentralMesh
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 
 Array = NDArray[np.float64]
 ALPHA = math.radians(20)
@@ -161,3 +162,9 @@ def thinned(c_a: float, c_b: float, c_c: float, trials: int = 1) -> Deviated:
     deviated = Deviated.nothing(reducer_3k(), trials)
     deviated.central_thickness[:] = [-2 * c_a, -2 * c_b, -2 * c_c]
     return deviated
+
+
+def working_radii(mesh: CentralMesh, centre_distance: float) -> tuple[float, float]:
+    """Radii [mm] of the working pitch circles of central gear and planet at a centre distance [mm]."""
+    one = centre_distance / mesh.tooth_sum
+    return one * mesh.teeth, one * mesh.planet_teeth

@@ -5,11 +5,10 @@ from dataclasses import fields
 
 import numpy as np
 
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.linear import LinearStage
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.paper_formula import Source
-from tol3d.cycloid.profile import DiscProfile
+from tol3d.cycloid.first_order.linear import LinearStage
+from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.reducer.formula import Source
 
 SHORTENING = 88.0 / 114.5
 CRANK_CIRCLE = 66.0

@@ -6,13 +6,11 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from tol3d.cycloid.contact import ContactStage, leaning
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
-from tol3d.cycloid.shapes import CycloidDisc, DiscHoles
-from tol3d.cycloid.strip_contact import StripContact
-from tol3d.cycloid.strips import lobe_strips
+from tol3d.cycloid.exact.contact import ContactStage, leaning
+from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.shapes import CycloidDisc, DiscHoles, lobe_strips
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.reducer.witness import StripContact
 from tol3d.solids.distance import NearestPoints, cylinder, mesh_surface, put, sphere
 
 PROFILE = DiscProfile(40, 114.5, 5.0, 2.2, Modification(-0.02, -0.0128, 2e-5))

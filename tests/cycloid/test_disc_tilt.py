@@ -10,10 +10,10 @@ from places import SCENES
 
 from tol3d import load_scene
 from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.modification import UNMODIFIED
-from tol3d.cycloid.rv_deviated import RVDeviated
-from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.turning import ExactTurning, LinearTurning
+from tol3d.cycloid.model.profile import UNMODIFIED
+from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning
 from tol3d.errors import SceneError
 
 Array = NDArray[np.float64]

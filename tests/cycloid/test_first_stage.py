@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.cycloid.first_stage import crank_turns, first_order_mesh, placed_mesh
 from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.rv_deviated import RVDeviated
-from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.turning import ExactTurning, LinearTurning
+from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.first_stage import crank_turns, first_order_mesh, placed_mesh
+from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning
 
 OWN: RVSet = rv_system(load_scene(SCENES / "rv_250aii.yaml")).own
 TURNS = np.linspace(0.0, 1.0, 241)[None]

@@ -6,10 +6,8 @@ from typing import cast
 import pytest
 from rv_250 import TOLERANCES, rv_250
 
-from tol3d.cycloid.formula_section import stage_by_formula
-from tol3d.cycloid.paper_formula import Source, sigma_of, sun_held_factor
-from tol3d.cycloid.paper_sources import SOURCES, PaperSources
 from tol3d.cycloid.presenting.formulas import below_zero, stage_blocks
+from tol3d.cycloid.reducer.formula import SOURCES, PaperSources, Source, sigma_of, stage_by_formula, sun_held_factor
 from tol3d.report.page import Page
 from tol3d.runs.summary.run import RunSummary
 

@@ -7,11 +7,10 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from rv_250 import rv_250
 
-from tol3d.cycloid.contact import ContactStage
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.linear import LinearStage
-from tol3d.cycloid.linear_rest import LinearRest
-from tol3d.cycloid.rest import Play, RestStage
+from tol3d.cycloid.exact.rest import RestStage
+from tol3d.cycloid.first_order.linear import LinearStage
+from tol3d.cycloid.first_order.linear_rest import LinearRest
+from tol3d.cycloid.model.stage import Deviated, Play
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,7 @@ def test_both_roads_of_a_rest_differ_by_second_order(sense: int) -> None:
     for size in (1.0, 0.5):
         profile, sizes = rv_250(0.02 * size), (2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW)
         deviated, phis, own = drawn(300, 0.002 * size, seed=5), phis_of(300), play(0.02 * size, 0.015 * size)
-        rest = RestStage(ContactStage(profile, *sizes)).rests(deviated, phis, own, float(sense))
+        rest = RestStage(profile, *sizes).rests(deviated, phis, own, float(sense))
         assert (rest.status == 0).all()
         found = LinearRest(LinearStage(profile, *sizes)).rests(deviated, phis[:, 0], own, 1 if sense > 0 else -1)
         apart = ARCSEC * (found.turns - rest.turns[:, 0])

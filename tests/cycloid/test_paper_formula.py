@@ -11,14 +11,14 @@ from rv_250 import TOLERANCES, rv_250
 from scipy.integrate import quad
 from scipy.special import i0e
 
-from tol3d.cycloid.paper_formula import (
+from tol3d.cycloid.reducer.formula import (
+    SineSum,
     best_pin_lever,
     first_principles_totals,
     paper_totals,
     sun_held_factor,
     terms,
 )
-from tol3d.cycloid.sine_sum import SineSum
 
 RV_250 = rv_250(0.0)
 SECONDS = math.degrees(1.0) * 3600

@@ -10,8 +10,8 @@ from oracles.playing_reducer import PlayingReducer
 from places import SCENES
 
 from tol3d import SceneError, load_scene
-from tol3d.cycloid.resting import exact_turning
-from tol3d.cycloid.rv_trials import RVTrials
+from tol3d.cycloid.reducer.resting import exact_turning
+from tol3d.cycloid.reducer.trials import RVTrials
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of

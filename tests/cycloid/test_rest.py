@@ -10,16 +10,15 @@ from cycloid_stages import CRANK_CIRCLE, PROFILE
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from tol3d.cycloid.contact import ContactStage
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.rest import Play, RestStage
+from tol3d.cycloid.exact.rest import RestStage
+from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.programme import NO_ROOM, OK
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SUN_HELD, WINDOW = 1.5, 0.7
-STAGE = RestStage(ContactStage(PROFILE, 2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW))
+STAGE = RestStage(PROFILE, 2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW)
 NO_PLAY = Play(np.zeros(()), np.zeros(()), np.zeros(()))
 
 
@@ -40,7 +39,7 @@ def fitting(deviated: Deviated) -> Deviated:
 def test_without_play_it_is_the_first_contact(sense: float) -> None:
     deviated, phis = fitting(drawn(200, 0.002, seed=3)), phis_of(200)
     rest = STAGE.rests(deviated, phis, NO_PLAY, sense)
-    first = STAGE.contact.touches(deviated, phis, (sense,))
+    first = STAGE.touches(deviated, phis, (sense,))
     assert (rest.status == OK).all()
     np.testing.assert_allclose(rest.turns, first.turns[..., 0], rtol=0, atol=1e-12)  # 1e-10 mm over 85 mm
     np.testing.assert_array_equal(rest.loads.argmax(axis=-1), first.places[..., 0])

@@ -18,7 +18,7 @@ from toys.registered import known
 
 from tol3d import Overrides, Run, SceneError, check_scene, compare_runs, load_scene, open_run, run_scene
 from tol3d.cycloid.from_scene import rv_system
-from tol3d.cycloid.resting import exact_turning, linear_turning
+from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.gearing.linked import link_trials
 from tol3d.gearing.links import FreeTurn, LinkTrials

@@ -11,10 +11,9 @@ from places import SCENES
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.cycloid.from_scene import rv_system
 from tol3d.cycloid.presenting import PRESENTER
-from tol3d.cycloid.presenting.motions import touching_words
-from tol3d.cycloid.presenting.shown_reducer import RVDisplay
-from tol3d.cycloid.rv_deviated import RVDeviated
-from tol3d.cycloid.shown import ShownReducer, carrier_angles, swung, turned
+from tol3d.cycloid.presenting.shown_reducer import RVDisplay, touching_words
+from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.shown import ShownReducer, carrier_angles, swung, turned
 from tol3d.cycloid.system import RVSystem
 from tol3d.errors import InputError
 from tol3d.report.body import World

@@ -12,15 +12,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
-from tol3d.cycloid.contact import ContactStage
-from tol3d.cycloid.deviated import Deviated
-from tol3d.cycloid.modification import Modification
-from tol3d.cycloid.profile import DiscProfile
-from tol3d.cycloid.shapes import CrankSection, Crankshaft, DiscHoles
-from tol3d.cycloid.shapes_cad import carrier_of, crank, ring
-from tol3d.cycloid.stage_places import StagePlaces
-from tol3d.cycloid.stage_shapes import StageShapes, usual_shapes
-from tol3d.cycloid.walls import circle_fault, hole_faults, largest_hole, lobe_reach
+from tol3d.cycloid.exact.contact import ContactStage
+from tol3d.cycloid.exact.places import StagePlaces, StageShapes, usual_shapes
+from tol3d.cycloid.model.limits import circle_fault, hole_faults, largest_hole, lobe_reach
+from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.shapes import CrankSection, Crankshaft, DiscHoles
+from tol3d.cycloid.model.shapes_cad import carrier_of, crank, ring
+from tol3d.cycloid.model.stage import Deviated
 from tol3d.errors import GeometryError
 from tol3d.gears import SpurGear
 from tol3d.solids import PosedPart, export_step

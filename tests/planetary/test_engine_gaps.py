@@ -11,10 +11,10 @@ from scipy.optimize import linprog
 
 from tol3d.gearing.engines.exact.flank_gaps import GearRows, flank_gap
 from tol3d.gears import LEFT, RIGHT, InternalGear, InternalPair, SpurGear, SpurPair
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.set_mesh import SetMesh
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.model.set_mesh import SetMesh
 
 Array = NDArray[np.float64]
 

@@ -26,11 +26,11 @@ from planetary_sets import (
 from scipy.optimize import linprog
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 

@@ -21,11 +21,11 @@ from planetary_sets import (
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.deviated import Acts, Deviated
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.set_mesh import SetGear, SetMesh
-from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.model.deviated import Acts, Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 
 NONE = np.zeros(1)
 

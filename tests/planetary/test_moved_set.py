@@ -10,13 +10,12 @@ from planetary_sets import ARCMIN, CLEARANCE, PAIRS, flexible, random_deviations
 
 from tol3d.errors import InputError
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.flank_gaps import flank_gaps
-from tol3d.planetary.moved import MovedSet, opened, swung, turned
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.presenting.motions import motion, motions
-from tol3d.planetary.shown import ShownSet, shown_set
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.flank_gaps import flank_gaps
+from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shown_set, swung, turned
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.presenting.shown_gears import motion, motions
 from tol3d.report.body import World
 
 Array = NDArray[np.float64]

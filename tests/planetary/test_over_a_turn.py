@@ -18,11 +18,11 @@ from planetary_sets import (
 )
 
 from tol3d import Overrides, SceneError, load_scene
-from tol3d.planetary.contact_curves import ContactCurves
-from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.stack_up_curves import StackUpCurves
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.system.plain import PlainMeasure
@@ -41,7 +41,7 @@ def test_ends_at_positions_are_those_of_a_general_solver() -> None:
         own = random_set(rng)
         deviated = random_deviations(own, 1, rng)
         for end, _ in EITHER:
-            found = StackUpCurves(own).followed(deviated, TURNS, own.output, own.input, end)
+            found = StackUp(own).followed(deviated, TURNS, own.output, own.input, end)
             for place, turns in enumerate(TURNS):
                 ends = free_by_highs(own, pitch_rows(own, deviated, 0, turns), own.output, own.input)
                 if ends is None:
@@ -54,7 +54,7 @@ def test_ends_at_positions_are_those_of_a_general_solver() -> None:
 def test_a_position_that_goes_on_from_another_is_the_same_as_alone(own: PlanetarySet) -> None:
     """Both roads; placed gears within twice 1e-11 rad, at which their turns stand still."""
     deviated = random_deviations(own, 12, np.random.default_rng(5))
-    for road, within in ((StackUpCurves(own), 1e-14), (ContactCurves(own), 2e-11)):
+    for road, within in ((StackUp(own), 1e-14), (Contact(own), 2e-11)):
         for end, _ in EITHER:
             curves = road.followed(deviated, TURNS, own.output, own.input, end)
             for place, turns in enumerate(TURNS):
@@ -67,8 +67,8 @@ def test_a_position_at_which_the_set_jams_spoils_no_other() -> None:
     deviated = random_deviations(own, 1, np.random.default_rng(5))
     deviated.central_offset[:, 2] = [[0.07, 0.0]]  # an eccentric output ring
     turns = np.linspace(0.0, 0.08, 60)  # one turn of it against the carrier
-    found = StackUpCurves(own).followed(deviated, turns, own.output, own.input, 0)
-    alone = [StackUpCurves(own).free(deviated, np.array([turn]), own.output, own.input) for turn in turns]
+    found = StackUp(own).followed(deviated, turns, own.output, own.input, 0)
+    alone = [StackUp(own).free(deviated, np.array([turn]), own.output, own.input) for turn in turns]
     jams = np.array([each.status[0] == 1 for each in alone])
     assert 5 < jams.sum() < 55
     assert found.status[0] == 1
@@ -84,7 +84,7 @@ def test_slopes_are_differences_of_the_sum(own: PlanetarySet) -> None:
     rng = np.random.default_rng(8)
     deviated = random_deviations(own, 2, rng)
     coefficients = rng.normal(size=(2, len(TURNS)))
-    road = StackUpCurves(own)
+    road = StackUp(own)
 
     def summed(deviated: Deviated) -> np.ndarray:
         ends = road.followed(deviated, TURNS, own.output, own.input, 0).ends
@@ -124,7 +124,7 @@ def test_what_comes_once_a_turn_of_the_output_is_how_the_rings_face_each_other()
     deviated.central_thickness[...] = -0.07
     deviated.central_offset[0, 1] = deviated.central_offset[1, 2] = [0.008, 0.0]
     deviated.central_offset[2, 1:] = [[0.008, 0.0], [0.008, 0.0]]
-    ends = StackUpCurves(own).followed(deviated, turns, own.output, own.input, 0).ends / ARCMIN
+    ends = StackUp(own).followed(deviated, turns, own.output, own.input, 0).ends / ARCMIN
     first = 2 * Spectrum.over(positions, (1,)).amplitudes(positions, ends)[:, 0]
     assert first[2] > 0.3
     assert (first[:2] < 0.1 * first[2]).all()
@@ -164,5 +164,5 @@ def test_what_360_positions_leave_out_of_a_turn_is_what_the_page_says(scene: str
         drawn(simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides(trials=400)), 0, 400)
     )
     turns = np.arange(5761) / 5760
-    ends = StackUpCurves(system.own).followed(deviated, turns, "ring 2", "sun", 0).ends
+    ends = StackUp(system.own).followed(deviated, turns, "ring 2", "sun", 0).ends
     assert 1 - np.ptp(ends[:, ::16], axis=1).mean() / np.ptp(ends, axis=1).mean() == pytest.approx(lost, abs=0.003)

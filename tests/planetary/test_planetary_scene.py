@@ -11,9 +11,9 @@ from rich.console import Console
 
 from tol3d import Overrides, SceneError, load_scene, replay, run_scene
 from tol3d.gears import InternalGear
+from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.set_mesh import SetGear
-from tol3d.planetary.stack_up import StackUp
+from tol3d.planetary.model.set_mesh import SetGear
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.report.check import check_report
 from tol3d.study.overrides import simulation_of

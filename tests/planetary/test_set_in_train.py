@@ -18,7 +18,7 @@ from planetary_sets import ARCMIN, free_by_highs, pitch_rows, reducer_3k
 from tol3d import Overrides, Run, SceneError, load_scene, run_scene
 from tol3d.gearing.presenting import PRESENTER
 from tol3d.gearing.system import gear_system
-from tol3d.planetary.deviated import Deviated
+from tol3d.planetary.model.deviated import Deviated
 from tol3d.report.motion import motion_of
 from tol3d.system.trials import Trials
 

@@ -9,7 +9,6 @@ from places import SCENES
 
 from tol3d import Overrides, load_scene
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.regressors import regress
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
@@ -29,14 +28,14 @@ class Sample:
     def __init__(self, scene: str, measure: str, trials: int) -> None:
         simulation = simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides(trials=trials))
         self.system: PlanetarySystem = planetary_system(load_scene(SCENES / f"{scene}.yaml"))
-        self.own = self.system.planetary_measures[measure]
+        self.own = self.system.read[measure]
         self.measured(drawn(simulation, 0, trials))
 
     def measured(self, trials: Trials) -> None:
         self.trials, self.values, count = trials, self.of(trials), len(trials)
         self.rows = {own.name: np.full((regressor_count(own), count), np.nan) for own in self.system.contributors}
         columns = columns_of(self.system, None, trials, (self.own,))
-        regress(self.system, self.own, self.system.contributors, columns, self.rows)
+        self.system.regress(self.own, self.system.contributors, columns, self.rows)
 
     def of(self, trials: Trials) -> Array:
         found = columns_of(self.system, None, trials, (self.own,))

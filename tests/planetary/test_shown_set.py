@@ -12,9 +12,9 @@ from tol3d import Overrides, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
+from tol3d.planetary.exact.shown import ShownSet
 from tol3d.planetary.presenting import PRESENTER
 from tol3d.planetary.presenting.shown_gears import PlanetaryDisplay
-from tol3d.planetary.shown import ShownSet
 from tol3d.report.motion import motion_of
 from tol3d.runs.run import Run
 

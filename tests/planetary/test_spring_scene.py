@@ -8,8 +8,8 @@ from places import SCENES
 from planetary_sets import ARCMIN, R_R2, R_S, flexible, thinned
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.planetary.displaced_ends import displaced_ends
 from tol3d.planetary.from_scene import planetary_system
+from tol3d.planetary.spring_curve import displaced_ends
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of

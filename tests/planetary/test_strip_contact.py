@@ -12,16 +12,15 @@ from places import SCENES
 from planetary_sets import flexible, random_deviations, reducer_3k
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.planetary.contact import Contact
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.flank_gaps import flank_gaps
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.flank_gaps import flank_gaps
+from tol3d.planetary.exact.shown import shown_set
+from tol3d.planetary.first_order.levers import play_bound
 from tol3d.planetary.from_scene import planetary_system
-from tol3d.planetary.levers import play_bound
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.shown import shown_set
-from tol3d.planetary.strip_contact import StripContact
-from tol3d.planetary.strip_gaps import StripGaps
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.system import PlanetarySystem
+from tol3d.planetary.witness import StripContact, StripGaps
 from tol3d.solids import FlankStrips, measuring_strips
 
 Array = NDArray[np.float64]

@@ -56,13 +56,12 @@ def design(
 ) -> None:
     """Find tooth numbers, profile shifts and efficiencies of planetary sets that have a ratio and can be assembled."""
     from tol3d.errors import InputError
-    from tol3d.planetary.design.basic_rack import BasicRack
-    from tol3d.planetary.design.candidate_scene import scene_text
-    from tol3d.planetary.design.candidate_table import candidate_table, design_report
+    from tol3d.planetary.design.candidates import candidate_table, design_report, scene_text
     from tol3d.planetary.design.families import FAMILIES, Teeth
     from tol3d.planetary.design.optimum import Goal
     from tol3d.planetary.design.search import Wish, find
     from tol3d.planetary.design.shifted_set import Limits
+    from tol3d.planetary.design.working_mesh import BasicRack
     from tol3d.records.folder import write_texts
     from tol3d.records.quantity import stated
 

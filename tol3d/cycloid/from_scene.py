@@ -1,24 +1,186 @@
-"""From a scene to an RV reducer, its deviations and what is read of it."""
+"""From a scene to an RV reducer, its deviations and what is read of it, or why it cannot be built."""
 
+import math
 from typing import Any
 
-from tol3d.cycloid.draws import NOT_NEGATIVE, acts_of, draw_of
-from tol3d.cycloid.grammar.measures.cycloid_lost_motion import CycloidLostMotionSpec
-from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
-from tol3d.cycloid.grammar.measures.cycloid_pins_near_contact import CycloidPinsNearContactSpec
-from tol3d.cycloid.grammar.measures.cycloid_transmission_error import CycloidTransmissionErrorSpec
-from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
-from tol3d.cycloid.measure import Reading, RVMeasure
-from tol3d.cycloid.refusals import implausible_stage, rv_set
-from tol3d.cycloid.rv_set import RVSet
+from tol3d.cycloid.grammar.measures import (
+    CycloidMeasureSpec,
+    CycloidPinsNearContactSpec,
+    CycloidTransmissionErrorSpec,
+)
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.cycloid.grammar.parts import CycloidDiscSpec
+from tol3d.cycloid.grammar.tolerances import BearingPlaySpec
+from tol3d.cycloid.model.limits import circle_fault, faults, hole_faults, largest_window, lobes_fault
+from tol3d.cycloid.model.profile import DiscProfile, Modification
+from tol3d.cycloid.model.shapes import DiscHoles
+from tol3d.cycloid.reducer.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
+from tol3d.cycloid.reducer.trials import Reading, RVMeasure
 from tol3d.cycloid.system import PlayingSystem, RVSystem
+from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.model.implausible_teeth import implausible_teeth
+from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
+from tol3d.gears import SpurGear, SpurPair
+from tol3d.gears.cylindrical_pair import SAME_LENGTH
 from tol3d.scene import Scene
-from tol3d.scene.direction import At
-from tol3d.system.plain import UNITS, PlainContributor, stated_of
+from tol3d.scene.place import KeyPath
+from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
 from tol3d.system.pooled_statistic import HalfSpan
-from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.positions import Positions, Take
 from tol3d.system.spectrum import Spectrum
+
+
+def rv_set(scene: Scene) -> RVSet:
+    """The reducer of a scene that has nothing else.
+
+    Raises:
+        SceneError: not one reducer and nothing else, or one that cannot be put together.
+    """
+    reducers = scene.of(RVReducerSpec)
+    if len(reducers) != 1:
+        words = f"expected one RV reducer and no other move, got {len(scene.moves)} moves; several make a train"
+        raise scene.refuse(("moves", list(reducers)[-1]), f"{words}, which a move of kind train names")
+    ((name, spec),) = reducers.items()
+    for part in scene.parts:
+        if part not in parts_of(spec):
+            raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+    return reducer_of(scene, name, spec)
+
+
+def parts_of(spec: RVReducerSpec) -> frozenset[str]:
+    """The parts of a reducer."""
+    own = (spec.pin_ring, spec.disc, spec.crankshaft, spec.carrier, spec.sun, spec.planet)
+    return frozenset(part for part in own if part is not None)
+
+
+def reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
+    """The reducer that a move of a scene stands for, whatever else is in the scene.
+
+    Raises:
+        SceneError: it cannot be put together.
+    """
+    _, disc, _, carrier = spec.parts_among(scene.parts)
+    profile = _profile(scene, spec)
+    _refuse_window(scene, name, spec, profile)
+    _refuse_holes(scene, name, spec, profile)
+    return RVSet(
+        name=name,
+        ring=spec.pin_ring,
+        disc=spec.disc,
+        crankshaft=spec.crankshaft,
+        carrier=spec.carrier,
+        profile=profile,
+        discs=spec.discs,
+        cranks=spec.cranks,
+        crank_circle=carrier.radius.internal,
+        window=spec.window,
+        first=_first_stage(scene, name, spec, carrier.radius.internal),
+        width=None if disc.width is None else disc.width.internal,
+        plays=any(own.of in (spec.disc, spec.carrier) for own in scene.of(BearingPlaySpec).values()),
+    )
+
+
+def _profile(scene: Scene, spec: RVReducerSpec) -> DiscProfile:
+    """The discs' profile.
+
+    Raises:
+        SceneError: it cannot be made, or does not run among the pins; at the field of the part that decides.
+    """
+    ring, disc, crank, _ = spec.parts_among(scene.parts)
+    if (fault := lobes_fault(disc.lobes, ring.pins)) is not None:
+        raise scene.refuse(("parts", spec.disc, fault.field), fault.words)
+    profile = DiscProfile(
+        ring.pins,
+        ring.radius.internal,
+        ring.pin_radius.internal,
+        crank.eccentricity.internal,
+        Modification(disc.shift.internal, disc.offset.internal, disc.rotation.internal),
+    )
+    places: dict[str, KeyPath] = {
+        "pins": (spec.pin_ring, "pins"),
+        "pin_circle_radius": (spec.pin_ring, "radius"),
+        "pin_radius": (spec.pin_ring, "pin_radius"),
+        "eccentricity": (spec.crankshaft, "eccentricity"),
+    }
+    for fault in faults(profile):
+        raise scene.refuse(("parts", *places.get(fault.field, (spec.disc, fault.field))), fault.words)
+    return profile
+
+
+def _refuse_window(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscProfile) -> None:
+    """Refuse a window that leaves positions without a working pin."""
+    most = largest_window(profile)
+    if spec.window >= most:
+        words = f"expected less than {math.floor(most * 1e4) / 1e4:.4f}, from where positions have no working pin"
+        raise scene.refuse(("moves", name, "window"), f"{words} among {profile.pins} pins, got {spec.window:g}")
+
+
+def _refuse_holes(scene: Scene, name: str, spec: RVReducerSpec, profile: DiscProfile) -> None:
+    """Refuse crankshafts that do not go through the discs, and holes too small for them or that leave no walls."""
+    _, disc, _, carrier = spec.parts_among(scene.parts)
+    if (fault := circle_fault(profile, spec.cranks, carrier.radius.internal)) is not None:
+        place: KeyPath = ("parts", spec.carrier, "radius") if fault.field == "radius" else ("moves", name, fault.field)
+        raise scene.refuse(place, fault.words)
+    if disc.hole is None:
+        return
+    for fault in hole_faults(profile, DiscHoles(spec.cranks, carrier.radius.internal, disc.hole.internal)):
+        raise scene.refuse(("parts", spec.disc, "hole"), fault.words)
+
+
+def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) -> FirstStage | None:
+    """Sun and planets.
+
+    Raises:
+        SceneError: they do not mesh at the radius of the circle of crank axes, or planets touch each other.
+    """
+    if spec.sun is None or spec.planet is None:
+        return None
+    if spec.sun == spec.planet:
+        raise scene.refuse(("moves", name, "planet"), f"expected another gear than the sun, got {spec.planet!r} twice")
+    sun, planet = (cylindrical_gear(scene, gear) for gear in (spec.sun, spec.planet))
+    assert isinstance(sun, SpurGear)
+    assert isinstance(planet, SpurGear)
+    _refuse_unlike(scene, spec)
+    try:
+        pair = SpurPair(sun, planet, distance)
+        pair.refuse_interference()
+    except GeometryError as error:
+        right = sun.module * (sun.teeth + planet.teeth) / 2
+        raise scene.refuse(
+            ("parts", spec.carrier, "radius"),
+            f"{spec.sun} and {spec.planet} do not mesh there: {error}; their reference circles touch at {right:.4f} mm",
+        ) from None
+    apart = 2 * distance * math.sin(math.pi / spec.cranks)
+    if apart <= 2 * planet.tip_radius:
+        most = math.floor(math.pi / math.asin(min(planet.tip_radius / distance, 1.0)))
+        words = f"expected at most {most} planets of {2 * planet.tip_radius:.4f} mm beside each other on this circle"
+        raise scene.refuse(("moves", name, "cranks"), f"{words}, got {spec.cranks}, which are {apart:.4f} mm apart")
+    return FirstStage(spec.sun, spec.planet, pair)
+
+
+def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
+    """Warnings of the gears before the cycloid stage.
+
+    Raises:
+        SceneError: a tooth is thinned until nothing is left of its tip.
+    """
+    if own.first is None:
+        return ()
+    gears = {own.first.sun: own.first.pair.pinion, own.first.planet: own.first.pair.wheel}
+    return tuple(implausible_teeth(scene, gears))
+
+
+def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:
+    """Refuse gears that do not roll on each other."""
+    gears = [scene.parts[str(gear)] for gear in (spec.sun, spec.planet)]
+    for field in ("module", "pressure_angle"):
+        one, other = (getattr(gear, field) for gear in gears if isinstance(gear, GearSpec))
+        if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
+            words = f"expected {one} as of {spec.sun!r}, its mate, got {other}"
+            raise scene.refuse(("parts", str(spec.planet), field), words)
 
 
 def rv_system(scene: Scene) -> RVSystem:
@@ -40,51 +202,30 @@ def rv_system(scene: Scene) -> RVSystem:
         )
         for name, spec in scene.distributed.items()
     ]
-    measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
-    disc = scene.parts[own.disc]
-    assert isinstance(disc, CycloidDiscSpec)
+    disc = scene.of(CycloidDiscSpec)[own.disc]
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
-    found = implausible_stage(scene, own)
-    stated = tuple(contributors), tuple(measures.values())
-    return system(scene.scene, *stated, own, acts, measures, width, hole, steps, found)
+    stated = tuple(contributors), tuple(_measure(scene, name, spec) for name, spec in scene.measures.items())
+    return system(scene.scene, *stated, own, acts, width, hole, steps, implausible=implausible_stage(scene, own))
 
 
-def _measure(scene: Scene, own: RVSet, name: str, spec: Any) -> RVMeasure:
+def _measure(scene: Scene, name: str, spec: Any) -> RVMeasure:
     if not isinstance(spec, CycloidMeasureSpec):
         words = "cycloid_transmission_error, cycloid_lost_motion or cycloid_pins_near_contact"
         raise scene.refuse(("measures", name, "kind"), f"expected of an RV reducer {words}, got {spec.kind}")
-    if isinstance(spec, CycloidLostMotionSpec):
-        return _read(name, spec, "lost motion", _one(spec.over), "value")
-    assert isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec)
-    one = spec.over != "turn"
-    # over a turn it bends where another pin takes over
-    positions = _one(spec.over) if one else Positions("turn", 1, spec.positions, jumps=True)
+    reading: Reading = "lost motion"
+    take: Take = "value"
+    positions, spectrum, deflection = one_position(getattr(spec, "over", None)), None, None
+    if isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec):
+        reading, take = spec.flank, spec.taken
+        if spec.over == "turn":  # over it the curve bends where another pin takes over
+            positions = Positions("turn", 1, spec.positions, jumps=True)
     if isinstance(spec, CycloidPinsNearContactSpec):
-        return _read(name, spec, spec.flank, positions, spec.taken, deflection=spec.deflection.internal)
-    if one:
-        return _read(name, spec, spec.flank, positions, "value")
-    spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
-    if spec.taken == "curve":
-        spectrum = Spectrum.over(positions, spec.orders) if spec.orders else None
-    return _read(name, spec, spec.flank, positions, spec.taken, spectrum)
-
-
-def _one(over: Any) -> Positions:
-    """One position a trial."""
-    return Positions("at", 1, 1, over.at.internal) if isinstance(over, At) else AT_RANDOM
-
-
-def _read(
-    name: str,
-    spec: CycloidMeasureSpec,
-    reading: Reading,
-    positions: Positions,
-    take: Take,
-    spectrum: Spectrum | None = None,
-    deflection: float | None = None,
-) -> RVMeasure:
+        deflection = spec.deflection.internal
+    elif isinstance(spec, CycloidTransmissionErrorSpec) and take in ("harmonic", "curve"):
+        orders = (spec.order or 1,) if take == "harmonic" else spec.orders
+        spectrum = Spectrum.over(positions, orders) if orders else None
     return RVMeasure(
         *stated_of(name, spec),
         worse="high" if deflection is None else "low",

@@ -3,83 +3,65 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import cached_property
 from typing import Any, ClassVar, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.cycloid.contact_kernel import first_contacts
-from tol3d.cycloid.draws import NOT_NEGATIVE, acts_of, draw_of
-from tol3d.cycloid.formula_section import stages_by_formula
-from tol3d.cycloid.grammar.measures.cycloid_measure import CycloidMeasureSpec
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
-from tol3d.cycloid.grammar.parts.crank_carrier import CrankCarrierSpec
-from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
-from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
-from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
-from tol3d.cycloid.neglected import BEND, BentTurning
-from tol3d.cycloid.problems import problems_at
-from tol3d.cycloid.refusals import implausible_stage, parts_of, reducer_of
-from tol3d.cycloid.rest_kernel import rests
-from tol3d.cycloid.resting import exact_turning, linear_rates, linear_turning
-from tol3d.cycloid.rv_deviated import Acts, Effect, RVDeviated
-from tol3d.cycloid.rv_set import RVSet
-from tol3d.cycloid.shown import ShownReducer
-from tol3d.cycloid.statuses import NO_FIT
+from tol3d.cycloid.exact.contact_kernel import first_contacts
+from tol3d.cycloid.exact.rest_kernel import rests
+from tol3d.cycloid.from_scene import implausible_stage, parts_of, reducer_of
+from tol3d.cycloid.grammar.measures import CycloidMeasureSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.cycloid.reducer.deviated import Acts, Effect, RVDeviated
+from tol3d.cycloid.reducer.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.reducer.formula import stages_by_formula
+from tol3d.cycloid.reducer.neglected import BEND, BentTurning
+from tol3d.cycloid.reducer.problems import problems_at
+from tol3d.cycloid.reducer.resting import exact_turning, linear_rates, linear_turning
+from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.cycloid.reducer.shown import ShownReducer
+from tol3d.cycloid.reducer.trials import NO_FIT
+from tol3d.cycloid.reducer.turning import LinearTurning, Turning
 from tol3d.cycloid.system import REST_COSTS
-from tol3d.cycloid.turning import LinearTurning, Turning
-from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
+from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
+from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import turned
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-from tol3d.system.taken import ROWS_AT_ONCE
-
-Array = NDArray[np.float64]
 
 PARTS: Final = (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec)
 """Kinds of part that stand in reducers alone."""
 BOTH_WAYS: Final = ((1, 1.0), (-1, -1.0))
 """Senses of the output's turn, and how each counts in its lost motion."""
+Rates = list[tuple[float, RVDeviated]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RVLink(StatedLink):
+class RVLink(OutputLink):
     """A reducer whose input and carrier turn with shafts of a train, its pins fixed in the world.
 
-    It stands as by itself, its output at 0 where the driver is at 0, and is read where the driver stands nominally. Its
-    play is below 0 where pins press on both sides, as the lost motion of a reducer by itself: the train adds it up so.
+    Its play is below 0 where pins press on both sides, as the lost motion of a reducer by itself: trains add it up so.
+    Its height is that of the middle of its discs.
 
     Args:
-        own: the reducer.
-        height: where the middle of its discs lies along the driver's z [mm].
-        actions: what each contributor acts on, by its name.
         sun_level: of the middle of the sun's teeth, from there [mm].
         crank_hole: diameter of the discs' crank holes where it is shown [mm]; None: as large as walls allow.
     """
 
     kind: ClassVar[str] = "rv_reducer"
-    has_middle: ClassVar[bool] = True
     unfollowed: ClassVar[str] = (
         "whose error recurs with turns of its output, not of the motor (cycloid_transmission_error reads it, in a "
         "scene of its own)"
     )
-    compares: ClassVar[bool] = True
-    housed: ClassVar[bool] = False
     presenter: ClassVar[str] = "tol3d.cycloid.presenting"
 
     own: RVSet
-    height: float
-    actions: tuple[tuple[str, Acts], ...]
     sun_level: float = 0.0
     crank_hole: float | None = None
-
-    @property
-    def turns(self) -> Fraction:
-        """Turns of the input until pins, lobes and teeth meet again as they did."""
-        return self.own.period * abs(self.own.ratio)
 
     @property
     def contacts(self) -> int:
@@ -131,10 +113,10 @@ class RVLink(StatedLink):
         for acts, part, sun_turned in self._against_carrier if asides else ():
             none = np.zeros((len(seen), 2))
             aside = asides.get(part, none) - asides.get(self.own.carrier, none)
-            found.add(acts, _turned(aside, -sun_turned * turns))
+            found.add(acts, turned(aside, -sun_turned * turns))
         for k, (_, azimuth) in enumerate(self.pins):
             if pin_name(k) in asides:
-                found.stage.carrier_holes[:, k] += _turned(asides[pin_name(k)], _alike(seen, azimuth))
+                found.stage.carrier_holes[:, k] += turned(asides[pin_name(k)], _alike(seen, azimuth))
         return found
 
     @property
@@ -150,42 +132,19 @@ class RVLink(StatedLink):
         found = {self.own.ring: self.height, self.own.carrier: self.height}
         return found if self.own.first is None else {self.own.first.sun: self.height + self.sun_level, **found}
 
-    def output_turns(self, seen: LinkTrials) -> Array:
-        """Turns of the output (trials, positions) where the driver stands nominally."""
-        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
-
-    @cached_property
-    def acts(self) -> Mapping[str, Acts]:
-        """What each contributor acts on."""
-        return dict(self.actions)
-
     # what acts on it --------------------------------------------------------------------------------
 
-    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-        """By the pins and planets that touch in each trial, to first order; see StatedLink, and regressors.py."""
-        found = [
-            {
-                name: sum(counts * each.term(acts, piece.deviations[name] - means[name]) for counts, each in rates)
-                for name, acts in self.acts.items()
-            }
-            for piece, _, rates in self._rates(seen)
-        ]
-        return {name: np.concatenate([each[name] for each in found]) for name in self.acts}
+    def part_of(self, slopes: Rates, acts: Acts, off: Array) -> Array:
+        """See OutputLink."""
+        return np.asarray(sum(counts * each.term(acts, off) for counts, each in slopes))
 
-    def _rates(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, list[tuple[float, RVDeviated]]]]:
-        """What both ends at the first position change by per deviation, and how each end counts.
-
-        Piece by piece of the trials, with its turns of the output.
-        """
-        own = self.own
-        for first in range(0, len(seen), ROWS_AT_ONCE):
-            piece = seen.part(first, first + ROWS_AT_ONCE)
-            turns = self.output_turns(piece)[:, :1]
-            deviated, rates = self.deviated(piece, turns[:, 0]), []
-            for sense, counts in BOTH_WAYS:
-                found = linear_turning(own).turned(deviated, turns, sense)
-                rates.append((counts, linear_rates(own, deviated, turns[:, 0], found, sense)))
-            yield piece, turns[:, 0], rates
+    def slopes_at(self, piece: LinkTrials, turns: Array) -> Rates:
+        """See OutputLink: by the pins and planets that touch, of both ends, and how each end counts."""
+        own, deviated, rates = self.own, self.deviated(piece, turns[:, 0]), []
+        for sense, counts in BOTH_WAYS:
+            found = linear_turning(own).turned(deviated, turns, sense)
+            rates.append((counts, linear_rates(own, deviated, turns[:, 0], found, sense)))
+        return rates
 
     @property
     def pins(self) -> Sequence[tuple[float, float]]:
@@ -200,17 +159,17 @@ class RVLink(StatedLink):
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """See StatedLink."""
         found: dict[str, list[Array]] = {part: [] for part in (*self.levels, *map(pin_name, range(self.own.cranks)))}
-        for piece, turns, rates in self._rates(seen):
+        for piece, turns, rates in self.slopes(seen):
             against = np.zeros((len(piece), 2))
             for acts, part, sun_turned in self._against_carrier:
-                units = (_turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
+                units = (turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
                 by = np.stack([sum(n * each.term(acts, unit) for n, each in rates) for unit in units], axis=-1)
                 found[part].append(by)
                 against -= by
             found[self.own.carrier].append(against)
             for k, (_, azimuth) in enumerate(self.pins):
                 of_hole = np.sum([n * each.stage.carrier_holes[:, k] for n, each in rates], axis=0)
-                found[pin_name(k)].append(_turned(of_hole, _alike(piece, -azimuth)))
+                found[pin_name(k)].append(turned(of_hole, _alike(piece, -azimuth)))
         return {part: np.concatenate(each) for part, each in found.items()}
 
     def offset_by(self, contributor: str, part: str) -> "RVLink | None":
@@ -245,14 +204,6 @@ def _alike(seen: LinkTrials, angle: float) -> Array:
     return np.full(len(seen), angle / (2 * math.pi))
 
 
-def _turned(vectors: Array, turns: Array) -> Array:
-    """Vectors (trials, 2) turned by so many turns (trials,)."""
-    angles = 2 * math.pi * (turns - np.round(turns))
-    cos, sin = np.cos(angles), np.sin(angles)
-    x, y = vectors.T
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=-1)
-
-
 # from scenes ------------------------------------------------------------------------------------------
 
 
@@ -265,11 +216,8 @@ def reducers_as_links(scene: Scene) -> Brought:
     specs = {str(name): spec for name, spec in scene.of(RVReducerSpec).items()}
     sets = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}
     owners = {part: sets[name] for name, spec in specs.items() for part in parts_of(spec)}
-    _refuse_alone(scene, sets)
-    for name, part in scene.parts.items():
-        if isinstance(part, PARTS) and name not in owners:
-            words = f"{name!r} takes part in no move; name it in an RV reducer or take it out"
-            raise scene.refuse(("parts", name), words)
+    refuse_alone(scene, CycloidMeasureSpec, {name: (own.input, own.carrier) for name, own in sets.items()}, "reducer")
+    refuse_unused(scene, PARTS, owners, "an RV reducer")
     actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
     contributors = {}
     for name, own in tolerances_of(scene, owners):
@@ -287,24 +235,10 @@ def reducers_as_links(scene: Scene) -> Brought:
     return Brought(links, contributors, tuple(line for own in sets.values() for line in implausible_stage(scene, own)))
 
 
-def _refuse_alone(scene: Scene, sets: Mapping[str, RVSet]) -> None:
-    """Refuse measures of a reducer alone: trains read it."""
-    for name, spec in scene.measures.items():
-        if isinstance(spec, CycloidMeasureSpec):
-            own = sets[spec.of]
-            raise scene.refuse(
-                ("measures", name, "kind"),
-                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
-                f"of a train whose output turns with {own.carrier!r}, and of the reducer alone one whose held shaft "
-                f"turns with {own.input!r}",
-            )
-
-
 def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RVLink:
     """A reducer as a link of the shafts that turn with its input and its carrier."""
     (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.carrier))
-    disc = scene.parts[own.disc]
-    assert isinstance(disc, CycloidDiscSpec)
+    disc = scene.of(CycloidDiscSpec)[own.disc]
     hole = None if disc.hole is None else disc.hole.internal
     sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
     height = first - sun_level

@@ -1,40 +1,35 @@
 """An RV reducer as a study sees it."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tol3d.cycloid.contact_kernel import first_contacts
-from tol3d.cycloid.formula_section import stages_by_formula
-from tol3d.cycloid.neglected import neglected
-from tol3d.cycloid.problems import problems_of
-from tol3d.cycloid.regressors import regress_touching
-from tol3d.cycloid.rest_kernel import rests
-from tol3d.cycloid.resting import exact_turning, linear_turning
-from tol3d.cycloid.roads import RVRoad
-from tol3d.cycloid.rv_trials import RVTrials
-from tol3d.cycloid.shown import ShownReducer
-from tol3d.cycloid.stage_shapes import usual_shapes
-from tol3d.cycloid.statuses import STATUSES
-from tol3d.cycloid.strips import lobe_strips
-from tol3d.cycloid.turn_regressors import TAKEN, regress_over_turn
+from tol3d.cycloid.exact.contact_kernel import first_contacts
+from tol3d.cycloid.exact.places import usual_shapes
+from tol3d.cycloid.exact.rest_kernel import rests
+from tol3d.cycloid.model.shapes import lobe_strips
+from tol3d.cycloid.reducer.formula import stages_by_formula
+from tol3d.cycloid.reducer.neglected import neglected
+from tol3d.cycloid.reducer.problems import problems_at
+from tol3d.cycloid.reducer.regressors import TAKEN, parts_over_turn, regress_touching
+from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
+from tol3d.cycloid.reducer.shown import ShownReducer
+from tol3d.cycloid.reducer.trials import STATUSES, RVRoad, RVTrials
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
+from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
-
 FCL: Final = "fcl"
 REST_COSTS: Final = 80  # times a first contact
-WITNESS: Final = "tol3d.cycloid.witness"  # it loads FCL, in the worker
+WITNESS: Final = "tol3d.cycloid.reducer.witness"  # it loads FCL, in the worker
 ROADS: Final[Mapping[str, RoadKind]] = {
     "exact": RoadKind("kernels", compiled=True, contacts_per_minute=900_000_000),
     FCL: RoadKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),
@@ -50,29 +45,23 @@ class RVSystem(RVTrials):
         width: of a disc where it is shown [mm]; None: a usual one.
         crank_hole: diameter of the discs' crank holes there [mm]; None: as large as walls allow.
         profile_steps: of the strips of a flank that FCL measures.
-        implausible: warnings of the gears before the cycloid stage.
     """
 
     width: float | None = None
     crank_hole: float | None = None
     profile_steps: int = 120
-    implausible: tuple[str, ...] = ()
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
 
-    @property
-    def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
-        """See System."""
-        return self.implausible
-
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""
-        return problems_of(self)
+        mean = self.deviated(mean_build(self, self.measures[0]))
+        return problems_at(self.own, self.acts, self.contributors, mean)
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """See System."""
-        own = self.rv_measures[measure.name]
+        own = self.read[measure.name]
         order = {"order": int(own.spectrum.orders[0])} if own.take == "harmonic" and own.spectrum else {}
         counted = {} if own.deflection is None else {"deflection_um": round(1e3 * own.deflection, 9)}
         return {"kind": own.kind, "of": self.own.name, **order, **counted}
@@ -100,33 +89,29 @@ class RVSystem(RVTrials):
         """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""
         read = [
             (own.positions, sense, own.deflection)
-            for own in (self.rv_measures[measure.name] for measure in measures)
+            for own in (self.read[measure.name] for measure in measures)
             for sense in ((1, -1) if own.reading == "lost motion" else (own.sense,))
         ]
         counted = {(positions, sense) for positions, sense, deflection in read if deflection is not None}
         apart = {own for own in read if own[2] is not None or own[:2] not in counted}
         pins = self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
-        return sum(positions.in_a_trial for positions, _, _ in apart) * pins
-
-    def regressor_key(self, measure: Measure) -> Hashable:
-        """Of its own: contributors are regressed by what they do to it."""
-        return measure.name
+        return int(sum(positions.in_a_trial for positions, _, _ in apart)) * pins
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """See System: by what touches at the positions that are taken; of a harmonic and a curve by mean slopes."""
-        own = self.rv_measures[measure.name]
+        own = self.read[measure.name]
         if own.positions.in_a_trial == 1:
             regress_touching(self, own, contributors, columns, rows)
         elif own.take in TAKEN:
-            regress_over_turn(self, own, contributors, columns, rows)
+            self.regress_parts(own, contributors, columns, rows, partial(parts_over_turn, self, own))
         else:
             super().regress(measure, contributors, columns, rows)
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
         """See System."""
-        return neglected(self, self.rv_measures[measure.name], trials)
+        return neglected(self, self.read[measure.name], trials)
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """Its cycloid stage by formula; see System."""

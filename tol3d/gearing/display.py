@@ -107,6 +107,20 @@ def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
     return which, replayed(simulation, build)
 
 
+def magnified_of(run: Run, which: Which, magnify: float) -> tuple[str, Replay, tuple[str, ...]]:
+    """The same with its deviations magnified, its label, and what is to be noted.
+
+    Raises:
+        InputError: no such build, or no such factor.
+    """
+    if not (math.isfinite(magnify) and magnify >= 0.0):
+        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
+    label, seen = replayed_of(run, which)
+    if magnify == 1.0:
+        return label, seen, ()
+    return f"{label}-x{magnify:g}", _scaled(seen, magnify), (f"deviations magnified {magnify:g} times",)
+
+
 def _scaled(seen: Replay, factor: float) -> Replay:
     """The build with its deviations multiplied by a factor."""
     if factor == 1.0:

@@ -1,29 +1,89 @@
-"""From a scene to a planetary set, its deviations and what is read of it."""
+"""From a scene to a planetary set, its deviations and what is read of it, with what is most likely a slip."""
 
-from dataclasses import replace
-from typing import Any
+import math
+from collections.abc import Iterator
+from typing import Any, Final
 
+from tol3d.assembly.grammar.zone import ProcessLawSpec
 from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.planetary.grammar.measures.planetary_lost_motion import PlanetaryLostMotionSpec
-from tol3d.planetary.grammar.measures.planetary_low_stiffness import PlanetaryLowStiffnessSpec
-from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryFreeTurnSpec, PlanetaryMeasureSpec
-from tol3d.planetary.grammar.measures.planetary_transmission_error import PlanetaryTransmissionErrorSpec
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
-from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
-from tol3d.planetary.implausible import implausible_set
-from tol3d.planetary.measure import PlanetaryMeasure, Reading
-from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.gearing.model.implausible_teeth import implausible_teeth
+from tol3d.planetary.exact.shown import Made, made_gears
+from tol3d.planetary.grammar.measures import (
+    PlanetaryFreeTurnSpec,
+    PlanetaryLostMotionSpec,
+    PlanetaryLowStiffnessSpec,
+    PlanetaryMeasureSpec,
+    PlanetaryTransmissionErrorSpec,
+)
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.planetary.grammar.parts import FlexibleCarrierSpec
+from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
+from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
-from tol3d.planetary.shown import made_gears
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
-from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.trials import PlanetaryMeasure, Reading
 from tol3d.scene import Scene
-from tol3d.scene.direction import At
+from tol3d.scene.implausible import Implausible, farthest, warned
+from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.plain import UNITS, PlainContributor, stated_of
-from tol3d.system.positions import AT_RANDOM, Positions, Take
+from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
+from tol3d.system.positions import Positions, Take
 from tol3d.system.spectrum import Spectrum
+
+HALF: Final = Implausible(0.5)
+
+
+def implausible_set(scene: Scene, own: PlanetarySet, made: Made) -> tuple[str, ...]:
+    """Warnings of a set.
+
+    Args:
+        made: its gears by their names, nominal.
+
+    Raises:
+        SceneError: a tooth is thinned until nothing is left of its tip.
+    """
+    return (*implausible_teeth(scene, made), *_pins(scene, own, made))
+
+
+def _pins(scene: Scene, own: PlanetarySet, made: Made) -> Iterator[str]:
+    """Pins off by more than half of a module; planets that overlap where all pins are at their worst places."""
+    smallest, half_angle = min(own.gears, key=lambda gear: gear.module), math.pi / own.planets
+    pitch, taken = 2 * own.centre_distance * math.sin(half_angle), 0.0
+    room = pitch - 2 * max(made[gear.name].tip_radius for gear in own.gears)
+    for path, spec in _of_pins(scene, own):
+        far, low = _reach(scene, spec)
+        if sentence := HALF.sentence(f"the module of {smallest.name!r}", smallest.module, far):
+            yield warned(path, sentence)
+        radial = isinstance(spec, PlanetPinSpec) and spec.direction == "radial"
+        taken += -2 * low * math.sin(half_angle) if radial else 2 * abs(far)
+    if own.planets > 1 and taken > room > 0.0:
+        words = (
+            f"expected planets that stay clear of their neighbours, whose pins are {pitch:.4g} mm apart, got planets "
+        )
+        words += f"that overlap by up to {taken - room:.4g} mm where pins are at their worst places"
+        yield warned(("moves", own.name, "planets"), f"{words}; look at the units of the pins' places")
+
+
+def _of_pins(scene: Scene, own: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:
+    for name, pin in scene.of(PlanetPinSpec).items():
+        if pin.of == own.carrier:
+            yield ("tolerances", name, "distribution"), pin
+    for name, bore in scene.of(BorePositionSpec).items():
+        if bore.of == own.carrier:
+            yield ("tolerances", name), bore
+
+
+def _reach(scene: Scene, spec: PlanetPinSpec | BorePositionSpec) -> tuple[float, float]:
+    """The displacement that is farthest from 0, and the least one [mm]."""
+    if isinstance(spec, BorePositionSpec):
+        if not isinstance(spec.law, ProcessLawSpec):
+            return spec.zone.diameter.internal / 2, -spec.zone.diameter.internal / 2
+        law = spec.law.distribution.resolve(scene.files)
+    else:
+        law = spec.distribution.resolve(scene.files)
+    return farthest(law), law.extremes[0]
 
 
 def planetary_system(scene: Scene) -> PlanetarySystem:
@@ -41,20 +101,18 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         draw = draw_of(scene, own, spec)
         unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
         contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
-    measures = {name: _measure(scene, own, name, spec) for name, spec in scene.measures.items()}
     made = made_gears(scene, own)
     return PlanetarySystem(
         scene.scene,
         tuple(contributors),
-        tuple(measures.values()),
+        tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items()),
         own,
         acts,
-        measures,
         made,
         scene.of(PlanetarySpec)[own.name].friction,
         scene.options(GearStudyOptions).profile_steps,
         _leaf_spring(scene.parts[own.carrier]),
-        implausible_set(scene, own, made),
+        implausible=implausible_set(scene, own, made),
     )
 
 
@@ -73,35 +131,30 @@ def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Planetary
     if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
         words = "expected a set on a flexible carrier whose springs press"
         raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
-    if isinstance(spec, PlanetaryFreeTurnSpec):
-        shaft = own.output if spec.at == "output" else own.input
-        positions = Positions("at", 1, 1, spec.over.at.internal) if isinstance(spec.over, At) else AT_RANDOM
-        reading: Reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
-        return _read(own, name, spec, reading, positions, "value", shaft)
-    assert isinstance(spec, PlanetaryTransmissionErrorSpec)
-    if spec.over == "long_period":
-        turns = own.period_planet_turns
-        raise scene.refuse(
-            ("measures", name, "over"),
-            f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the planets "
-            f"on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
-        )
-    reading = "lag" if spec.flank == "drive" else "lead"
-    positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
-    spectrum = Spectrum.over(positions, (spec.order or 1,)) if spec.take == "harmonic" else None
-    return replace(_read(own, name, spec, reading, positions, spec.take, own.output), spectrum=spectrum)
-
-
-def _read(
-    own: PlanetarySet, name: str, spec: PlanetaryMeasureSpec, reading: Reading, at: Positions, take: Take, shaft: str
-) -> PlanetaryMeasure:
+    reading: Reading
+    take: Take
+    if isinstance(spec, PlanetaryTransmissionErrorSpec):
+        if spec.over == "long_period":
+            turns = own.period_planet_turns
+            raise scene.refuse(
+                ("measures", name, "over"),
+                f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the "
+                f"planets on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
+            )
+        reading, take, shaft = "lag" if spec.flank == "drive" else "lead", spec.take, own.output
+        positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
+    else:
+        assert isinstance(spec, PlanetaryFreeTurnSpec)
+        reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
+        take, shaft = "value", own.output if spec.at == "output" else own.input
+        positions = one_position(spec.over)
     return PlanetaryMeasure(
         *stated_of(name, spec),
         worse="high",
         adds_up=False,
-        positions=at,
+        positions=positions,
         take=take,
+        spectrum=Spectrum.over(positions, (spec.order or 1,)) if take == "harmonic" else None,
         reading=reading,
-        set_name=own.name,
         shaft=shaft,
     )

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.displaced_ends import DisplacedEnds, displaced_ends
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.spring_curve import DisplacedEnds, LeafSpring, breakaway, displaced_ends, turns_under
 
 LEVEL: Final = 1e-6  # rad/mm; of slopes of 0.1 rad/mm and more, what is left of a level piece by rounding
 ARCMIN: Final = math.radians(1 / 60)

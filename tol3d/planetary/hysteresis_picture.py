@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.planetary.hysteresis import ARCMIN, Hysteresis
+from tol3d.planetary.summary_types import TorqueCurve
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, legend_below, new_figure, plain_axes, save_figure
 
 WIDTH: Final = 9.0  # inch
@@ -35,3 +36,11 @@ def draw_hysteresis(found: Hysteresis, path: Path) -> None:
     axes.set_title("torque against turn", loc="left", fontsize=12, fontweight="bold", color=BLACK)
     legend_below(axes)
     save_figure(figure, path)
+
+
+def draw_curve(kept: TorqueCurve, path: Path) -> None:
+    """Its picture; see draw_hysteresis."""
+    rigid = None if kept.rigid_arcmin is None else (kept.rigid_arcmin[0] * ARCMIN, kept.rigid_arcmin[1] * ARCMIN)
+    torques, turns = np.array(kept.torque_n_mm), np.array(kept.turn_arcmin) * ARCMIN
+    breakaway = kept.breakaway_n_mm[0], kept.breakaway_n_mm[1]
+    draw_hysteresis(Hysteresis(kept.shaft, torques, turns, breakaway, rigid), path)

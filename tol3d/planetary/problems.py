@@ -4,25 +4,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.set_mesh import SetMesh
-from tol3d.planetary.set_trials import SetTrials
-from tol3d.planetary.stack_up import StackUp
-from tol3d.system.stated import mean_build
+from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.model.set_mesh import SetMesh
 from tol3d.system.system import KeyPath
 
 ROUNDING = 1e-9  # mm; no clearance is legal, and rounds to 1e-14
 
 
-def problems_of(system: SetTrials) -> Iterator[tuple[KeyPath, str]]:
-    """Meshes that overlap with every contributor at its mean, then load paths of several planets that do."""
-    for measure in tuple(system.planetary_measures.values())[:1]:
-        yield from problems_at(system.own, system.deviated(mean_build(system, measure)), measure.shaft)
-
-
 def problems_at(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[KeyPath, str]]:
-    """The same of a set's mean build, of one trial, while a shaft is turned."""
+    """Meshes that overlap at the mean build, of one trial, then load paths of several planets that do."""
     jams = False
     lower, upper = StackUp(own).sides(deviated, np.zeros(1))
     room = (upper - lower).reshape(own.planets, -1).min(axis=0)

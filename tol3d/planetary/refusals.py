@@ -9,11 +9,10 @@ from tol3d.gearing.grammar.parts.gear import GearSpec
 from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
 from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear, cylindrical_pair
 from tol3d.gears.cylindrical_pair import SAME_LENGTH
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
-from tol3d.planetary.grammar.parts.flexible_carrier import FlexibleCarrierSpec
-from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.planetary_set import PlanetarySet, Spring
-from tol3d.planetary.set_mesh import SetGear, SetMesh
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
+from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.scene import Scene
 
 
@@ -126,8 +125,7 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> N
         one, other = (getattr(scene.parts[gear.name], field) for gear in (central, own))
         if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
             raise scene.refuse(
-                ("moves", name, "meshes", central.name),
-                f"expected gears of the same {field}, got {one} and {other}",
+                ("moves", name, "meshes", central.name), f"expected gears of the same {field}, got {one} and {other}"
             )
 
 

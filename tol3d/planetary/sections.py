@@ -1,17 +1,71 @@
-"""Planetary sets as summary.json shows them: what the friction of their teeth takes."""
+"""Planetary sets in summary.json: efficiencies by the friction of nominal teeth, static load; its spring."""
 
+import math
 from collections.abc import Mapping
 from typing import Final
 
-from tol3d.planetary.deviated import Deviated
-from tol3d.planetary.displaced_ends import displaced_ends
-from tol3d.planetary.efficiency import SetEfficiency, formula_efficiency, mesh_efficiencies, set_efficiency
+from tol3d.planetary.design.efficiency import (
+    Drive,
+    Efficiencies,
+    MeshEfficiencies,
+    Sharing,
+    efficiency,
+    published_efficiencies,
+    shared_sliding_factor,
+    sliding_factor,
+)
 from tol3d.planetary.hysteresis import ARCMIN, crossing, hysteresis
-from tol3d.planetary.planetary_set import PlanetarySet
-from tol3d.planetary.spring_curve import LeafSpring, breakaway
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.planetary.model.set_mesh import SetGear, SetMesh
+from tol3d.planetary.model.tooth_set import CARRIER, ToothSet
+from tol3d.planetary.spring_curve import LeafSpring, breakaway, displaced_ends
 from tol3d.planetary.summary_types import EfficiencySummary, PlanetarySetSummary, SpringSummary, TorqueCurve
 from tol3d.runs.summary.values import made
 from tol3d.units import RAD_PER_ARCMIN
+
+
+def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
+    """Parts of the path of contact to the tips of central gear and planet [base pitches]; see WorkingMesh."""
+    at_pitch = math.tan(mesh.working_pressure_angle)
+
+    def part(gear: SetGear) -> float:
+        tip = math.tan(math.acos(min(1.0, gear.base_radius / gear.tip_radius)))
+        return gear.teeth * (tip - at_pitch) / (2 * math.pi)
+
+    return mesh.sense * part(mesh.central), part(mesh.planet)
+
+
+def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
+    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see design.efficiency."""
+    factor = sliding_factor if sharing == "formula" else shared_sliding_factor
+    return {
+        mesh.central.name: 1
+        - friction * math.pi * (1 / mesh.planet.teeth + mesh.sense / mesh.central.teeth) * factor(*contact_ratios(mesh))
+        for mesh in own.meshes
+    }
+
+
+def set_efficiency(own: PlanetarySet, friction: float) -> Efficiencies:
+    """By equilibrium of the torques; pairs of teeth in contact carry alike."""
+    drive = Drive(*(CARRIER if shaft == own.carrier else shaft for shaft in (own.input, own.output, own.held)))
+    meshes = mesh_efficiencies(own, friction, "equal shares")
+    return Efficiencies(efficiency(own.teeth, meshes, drive), efficiency(own.teeth, meshes, drive.reversed))
+
+
+def formula_efficiency(own: PlanetarySet, friction: float) -> Efficiencies | None:
+    """By the published closed form of a 3K set, with the published E; None of any other set."""
+    central = {mesh.central.name: mesh for mesh in own.meshes}
+    if len(central) != 3 or own.carrier in (own.held, own.input, own.output):
+        return None
+    sun, ring_1, ring_2 = (central[shaft] for shaft in (own.input, own.held, own.output))
+    if sun.central.is_ring or not (ring_1.central.is_ring and ring_2.central.is_ring) or sun.planet != ring_1.planet:
+        return None
+    meshes = mesh_efficiencies(own, friction, "formula")
+    given = MeshEfficiencies(*(meshes[mesh.central.name] for mesh in (sun, ring_1, ring_2)))
+    teeth = ToothSet(tuple(own.teeth.mesh(mesh.central.name) for mesh in (sun, ring_1, ring_2)))
+    return published_efficiencies(teeth, given)
+
 
 BEYOND: Final = 1.4  # times the torque at which the region of low stiffness is crossed
 STEPS: Final = 60  # of the curve, from none to the peak
@@ -23,7 +77,6 @@ def set_sections(
     """The set by its name; nothing where neither friction of the teeth nor a spring of the carrier is given.
 
     Args:
-        own: the set.
         friction: coefficient of friction of the teeth.
         spring: what that of a flexible carrier holds.
     """
@@ -73,5 +126,5 @@ def spring_summary(own: PlanetarySet, mean: Deviated, spring: LeafSpring) -> Spr
     )
 
 
-def _percents(found: SetEfficiency) -> EfficiencySummary:
+def _percents(found: Efficiencies) -> EfficiencySummary:
     return made(EfficiencySummary, forward_percent=100 * found.forward, backward_percent=100 * found.backward)

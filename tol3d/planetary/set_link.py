@@ -1,77 +1,55 @@
 """Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink, pin_name
+from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
+from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import NO_ROOM, ranges
-from tol3d.planetary.contact import Contact, seated_ranges
-from tol3d.planetary.deviated import Acts, Deviated
-from tol3d.planetary.free import turned
-from tol3d.planetary.grammar.measures.planetary_measure import PlanetaryMeasureSpec
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
-from tol3d.planetary.grammar.parts.carrier import CarrierSpec
-from tol3d.planetary.grammar.parts.planet import PlanetSpec
-from tol3d.planetary.implausible import implausible_set
-from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.contact_kernel import seated_ranges
+from tol3d.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
+from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.from_scene import implausible_set
+from tol3d.planetary.grammar.measures import PlanetaryMeasureSpec
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
+from tol3d.planetary.model.deviated import Acts, Deviated
+from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
-from tol3d.planetary.shown import Made, ShownSet, heights_of, made_gears, shown_set
-from tol3d.planetary.stack_up import StackUp
-from tol3d.planetary.stack_up_curves import StackUpCurves
-from tol3d.planetary.tolerances import acts_of, draw_of, refuse_other_tolerance
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-from tol3d.system.taken import ROWS_AT_ONCE
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class SetLink(StatedLink):
-    """A set whose input and output turn with shafts of a train, its third shaft held in the world.
-
-    Its gears stand as those of a set by itself do, its output at 0 where the driver is at 0. They are read where the
-    driver stands nominally: by how little the play of the stages before turns it more, eccentric teeth do not notice.
+class SetLink(OutputLink):
+    """A set whose input and output turn with shafts of a train; its height is that of its first planet gear's middle.
 
     Args:
-        own: the set.
         made: its gears by their names, nominal, to be shown.
-        height: where its first planet gear's middle lies along the driver's z [mm].
-        actions: what each contributor acts on, by its name.
         friction: coefficient of friction of its teeth; None where it is not given.
     """
 
     kind: ClassVar[str] = "planetary_set"
-    has_middle: ClassVar[bool] = True
     unfollowed: ClassVar[str] = (
         "whose error recurs with turns of its output, not of the motor (planetary_transmission_error reads it, in a "
         "scene of its own)"
     )
-    compares: ClassVar[bool] = True
-    housed: ClassVar[bool] = False
     presenter: ClassVar[str] = "tol3d.planetary.presenting"
 
     own: PlanetarySet
     made: Made
-    height: float
-    actions: tuple[tuple[str, Acts], ...]
     friction: float | None = None
-
-    @property
-    def turns(self) -> Fraction:
-        """Turns of the input until all teeth meet again as they did."""
-        return self.own.period * abs(self.own.ratio)
 
     @property
     def contacts(self) -> int:
@@ -109,8 +87,8 @@ class SetLink(StatedLink):
         """What its gears and pins deviate by where the output has made so many turns (trials,)."""
         own, found = self.own, Deviated.nothing(self.own, len(seen))
         for contributor in seen.contributors:
-            if contributor.name in self._acts:
-                found.add(own, self._acts[contributor.name], seen.deviations[contributor.name])
+            if contributor.name in self.acts:
+                found.add(own, self.acts[contributor.name], seen.deviations[contributor.name])
         asides, none = self.asides(seen), np.zeros((len(seen), 2))
         for m, mesh in enumerate(own.meshes if asides else ()):
             aside = asides.get(own.carrier, none) - asides.get(mesh.central.name, none)
@@ -124,14 +102,6 @@ class SetLink(StatedLink):
         """Turns of the carrier in the world a turn of the output."""
         return -float(self.own.turn(self.own.held) * self.own.planet_turns)
 
-    def output_turns(self, seen: LinkTrials) -> Array:
-        """Turns of the output (trials, positions) where the driver stands nominally."""
-        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
-
-    @cached_property
-    def _acts(self) -> Mapping[str, Acts]:
-        return dict(self.actions)
-
     def shown(self, seen: LinkTrials) -> ShownSet:
         """Its gears in the first trial, in a frame at the driver's origin that rests, its height not counted."""
         turns = self.output_turns(seen)[:, 0]
@@ -139,30 +109,18 @@ class SetLink(StatedLink):
 
     # what acts on it --------------------------------------------------------------------------------
 
-    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-        """By the contacts that are met in each trial, to first order; see StatedLink, and regressors.py."""
-        own = self.own
-        found = [
-            {
-                name: (slopes.of(own, acts) * (piece.deviations[name] - means[name])).sum(axis=1)
-                for name, acts in self._acts.items()
-            }
-            for piece, _, slopes in self._slopes(seen)
-        ]
-        return {name: np.concatenate([own[name] for own in found]) for name in self._acts}
+    def part_of(self, slopes: Deviated, acts: Acts, off: Array) -> Array:
+        """See OutputLink."""
+        return np.asarray((slopes.of(self.own, acts) * off).sum(axis=1))
 
-    def _slopes(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, Deviated]]:
-        """Change of the play at the first position by each deviation: piece by piece of the trials, with its turns."""
-        own, stands = self.own, self.own.opposite(self.own.output)
-        for first in range(0, len(seen), ROWS_AT_ONCE):
-            piece = seen.part(first, first + ROWS_AT_ONCE)
-            turns = self.output_turns(piece)[:, :1]
-            deviated = self.deviated(piece, turns[:, 0])
-            senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
-            low, high = (
-                StackUpCurves(own).slopes(deviated, turns, own.output, stands, end, sign) for end, sign in senses
-            )
-            yield piece, turns[:, 0], low.plus(high)
+    def slopes_at(self, piece: LinkTrials, turns: Array) -> Deviated:
+        """See OutputLink: by the contacts that are met."""
+        own, deviated, road = self.own, self.deviated(piece, turns[:, 0]), StackUp(self.own)
+        senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
+        low, high = (
+            road.slopes(deviated, turns, own.output, own.opposite(own.output), end, sign) for end, sign in senses
+        )
+        return low.plus(high)
 
     @property
     def levels(self) -> Mapping[str, float]:
@@ -186,7 +144,7 @@ class SetLink(StatedLink):
         """See StatedLink."""
         found = [
             (turned(slopes.aside, (self._carrier_rate * turns)[:, None]), slopes.pins)
-            for _, turns, slopes in self._slopes(seen)
+            for _, turns, slopes in self.slopes(seen)
         ]
         aside, pins = (np.concatenate(own) for own in zip(*found, strict=True))
         of_gears = {mesh.central.name: -aside[:, m] for m, mesh in enumerate(self.own.meshes)}
@@ -221,10 +179,8 @@ def sets_as_links(scene: Scene) -> Brought:
     specs = {str(name): spec for name, spec in scene.of(PlanetarySpec).items()}
     sets = {name: set_of(scene, name, spec) for name, spec in specs.items()}
     owners = {part: own for name, own in sets.items() for part in parts_of(own, specs[name])}
-    _refuse_alone(scene, specs)
-    for name, part in scene.parts.items():
-        if isinstance(part, PlanetSpec | CarrierSpec) and name not in owners:
-            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; name it in a set or take it out")
+    refuse_alone(scene, PlanetaryMeasureSpec, {name: (own.input, own.output) for name, own in sets.items()}, "set")
+    refuse_unused(scene, (PlanetSpec, CarrierSpec), owners, "a set")
     actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
     contributors = {}
     for name, own in tolerances_of(scene, owners):
@@ -243,19 +199,6 @@ def sets_as_links(scene: Scene) -> Brought:
         contributors,
         tuple(line for each in links for line in implausible_set(scene, each.own, each.made)),
     )
-
-
-def _refuse_alone(scene: Scene, specs: Mapping[str, PlanetarySpec]) -> None:
-    """Refuse measures of a set alone: trains read it."""
-    for name, spec in scene.measures.items():
-        if isinstance(spec, PlanetaryMeasureSpec):
-            own = specs[spec.of]
-            raise scene.refuse(
-                ("measures", name, "kind"),
-                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
-                f"of a train whose output turns with {own.output!r}, and of the set alone one whose held shaft turns "
-                f"with {own.input!r}",
-            )
 
 
 def _link(scene: Scene, own: PlanetarySet, spec: PlanetarySpec, actions: tuple[tuple[str, Acts], ...]) -> SetLink:

@@ -1,27 +1,23 @@
 """A planetary set as a study sees it."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import ranges
-from tol3d.planetary.contact import seated_ranges
-from tol3d.planetary.contact_curves import ContactCurves
-from tol3d.planetary.problems import problems_of
-from tol3d.planetary.regressors import regress
-from tol3d.planetary.roads import PlanetaryRoad
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.contact_kernel import seated_ranges
+from tol3d.planetary.exact.shown import Made, ShownSet, shown_set
+from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.problems import problems_at
+from tol3d.planetary.regressors import parts_met
 from tol3d.planetary.sections import set_sections, spring_summary
-from tol3d.planetary.set_trials import SetTrials
-from tol3d.planetary.shown import Made, ShownSet, shown_set
 from tol3d.planetary.spring_curve import LeafSpring
-from tol3d.planetary.stack_up_curves import StackUpCurves
-from tol3d.planetary.statuses import STATUSES
 from tol3d.planetary.summary_types import PlanetarySetSummary
+from tol3d.planetary.trials import STATUSES, PlanetaryRoad, SetTrials
 from tol3d.solids import measuring_strips
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
@@ -31,8 +27,6 @@ from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 FCL: Final = "fcl"
 WITNESS: Final = "tol3d.planetary.witness"  # it loads FCL, in the worker
@@ -52,32 +46,26 @@ class PlanetarySystem(SetTrials):
         friction: coefficient of friction of the teeth; None where none is given.
         profile_steps: of the strips that FCL measures.
         spring: of a flexible carrier; None where none is given.
-        implausible: warnings of its teeth and pins.
     """
 
     made: Made
     friction: float | None = None
     profile_steps: int = 120
     spring: LeafSpring | None = None
-    implausible: tuple[str, ...] = ()
 
     roads: ClassVar[Mapping[str, RoadKind]] = ROADS
     statuses: ClassVar[Statuses] = STATUSES
 
-    @property
-    def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
-        """See System."""
-        return self.implausible
-
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""
-        return problems_of(self)
+        measure = self.measures[0]
+        return problems_at(self.own, self.deviated(mean_build(self, measure)), self.read[measure.name].shaft)
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """See System."""
-        own = self.planetary_measures[measure.name]
+        own = self.read[measure.name]
         order = {"order": int(own.spectrum.orders[0])} if own.spectrum is not None else {}
-        return {"kind": own.kind, "of": own.set_name, "shaft": own.shaft, **order}
+        return {"kind": own.kind, "of": self.own.name, "shaft": own.shaft, **order}
 
     # its roads --------------------------------------------------------------------------------------
 
@@ -96,28 +84,25 @@ class PlanetarySystem(SetTrials):
         if name == FCL:
             made: Road = import_module(WITNESS).witness(self, self.made, materials)
             return made
-        kind = StackUpCurves if name == ANALYTIC_ROAD else ContactCurves
+        kind = StackUp if name == ANALYTIC_ROAD else Contact
         return PlanetaryRoad(self, kind(self.own), kind(self.overcome))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """A contact for each mesh of each planet, at each position; measures of one curve share them; see System."""
         read = {
             own.name if own.is_free_turn else own.curve_key: own.positions.in_a_trial
-            for own in (self.planetary_measures[measure.name] for measure in measures)
+            for own in (self.read[measure.name] for measure in measures)
         }
-        return sum(read.values()) * self.own.planets * len(self.own.meshes)
+        return int(sum(read.values())) * self.own.planets * len(self.own.meshes)
 
     # what acts on a measure -------------------------------------------------------------------------
-
-    def regressor_key(self, measure: Measure) -> Hashable:
-        """Of its own: groups are regressed by what they do to it."""
-        return measure.name
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
         """See System: offsets as they lie seen from the planets."""
-        regress(self, self.planetary_measures[measure.name], contributors, columns, rows)
+        own = self.read[measure.name]
+        self.regress_parts(own, contributors, columns, rows, partial(parts_met, self, own))
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """Efficiencies and torques of the set, where friction or a spring is given; see System."""

@@ -346,9 +346,10 @@ def _union(grammar: Grammar, section: str) -> Any:
     return specs[0] if len(specs) == 1 else Annotated[Union[specs], Field(discriminator="kind")]  # noqa: UP007
 
 
-def specs_in(package: ModuleType) -> tuple[type[Any], ...]:
-    """Every kind that the modules of a package define, in the order of their names: a new file is a new kind."""
-    modules = [import_module(f"{package.__name__}.{found.name}") for found in pkgutil.iter_modules(package.__path__)]
+def specs_in(place: ModuleType) -> tuple[type[Any], ...]:
+    """Every kind that a module defines, or the modules of a package in the order of their names."""
+    found = pkgutil.iter_modules(getattr(place, "__path__", ()))
+    modules = [place, *(import_module(f"{place.__name__}.{each.name}") for each in found)]
     defined = ((module.__name__, value) for module in modules for value in vars(module).values())
     return tuple(
         value

@@ -1,6 +1,8 @@
 """Draws of deviations that each of several features has of its own, with a direction each."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +13,47 @@ from tol3d.system.draw import Planar, Values
 Array = NDArray[np.float64]
 
 
+class EachOwn:
+    """As many draws as there are features, each of its own: components of one after the other; see Draw."""
+
+    axes: ClassVar[tuple[str, str]] = ("x", "y")
+    names: tuple[str, ...]
+    each: Any
+
+    @property
+    def uniforms(self) -> int:
+        """Those of one a feature."""
+        return len(self.names) * int(self.each.uniforms)
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Both of each."""
+        return tuple(f"{name} {axis}" for name in self.names for axis in self.axes)
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of one component [mm]."""
+        return float(self.each.sigma)
+
+    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
+        """See Draw."""
+        parts = parts_of(uniforms, self.each.uniforms)
+        return tuple(own for part in parts for own in self.each.deviations(*part))
+
+    def mean(self, *, turning: bool) -> tuple[float, ...]:
+        """See Draw."""
+        found: tuple[float, ...] = self.each.mean(turning=turning) * len(self.names)
+        return found
+
+
+def parts_of(given: Sequence[Array], count: int) -> list[Sequence[Array]]:
+    """So many at a time."""
+    return [given[start : start + count] for start in range(0, len(given), count)]
+
+
 @dataclass(frozen=True)
-class EachPlanar:
-    """As many lengths as there are features, each in a direction of its own: components x and y of one after the other.
+class EachPlanar(EachOwn):
+    """As many lengths as there are features, each in a direction of its own.
 
     Args:
         distribution: of each length.
@@ -29,31 +69,6 @@ class EachPlanar:
     def each(self) -> Planar:
         """That of one feature."""
         return Planar(self.distribution, self.direction)
-
-    @property
-    def uniforms(self) -> int:
-        """One or two a feature."""
-        return len(self.names) * self.each.uniforms
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """x and y of each."""
-        return tuple(f"{name} {axis}" for name in self.names for axis in ("x", "y"))
-
-    @property
-    def sigma(self) -> float:
-        """Standard deviation of one component [mm]."""
-        return self.each.sigma
-
-    def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
-        """See Draw."""
-        count = self.each.uniforms
-        starts = range(0, self.uniforms, count)
-        return tuple(own for start in starts for own in self.each.deviations(*uniforms[start : start + count]))
-
-    def mean(self, *, turning: bool) -> tuple[float, ...]:
-        """See Draw."""
-        return self.each.mean(turning=turning) * len(self.names)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: all lengths at their ends, along what each one's does alone."""

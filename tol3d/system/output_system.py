@@ -1,17 +1,24 @@
 """A system whose trials differ by where one shaft stands, its output: reducers and planetary sets."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
+from tol3d.system.contributor import Contributor
+from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
-from tol3d.system.system import StreamKey
+from tol3d.system.positions import Positions
+from tol3d.system.system import Columns, StreamKey
+from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
+Parts = Callable[[Contributor, Array], Array]
+"""What a contributor that lies off its mean (trials, components) adds to a measure (trials,), in mm or rad."""
 
 
 @dataclass(frozen=True)
@@ -20,9 +27,16 @@ class OutputSystem(PlainSystem):
 
     Args:
         own: what turns the output: its name, and the period in turns of the output until everything meets again.
+        implausible: warnings of what is most likely a slip.
     """
 
     own: Any
+    implausible: tuple[str, ...] = field(default=(), kw_only=True)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:  # type: ignore[override]
+        """See System."""
+        return self.implausible
 
     @property
     def streams(self) -> tuple[StreamKey, ...]:
@@ -41,3 +55,52 @@ class OutputSystem(PlainSystem):
     def columns(self, trials: Trials) -> Mapping[str, NDArray[np.generic]]:
         """Angle of the output."""
         return {self.position_column: 360.0 * trials.positions[self.own.name]}
+
+    def turns(self, positions: Positions, trials: Trials) -> Array:
+        """Turns of the output (trials, 1) or (1, positions) at which a measure is read."""
+        if positions.fixed is None:
+            return trials.positions[self.own.name][:, None]
+        return np.array([positions.fixed]) / (2 * np.pi)
+
+    @cached_property
+    def read(self) -> Mapping[str, Any]:
+        """The system's own measures by their names."""
+        return {own.name: own for own in self.measures}
+
+    def regressor_key(self, measure: Measure) -> Hashable:
+        """Of its own: contributors are regressed by what they do to it."""
+        return measure.name
+
+    def regress_parts(
+        self,
+        measure: Measure,
+        contributors: Sequence[Contributor],
+        columns: Columns,
+        rows: Mapping[str, Array],
+        parts: Callable[[Trials], Parts],
+    ) -> None:
+        """Write contributors' rows (regressors, trials): first its part, in the measure's unit; see System.regress.
+
+        Args:
+            measure, contributors, columns, rows: see System.regress.
+            parts: of some trials.
+        """
+        values = {own.name: component_values(own, columns) for own in self.contributors}
+        deviations = np.concatenate([values[own.name] for own in self.contributors], axis=1)
+        turns = np.asarray(columns[self.position_column], dtype=np.float64) / 360.0
+        at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
+        for own in contributors:
+            rows[own.name][...] = 0.0
+        for first in range(0, len(deviations), at_once):
+            piece = slice(first, first + at_once)
+            part_of = parts(Trials(deviations[piece], {self.own.name: turns[piece]}))
+            for own in contributors:
+                turning = self.turns_at_random(own, measure.positions)
+                off = values[own.name][piece] - np.array(own.draw.mean(turning=turning))
+                rows[own.name][0, piece] = measure.per_internal * part_of(own, off)
+
+
+def component_values(contributor: Contributor, columns: Columns) -> Array:
+    """Components of a contributor from columns of results (trials, components) [mm, rad, K]."""
+    read = (np.asarray(columns[name], dtype=np.float64) for name in contributor.columns)
+    return np.stack([own * contributor.per_unit for own in read], axis=1)

@@ -15,6 +15,7 @@ from pydantic import Field
 
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.scene import Scene
+from tol3d.scene.direction import At
 from tol3d.scene.measure import LengthLimit, MeasureEntry, MeasureSpec
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.breakdown import Breakdown
@@ -149,6 +150,11 @@ def stated_of(name: str, spec: MeasureEntry) -> tuple[str, str, float | None, fl
     lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
     unit, per_unit = UNITS[spec.dimension]
     return name, spec.kind, lower, upper, unit, 1.0 / per_unit
+
+
+def one_position(over: object) -> Positions:
+    """The position of a measure that is read at one: an angle that the scene states, or a random one a trial."""
+    return Positions("at", 1, 1, over.at.internal) if isinstance(over, At) else AT_RANDOM
 
 
 class LengthSpec(MeasureSpec):

@@ -34,6 +34,31 @@ def taken(measure: Measure, values: Array) -> Array:
     return np.asarray({"max": highest, "min": lowest, "range": highest - lowest}[measure.take])
 
 
+def weights_taken(measure: Measure, curves: Array) -> Array:
+    """What is taken of curves (trials, positions) is the sum of their values times these, near these curves.
+
+    Curves are read from their first position on. A harmonic is read along its own phase, extremes at positions.
+    """
+    found, rows = np.zeros_like(curves), np.arange(len(curves))
+    if measure.take == "harmonic":
+        assert measure.spectrum is not None
+        count = measure.positions.count
+        cycles = float(measure.spectrum.orders[0]) * np.arange(count) / count
+        waves = np.exp(-2j * np.pi * cycles)
+        sums = curves[:, :count] @ waves
+        sizes = np.abs(sums)
+        phases = np.conj(sums) / np.where(sizes > 0.0, sizes, 1.0)
+        found[:, :count] = 4 / count * (phases[:, None] * waves).real
+        return found
+    if measure.take in ("max", "range"):
+        found[rows, curves.argmax(axis=1)] += 1.0
+    if measure.take in ("min", "range"):
+        found[rows, curves.argmin(axis=1)] += -1.0 if measure.take == "range" else 1.0
+    if measure.take != "range":
+        found[:, 0] -= 1.0
+    return found
+
+
 def _parabola_peak(values: Array, *, closed: bool) -> Array:
     """Highest point of the parabola through the highest sample and its neighbours, within those three.
 

@@ -9,15 +9,23 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from planetary_sets import working_radii
 
 from tol3d.errors import GeometryError
 from tol3d.planetary import CARRIER, ToothSet, compound, simple, wolfrom
-from tol3d.planetary.design.adjacency import tip_gap
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.mesh_loss import mesh_efficiency, shared_sliding_factor, sliding_factor
-from tol3d.planetary.design.published_efficiency import MeshEfficiencies, inner_ratios, published_efficiencies
-from tol3d.planetary.design.torque_balance import Drive, balances, efficiency
-from tol3d.planetary.design.working_mesh import WorkingMesh, shift_sum
+from tol3d.planetary.design.efficiency import (
+    Drive,
+    MeshEfficiencies,
+    balances,
+    efficiency,
+    inner_ratios,
+    mesh_efficiency,
+    published_efficiencies,
+    shared_sliding_factor,
+    sliding_factor,
+)
+from tol3d.planetary.design.shifted_set import tip_gap
+from tol3d.planetary.design.working_mesh import BasicRack, WorkingMesh, shift_sum
 
 BUILT = wolfrom(25, 27, 79, 24, 76)
 REDUCER = Drive("sun", "ring 2", "ring 1")
@@ -69,7 +77,7 @@ def friction_power(own: WorkingMesh, friction: float, pairs: int = 20_000) -> fl
     centre = np.array([-a if own.mesh.internal else a, 0.0])
     angle = own.working_angle
     along = np.array([math.sin(angle), math.cos(angle)])  # line of action through the pitch point, away from the planet
-    pitch = np.array([own.mesh.working_radii(a)[1], 0.0])
+    pitch = np.array([working_radii(own.mesh, a)[1], 0.0])
     reach = math.sqrt(own.tip_radii[1] ** 2 - planet_base**2) - planet_base * math.tan(angle)
     mate = base * math.tan(angle) - math.sqrt(own.tip_radii[0] ** 2 - base**2)
     back = mate if own.mesh.internal else -mate
@@ -131,7 +139,7 @@ def test_shift_sums_leave_no_backlash(which: int, more: float) -> None:
         s = -1 if mesh.internal else 1
         central = (math.pi / 2 + 2 * (total - shift) * math.tan(alpha)) / mesh.teeth + s * grown
         planet = (math.pi / 2 + 2 * shift * math.tan(alpha)) / mesh.planet_teeth + grown
-        radii = mesh.working_radii(a)
+        radii = working_radii(mesh, a)
         pitch = 2 * math.pi * radii[1] / mesh.planet_teeth
         assert 2 * radii[0] * central + 2 * radii[1] * planet == pytest.approx(pitch, abs=1e-11)
 
@@ -192,7 +200,7 @@ def test_published_efficiencies_are_those_of_equilibrium_on_1000_random_sets() -
 def test_torques_of_the_paper_s_set_without_losses() -> None:
     """F_R1 = F_S (1 + kappa)/(1 - kappa) = 17 F_S and F_R2 = 18 F_S at the working circles."""
     (own, *_) = balances(BUILT, dict.fromkeys(("sun", "ring 1", "ring 2"), 1.0), REDUCER)
-    radii = {mesh.central: mesh.working_radii(26.0)[0] for mesh in BUILT.meshes}
+    radii = {mesh.central: working_radii(mesh, 26.0)[0] for mesh in BUILT.meshes}
     forces = {name: own.torques[name] / radii[name] for name in radii}
     assert forces["ring 1"] / forces["sun"] == pytest.approx(17.0, rel=1e-12)
     assert forces["ring 2"] / forces["sun"] == pytest.approx(-18.0, rel=1e-12)
@@ -242,7 +250,7 @@ def test_at_most_one_equilibrium_of_any_drive_delivers_power() -> None:
         sun, p1, p2 = (rng.randint(12, 50) for _ in range(3))
         own = rng.choice((random_set(rng), simple(sun, p1, sun + 2 * p1), compound(sun, p1, p2, sun + p1 + p2)))
         each = {mesh.central: rng.uniform(0.7, 1.0) for mesh in own.meshes}
-        drive = Drive(*rng.sample(own.members, 3))
+        drive = Drive(*rng.sample((*(mesh.central for mesh in own.meshes), CARRIER), 3))
         if own.turn(drive.held) in (own.turn(drive.input), own.turn(drive.output)):
             continue
         found = balances(own, each, drive)

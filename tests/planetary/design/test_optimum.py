@@ -13,12 +13,10 @@ from tol3d.errors import GeometryError
 from tol3d.gears import InternalPair
 from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.planetary import CARRIER, CentralMesh, ToothSet, simple, wolfrom
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.made_gears import made_pair, refuse_interference
+from tol3d.planetary.design.efficiency import Drive
 from tol3d.planetary.design.optimum import Goal, Task, best_shifts
-from tol3d.planetary.design.shifted_set import Limits, ShiftedSet
-from tol3d.planetary.design.torque_balance import Drive
-from tol3d.planetary.design.working_mesh import WorkingMesh
+from tol3d.planetary.design.shifted_set import Limits, ShiftedSet, made_pair, refuse_interference
+from tol3d.planetary.design.working_mesh import BasicRack, WorkingMesh
 
 REDUCER = Drive("sun", "ring 2", "ring 1")
 BUILT = wolfrom(25, 27, 79, 24, 76)

@@ -11,7 +11,7 @@ from oracles.placed_planets import placed
 
 from tol3d.errors import GeometryError
 from tol3d.planetary import ToothSet, compound, simple, wolfrom
-from tol3d.planetary.design.families import Compound, Simple, Teeth, Wolfrom
+from tol3d.planetary.design.families import COMPOUND, SIMPLE, WOLFROM, Teeth
 from tol3d.planetary.design.search import Found, Wish, find, teeth_text
 from tol3d.planetary.design.shifted_set import Limits
 
@@ -84,7 +84,7 @@ def test_it_finds_every_set_there_is(ratio: float, planets: int) -> None:
     """Those without room and those whose teeth cannot run together are counted: found and left out are all."""
     teeth = Teeth(12, 66, 1)
     expected = every_3k(ratio, 1.0, planets, teeth)
-    found = find(Wish(Wolfrom(), ratio, 1.0, planets, teeth, limits=LOOSE), EVERY)
+    found = find(Wish(WOLFROM, ratio, 1.0, planets, teeth, limits=LOOSE), EVERY)
     assert teeth_of(found) <= expected
     assert len(expected) == found_whole(found)
     assert len(found.candidates) > 5
@@ -92,7 +92,7 @@ def test_it_finds_every_set_there_is(ratio: float, planets: int) -> None:
 
 def test_the_ratio_of_the_paper_leaves_exactly_one_set() -> None:
     """Tooth sums within 2, four identical planets, adjacency: 25/27/79/24/76, all sums 52."""
-    found = find(Wish(Wolfrom(), 54.72, planets=4), EVERY)
+    found = find(Wish(WOLFROM, 54.72, planets=4), EVERY)
     assert teeth_of(found) == {"25/27/79/24/76"}
     assert found.left == 0
     (own,) = found.candidates
@@ -103,7 +103,7 @@ def test_the_ratio_of_the_paper_leaves_exactly_one_set() -> None:
 
 
 def test_the_smallest_sets_come_first_and_the_rest_is_counted() -> None:
-    wish = Wish(Simple(), 4.5, planets=3)
+    wish = Wish(SIMPLE, 4.5, planets=3)
     every, few = find(wish, EVERY), find(wish, 4)
     assert [own.own.teeth for own in few.candidates] == [own.own.teeth for own in every.candidates[:4]]
     assert few.left + found_whole(few) == found_whole(every)
@@ -124,7 +124,7 @@ def test_simple_and_compound_sets_are_all_there() -> None:
         for own in [simple(sun, planet, ring)]
         if placed(own, 3)
     }
-    found = find(Wish(Simple(), 4.0, 0.01, 3, Teeth(12, 60, 2), limits=LOOSE), EVERY)
+    found = find(Wish(SIMPLE, 4.0, 0.01, 3, Teeth(12, 60, 2), limits=LOOSE), EVERY)
     assert teeth_of(found) <= simple_ones
     assert len(simple_ones) == found_whole(found)
     compound_ones = {
@@ -135,7 +135,7 @@ def test_simple_and_compound_sets_are_all_there() -> None:
         for own in [compound(sun, p1, p2, ring)]
         if placed(own, 3)
     }
-    found = find(Wish(Compound(), 9.0, 0.05, 3, Teeth(12, 60, 1), limits=LOOSE), EVERY)
+    found = find(Wish(COMPOUND, 9.0, 0.05, 3, Teeth(12, 60, 1), limits=LOOSE), EVERY)
     assert teeth_of(found) <= compound_ones
     assert len(compound_ones) == found_whole(found)
     assert len(found.candidates) > 1
@@ -145,31 +145,31 @@ def test_simple_and_compound_sets_are_all_there() -> None:
     ("wish", "expected"),
     [
         (
-            Wish(Wolfrom(), 54.72, planets=8),
+            Wish(WOLFROM, 54.72, planets=8),
             "no 3K set is left of 44 with that ratio:\n  assembly: 44 fail; 16/27/70/24/69: 8 identical planets at "
             "equal angles do not assemble between sun and ring 1: 86 is not divisible by 8",
         ),
         (
-            Wish(Simple(), 12.0, planets=4),
+            Wish(SIMPLE, 12.0, planets=4),
             "adjacency: 6 fail; 12/59/132: gap between the tips of neighbouring planets: ",
         ),
         (
-            Wish(Wolfrom(), 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
+            Wish(WOLFROM, 54.72, tolerance=0.0, planets=4, limits=Limits(tip_clearance=0.26), centre_distance=26.0),
             "limits of the teeth: 1 fail; 25/27/79/24/76: no profile shifts were found that keep the limits; the "
             "nearest fail by clearance",
         ),
         (
-            Wish(Wolfrom(), 54.72, planets=4, centre_distance=40.0),
+            Wish(WOLFROM, 54.72, planets=4, centre_distance=40.0),
             "25/27/79/24/76: 40 mm does not suit tooth sums of 52, 52, 52: working pressure angles of 12 to 32 deg "
             "need at least 24.9778 mm and at most 28.8097 mm",
         ),
         (
-            Wish(Wolfrom(), 54.72, teeth=Teeth(12, 40, 2)),
+            Wish(WOLFROM, 54.72, teeth=Teeth(12, 40, 2)),
             "ratio: no 3K set with sun and planets of at least 12 teeth, rings of at most 40 and tooth sums within 2 "
             "has a ratio within 0.005 of 54.72; the nearest, 12/13/39/12/39, has 55.25",
         ),
         (
-            Wish(Simple(), 4.0, teeth=Teeth(40, 60, 2)),
+            Wish(SIMPLE, 4.0, teeth=Teeth(40, 60, 2)),
             "ratio: there is no simple planetary set with sun and planets of",
         ),
     ],
@@ -181,9 +181,9 @@ def test_wishes_that_cannot_be_met_say_which_condition_fails(wish: Wish, expecte
 
 
 NARROW = (
-    (Wish(Simple(), 6.0, 0.0, 4, Teeth(20, 100, 2)), "20/40/100"),
-    (Wish(Compound(), 9.0, 0.0, 4, Teeth(12, 60, 1)), "12/24/12/48"),
-    (Wish(Wolfrom(), -20.0, 0.05, 4, Teeth(12, 66, 1)), "18/18/54/24/60"),
+    (Wish(SIMPLE, 6.0, 0.0, 4, Teeth(20, 100, 2)), "20/40/100"),
+    (Wish(COMPOUND, 9.0, 0.0, 4, Teeth(12, 60, 1)), "12/24/12/48"),
+    (Wish(WOLFROM, -20.0, 0.05, 4, Teeth(12, 66, 1)), "18/18/54/24/60"),
 )
 
 
@@ -204,6 +204,6 @@ def test_no_set_is_refused_for_want_of_room_that_some_shifts_give() -> None:
     """The widest gap is that of a grid, as near as its steps of 1/60 module and of a sixtieth of the distances are."""
     sets = (simple(12, 59, 132), simple(20, 40, 100), compound(13, 30, 16, 60), wolfrom(26, 37, 99, 33, 96))
     for teeth, planets in product(sets, (3, 4, 5)):
-        wish = Wish(Simple(), 6.0, planets=planets)
+        wish = Wish(SIMPLE, 6.0, planets=planets)
         widest, tried = wish.task(teeth).widest_gap.value, widest_apart(teeth, planets, wish.limits.shift)
         assert tried - 1e-9 <= widest <= tried + 0.2

@@ -4,22 +4,22 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
-from tol3d.cycloid.grammar.parts.crankshaft import CrankshaftSpec
-from tol3d.cycloid.grammar.parts.cycloid_disc import CycloidDiscSpec
-from tol3d.cycloid.grammar.parts.pin_ring import PinRingSpec
-from tol3d.cycloid.grammar.tolerances.bearing_play import BearingPlaySpec
-from tol3d.cycloid.grammar.tolerances.carrier_bearing import CarrierBearingSpec
-from tol3d.cycloid.grammar.tolerances.carrier_hole import CarrierHoleSpec
-from tol3d.cycloid.grammar.tolerances.crank_eccentricity import CrankEccentricitySpec
-from tol3d.cycloid.grammar.tolerances.disc_eccentricity import DiscEccentricitySpec
-from tol3d.cycloid.grammar.tolerances.disc_hole import DiscHoleSpec
-from tol3d.cycloid.grammar.tolerances.lobe_pitch import LobePitchSpec
-from tol3d.cycloid.grammar.tolerances.lobe_profile import LobeProfileSpec
-from tol3d.cycloid.grammar.tolerances.pin_circle import PinCircleSpec
-from tol3d.cycloid.grammar.tolerances.pin_position import PinPositionSpec
-from tol3d.cycloid.grammar.tolerances.pin_radius import PinRadiusSpec
-from tol3d.cycloid.grammar.tolerances.pin_ring_offset import PinRingOffsetSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.cycloid.grammar.parts import PinRingSpec
+from tol3d.cycloid.grammar.tolerances import (
+    BearingPlaySpec,
+    CarrierBearingSpec,
+    CarrierHoleSpec,
+    CrankEccentricitySpec,
+    DiscEccentricitySpec,
+    DiscHoleSpec,
+    LobePitchSpec,
+    LobeProfileSpec,
+    PinCircleSpec,
+    PinPositionSpec,
+    PinRadiusSpec,
+    PinRingOffsetSpec,
+)
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath
@@ -29,25 +29,16 @@ Problem = tuple[KeyPath, str]
 GROUND: Final = Implausible(0.05)
 HALF: Final = Implausible(0.5)
 OF_DISCS_AND_CRANKS: Final = (
-    BearingPlaySpec,
-    CarrierBearingSpec,
-    CarrierHoleSpec,
-    CrankEccentricitySpec,
-    DiscEccentricitySpec,
-    DiscHoleSpec,
-    LobePitchSpec,
-    LobeProfileSpec,
-)
+    BearingPlaySpec, CarrierBearingSpec, CarrierHoleSpec, CrankEccentricitySpec, DiscEccentricitySpec, DiscHoleSpec,
+    LobePitchSpec, LobeProfileSpec,
+)  # fmt: skip
 """Lengths by which lobes, discs, cranks and the carrier lie off."""
 
 
 def implausible_grinding(scene: Scene) -> Iterator[Problem]:
     """Modifications of discs that take off, or leave, more than a twentieth of the pins' radius."""
     for move in scene.of(RVReducerSpec).values():
-        disc, ring, crank = (scene.parts[name] for name in (move.disc, move.pin_ring, move.crankshaft))
-        assert isinstance(disc, CycloidDiscSpec)
-        assert isinstance(ring, PinRingSpec)
-        assert isinstance(crank, CrankshaftSpec)
+        ring, disc, crank, _ = move.parts_among(scene.parts)
         lever = disc.lobes * crank.eccentricity.internal  # the largest
         turned = disc.rotation.internal * lever
         ground = {"shift": disc.shift.internal, "offset": disc.offset.internal, "rotation": turned}
@@ -99,8 +90,7 @@ def implausible_pins(scene: Scene) -> Iterator[Problem]:
 def implausible_discs(scene: Scene) -> Iterator[Problem]:
     """Lobes, discs, cranks and carriers off by more than half of the radius of the pins among which discs run."""
     for move in scene.of(RVReducerSpec).values():
-        ring = scene.parts[move.pin_ring]
-        assert isinstance(ring, PinRingSpec)
+        ring = move.parts_among(scene.parts).ring
         for name, spec in scene.distributed.items():
             if isinstance(spec, OF_DISCS_AND_CRANKS) and spec.of in (move.disc, move.crankshaft, move.carrier):
                 far = farthest(spec.distribution.resolve(scene.files))

@@ -1,19 +1,16 @@
 """What others found of cycloid stages by formula."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from tol3d.cycloid.grammar.moves.rv_reducer import RVReducerSpec
+from tol3d.cycloid.grammar.moves import RVReducerSpec
+from tol3d.scene import Scene
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import NotNegative, Percent
 from tol3d.strict import Strict
-
-if TYPE_CHECKING:
-    from tol3d.scene.schema import Scene
 
 
 class PublishedSource(Strict):
@@ -58,6 +55,6 @@ class PublishedCycloidStages(PublishedFigures):
         default_factory=dict, description="RV reducers of the scene"
     )
 
-    def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
+    def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         """Reducers that the scene does not have."""
         return self.strangers("cycloid_stages", self.cycloid_stages, scene.of(RVReducerSpec), "an RV reducer")

@@ -1,41 +1,30 @@
 """How RV reducers are shown: what a scene's reducer is."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+from tol3d.gearing.presenting import GearPresenter
 
+if TYPE_CHECKING:
     from tol3d.gearing.links import LinkTrials, StatedLink
     from tol3d.gearing.presenting.shown_train import ShownLink
+    from tol3d.numerics.arrays import Array
     from tol3d.report.page import PageItem
-    from tol3d.report.presenter import Display, Draw, FurtherRow, Which
+    from tol3d.report.presenter import Display, Which
     from tol3d.runs.run import Run
-    from tol3d.runs.summary.measure import MeasureSummary
     from tol3d.runs.summary.run import RunSummary
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
     from tol3d.system.contributor import Contributor
 
-    Array = NDArray[np.float64]
 
-
-class CycloidPresenter:
+class CycloidPresenter(GearPresenter):
     """The presenter of RV reducers; see `tol3d.report.presenter.Presenter`."""
-
-    def pictures(self, summary: "RunSummary") -> "Mapping[str, Draw]":
-        """None besides those of every run."""
-        return {}
 
     def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
         """Its cycloid stage by formula, published and by first principles, and what a negative lost motion means."""
         return (*_lazily("formulas").below_zero(summary), *self.link_sections(summary))
-
-    def measure_rows(self, measure: "MeasureSummary", summary: "RunSummary") -> "Sequence[FurtherRow]":
-        """None."""
-        return ()
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """What the reducer is, then what any system shows."""

@@ -4,12 +4,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tol3d.cycloid.formula_section import stages_by_formula
-from tol3d.cycloid.limits import largest_pin_radius
+from tol3d.cycloid.model.limits import largest_pin_radius
 from tol3d.cycloid.presenting.formulas import stage_blocks
-from tol3d.cycloid.rv_deviated import Acts
+from tol3d.cycloid.reducer.deviated import Acts
+from tol3d.cycloid.reducer.formula import stages_by_formula
+from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.rv_link import RVLink
-from tol3d.cycloid.rv_set import RVSet
 from tol3d.cycloid.system import RVSystem
 from tol3d.gearing.links import StatedLink
 from tol3d.report.page import Heading, PageItem, Row, Table, line

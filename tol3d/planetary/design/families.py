@@ -1,19 +1,17 @@
 """Families of sets in which tooth numbers are sought: every one with a ratio, within teeth and tooth sums allowed."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.torque_balance import Drive
-from tol3d.planetary.tooth_set import CARRIER, ToothSet, compound, simple, wolfrom
+from tol3d.numerics.arrays import Array, Places
+from tol3d.planetary.design.efficiency import Drive
+from tol3d.planetary.model.tooth_set import CARRIER, ToothSet, compound, simple, wolfrom
 
-Counts = NDArray[np.int64]
-Ratios = NDArray[np.float64]
 RATIO_RTOL: Final = 1e-12  # a ratio at the very end of its tolerance counts, however its decimals are rounded
 MOST_SETS: Final = 20_000  # with one ratio; they are judged one by one
 
@@ -34,20 +32,22 @@ class Teeth:
 
 
 @dataclass(frozen=True)
-class Family(ABC):
-    """One kind of set, the order in which its teeth are written, and how it is driven."""
+class Family:
+    """One kind of set.
 
-    words: ClassVar[str]
-    order: ClassVar[str]
-    drive: ClassVar[Drive]
+    Args:
+        words: what it is.
+        order: in which its teeth are written.
+        drive: how it is driven.
+        made: the set of such teeth.
+        beside: teeth of the other gears of each set with a sun, (gears, sets) in that order; ratios, (sets,).
+    """
 
-    @abstractmethod
-    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
-        """Teeth of the other gears of each set with that sun, (gears, sets) in the family's order; ratios, (sets,)."""
-
-    @abstractmethod
-    def made(self, *counts: int) -> ToothSet:
-        """The set of these teeth, the sun's first."""
+    words: str
+    order: str
+    drive: Drive
+    made: Callable[..., ToothSet]
+    beside: Callable[[int, Teeth], tuple[Places, Array]]
 
     def near(self, ratio: float, tolerance: float, teeth: Teeth) -> tuple[tuple[ToothSet, ...], ToothSet | None]:
         """Sets whose ratio lies within a tolerance of that wished, and of all the nearest.
@@ -78,81 +78,53 @@ class Family(ABC):
             )
 
 
-@dataclass(frozen=True)
-class Wolfrom(Family):
-    """3K sets: driven at the sun, ring 1 held, ring 2 the output, the carrier free."""
-
-    words: ClassVar[str] = "3K set"
-    order: ClassVar[str] = "S/P1/R1/P2/R2"
-    drive: ClassVar[Drive] = Drive("sun", "ring 2", "ring 1")
-
-    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
-        """Ratio z_P1 z_R2 (z_S + z_R1) / (z_S (z_P1 z_R2 - z_P2 z_R1)); none whose ring 2 stands still."""
-        d = teeth.sum_difference
-        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
-        first = planets[2 * planets + sun - d <= teeth.largest]
-        planet_1, more_1, planet_2, more_2 = np.meshgrid(first, more, planets, more, indexing="ij", sparse=True)
-        ring_1, ring_2 = sun + 2 * planet_1 + more_1, sun + planet_1 + planet_2 + more_2
-        right = (ring_1 <= teeth.largest) & (ring_2 <= teeth.largest) & (abs(more_1 - more_2) <= d)
-        right = right & (planet_1 * ring_2 != planet_2 * ring_1)
-        counts = _chosen(right, planet_1, ring_1, planet_2, ring_2)
-        planet_1, ring_1, planet_2, ring_2 = counts
-        slip = (planet_1 * ring_2 - planet_2 * ring_1).astype(np.float64)
-        return counts, planet_1 * ring_2 * (sun + ring_1) / (sun * slip)
-
-    def made(self, *counts: int) -> ToothSet:
-        """A 3K set."""
-        return wolfrom(*counts)
+def _beside_3k(sun: int, teeth: Teeth) -> tuple[Places, Array]:
+    """Ratio z_P1 z_R2 (z_S + z_R1) / (z_S (z_P1 z_R2 - z_P2 z_R1)); none whose ring 2 stands still."""
+    d = teeth.sum_difference
+    planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+    first = planets[2 * planets + sun - d <= teeth.largest]
+    planet_1, more_1, planet_2, more_2 = np.meshgrid(first, more, planets, more, indexing="ij", sparse=True)
+    ring_1, ring_2 = sun + 2 * planet_1 + more_1, sun + planet_1 + planet_2 + more_2
+    right = (ring_1 <= teeth.largest) & (ring_2 <= teeth.largest) & (abs(more_1 - more_2) <= d)
+    right = right & (planet_1 * ring_2 != planet_2 * ring_1)
+    counts = _chosen(right, planet_1, ring_1, planet_2, ring_2)
+    planet_1, ring_1, planet_2, ring_2 = counts
+    slip = (planet_1 * ring_2 - planet_2 * ring_1).astype(np.float64)
+    return counts, planet_1 * ring_2 * (sun + ring_1) / (sun * slip)
 
 
-@dataclass(frozen=True)
-class Simple(Family):
-    """Sun, planets, ring: driven at the sun, the ring held, the carrier the output."""
-
-    words: ClassVar[str] = "simple planetary set"
-    order: ClassVar[str] = "S/P/R"
-    drive: ClassVar[Drive] = Drive("sun", CARRIER, "ring")
-
-    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
-        """Ratio 1 + z_R/z_S."""
-        d = teeth.sum_difference
-        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
-        planet, more_1 = np.meshgrid(planets, more, indexing="ij", sparse=True)
-        ring = sun + 2 * planet + more_1
-        counts = _chosen(ring <= teeth.largest, planet, ring)
-        return counts, 1 + counts[1] / sun
-
-    def made(self, *counts: int) -> ToothSet:
-        """A simple set."""
-        return simple(*counts)
+def _beside_simple(sun: int, teeth: Teeth) -> tuple[Places, Array]:
+    """Ratio 1 + z_R/z_S."""
+    d = teeth.sum_difference
+    planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+    planet, more_1 = np.meshgrid(planets, more, indexing="ij", sparse=True)
+    ring = sun + 2 * planet + more_1
+    counts = _chosen(ring <= teeth.largest, planet, ring)
+    return counts, 1 + counts[1] / sun
 
 
-@dataclass(frozen=True)
-class Compound(Family):
-    """A sun on step 1 of the planets, a ring on step 2: driven at the sun, the ring held, the carrier the output."""
-
-    words: ClassVar[str] = "compound planetary set"
-    order: ClassVar[str] = "S/P1/P2/R"
-    drive: ClassVar[Drive] = Drive("sun", CARRIER, "ring")
-
-    def beside(self, sun: int, teeth: Teeth) -> tuple[Counts, Ratios]:
-        """Ratio 1 + z_R z_P1/(z_S z_P2)."""
-        d = teeth.sum_difference
-        planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
-        planet_1, planet_2, more_2 = np.meshgrid(planets, planets, more, indexing="ij", sparse=True)
-        ring = sun + planet_1 + planet_2 + more_2
-        counts = _chosen(ring <= teeth.largest, planet_1, planet_2, ring)
-        return counts, 1 + counts[2] * counts[0] / (sun * counts[1])
-
-    def made(self, *counts: int) -> ToothSet:
-        """A compound set."""
-        return compound(*counts)
+def _beside_compound(sun: int, teeth: Teeth) -> tuple[Places, Array]:
+    """Ratio 1 + z_R z_P1/(z_S z_P2)."""
+    d = teeth.sum_difference
+    planets, more = np.arange(teeth.least, teeth.largest), np.arange(-d, d + 1)
+    planet_1, planet_2, more_2 = np.meshgrid(planets, planets, more, indexing="ij", sparse=True)
+    ring = sun + planet_1 + planet_2 + more_2
+    counts = _chosen(ring <= teeth.largest, planet_1, planet_2, ring)
+    return counts, 1 + counts[2] * counts[0] / (sun * counts[1])
 
 
-def _chosen(right: NDArray[np.bool_], *counts: Counts) -> Counts:
+def _chosen(right: NDArray[np.bool_], *counts: Places) -> Places:
     """Those of a grid that are right, (gears, sets)."""
     return np.stack([own[right] for own in np.broadcast_arrays(*counts)])
 
 
-FAMILIES: Final[Mapping[str, Family]] = {"3k": Wolfrom(), "simple": Simple(), "compound": Compound()}
+WOLFROM: Final = Family("3K set", "S/P1/R1/P2/R2", Drive("sun", "ring 2", "ring 1"), wolfrom, _beside_3k)
+"""Driven at the sun, ring 1 held, ring 2 the output, the carrier free."""
+SIMPLE: Final = Family("simple planetary set", "S/P/R", Drive("sun", CARRIER, "ring"), simple, _beside_simple)
+"""Driven at the sun, the ring held, the carrier the output."""
+COMPOUND: Final = Family(
+    "compound planetary set", "S/P1/P2/R", Drive("sun", CARRIER, "ring"), compound, _beside_compound
+)
+"""A sun on step 1 of the planets, a ring on step 2; driven as a simple set."""
+FAMILIES: Final[Mapping[str, Family]] = {"3k": WOLFROM, "simple": SIMPLE, "compound": COMPOUND}
 """By their names on the command line."""

@@ -13,18 +13,14 @@ from itertools import product
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.adjacency import tip_gap
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift
-from tol3d.planetary.design.torque_balance import Drive, efficiency
-from tol3d.planetary.design.working_mesh import shift_sum
-from tol3d.planetary.tooth_set import ToothSet
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+from tol3d.planetary.design.efficiency import Drive, efficiency
+from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, Margin, ShiftedSet, least_shift, tip_gap
+from tol3d.planetary.design.working_mesh import BasicRack, shift_sum
+from tol3d.planetary.model.tooth_set import ToothSet
 
 LEAST_WORKING_ANGLE: Final = math.radians(12)  # below it paths of contact leave the involutes of any usual gear
 LARGEST_WORKING_ANGLE: Final = math.radians(32)
@@ -47,7 +43,6 @@ class LimitsNotKeptError(GeometryError):
 
     Args:
         margin: the one that fails in the nearest try.
-        words: the message.
     """
 
     def __init__(self, margin: Margin, words: str) -> None:
@@ -60,11 +55,7 @@ class Task:
     """A set whose shifts are sought.
 
     Args:
-        teeth, rack: of the set.
         drive: its input, output and held member.
-        planets: how many.
-        limits: what the teeth must keep.
-        friction: coefficient in the meshes.
         centre_distance: stated [mm], or None where it is free.
     """
 

@@ -5,12 +5,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tol3d.errors import GeometryError
-from tol3d.planetary.design.basic_rack import BasicRack
 from tol3d.planetary.design.families import Family, Teeth
-from tol3d.planetary.design.made_gears import refuse_interference
 from tol3d.planetary.design.optimum import Goal, LimitsNotKeptError, Task, best_shifts
-from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, ShiftedSet, step_name
-from tol3d.planetary.tooth_set import ToothSet
+from tol3d.planetary.design.shifted_set import PLANET_GAP, Limits, ShiftedSet, refuse_interference, step_name
+from tol3d.planetary.design.working_mesh import BasicRack
+from tol3d.planetary.model.tooth_set import ToothSet
 
 
 @dataclass(frozen=True)
@@ -18,15 +17,11 @@ class Wish:
     """What a set is wanted for.
 
     Args:
-        family: kind of set.
         ratio: speed of the input over that of the output; negative where they turn in opposite senses.
         tolerance: of the ratio, either way.
         planets: how many, alike and at equal angles.
         teeth: numbers of teeth allowed.
-        rack: of all gears.
-        limits: what the teeth must keep.
         goal: what profile shifts are chosen for.
-        friction: coefficient in the meshes.
         centre_distance: stated [mm], or None.
 
     Raises:
@@ -98,7 +93,6 @@ def find(wish: Wish, most: int = 10) -> Found:
     """Candidates for a wish.
 
     Args:
-        wish: what is wanted.
         most: so many candidates are found at most.
 
     Raises:
@@ -137,7 +131,7 @@ def find(wish: Wish, most: int = 10) -> Found:
 def teeth_text(teeth: ToothSet) -> str:
     """Teeth of a set in the order of its family: 25/27/79/24/76.
 
-    >>> from tol3d.planetary.tooth_set import wolfrom
+    >>> from tol3d.planetary.model.tooth_set import wolfrom
     >>> teeth_text(wolfrom(25, 27, 79, 24, 76))
     '25/27/79/24/76'
     """

@@ -6,12 +6,32 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+from tol3d.errors import GeometryError
+from tol3d.gears.internal_gear import InternalGear
+from tol3d.gears.internal_pair import InternalPair
+from tol3d.gears.spur_gear import SpurGear
+from tol3d.gears.spur_pair import SpurPair
 from tol3d.gears.undercut import RACK_ADDENDUM
-from tol3d.planetary.design.adjacency import tip_gap
-from tol3d.planetary.design.basic_rack import BasicRack
-from tol3d.planetary.design.mesh_loss import Sharing, mesh_efficiency
-from tol3d.planetary.design.working_mesh import WorkingMesh, shift_sum
-from tol3d.planetary.tooth_set import ToothSet
+from tol3d.planetary.design.efficiency import Sharing, mesh_efficiency
+from tol3d.planetary.design.working_mesh import BasicRack, WorkingMesh, shift_sum
+from tol3d.planetary.model.tooth_set import ToothSet
+
+
+def tip_gap(centre_distance: float, planets: int, largest_tip_radius: float) -> float:
+    """Free distance [mm] between the tip circles of neighbouring planets: 2 a sin(pi/n) - d_a; negative: they overlap.
+
+    Args:
+        centre_distance: a [mm].
+        planets: n; one alone has no neighbour.
+        largest_tip_radius: d_a/2 of the planet's larger step [mm].
+
+    >>> round(tip_gap(26.0, 4, 14.5), 4)
+    7.7696
+    """
+    if planets < 2:
+        return math.inf
+    return 2 * centre_distance * math.sin(math.pi / planets) - 2 * largest_tip_radius
+
 
 APART = 1e-3  # modules; a micrometre of a module of 1 mm, so that nothing touches by rounding alone
 PLANET_GAP = "gap between the tips of neighbouring planets"
@@ -62,8 +82,6 @@ class ShiftedSet:
     """Tooth numbers, their rack, one centre distance, and how its shift sums are divided.
 
     Args:
-        teeth: of the set.
-        rack: of all gears.
         centre_distance: a [mm].
         planet_shifts: x of each step of the planets; central gears take the rest of their mesh's sum.
     """
@@ -161,3 +179,36 @@ def least_shift(teeth: int, rack: BasicRack) -> float:
 def step_name(teeth: ToothSet, step: int) -> str:
     """Name of a step of the planets: "planet", or "planet 1" and "planet 2"."""
     return "planet" if len(teeth.steps) == 1 else f"planet {step + 1}"
+
+
+FACE_WIDTH = 10.0  # modules; it decides nothing here
+
+
+def made_pair(own: WorkingMesh) -> SpurPair | InternalPair:
+    """The gears of a mesh at its centre distance: the sun drives its planet, a planet its ring.
+
+    Raises:
+        GeometryError: a gear cannot be made.
+    """
+    rack, mesh = own.rack, own.mesh
+    common = (rack.module, rack.pressure_angle, FACE_WIDTH * rack.module)
+    factors = {"addendum": rack.addendum, "dedendum": rack.dedendum}
+    planet = SpurGear(mesh.planet_teeth, *common, profile_shift=own.planet_shift, **factors)
+    if mesh.internal:
+        ring = InternalGear(mesh.teeth, *common, profile_shift=own.central_shift, **factors)
+        return InternalPair(planet, ring, own.centre_distance)
+    sun = SpurGear(mesh.teeth, *common, profile_shift=own.central_shift, **factors)
+    return SpurPair(sun, planet, own.centre_distance)
+
+
+def refuse_interference(own: ShiftedSet) -> None:
+    """Raise unless all its gears can be made and run together.
+
+    Raises:
+        GeometryError: with the mesh, the radii and what to change.
+    """
+    for mesh in own.meshes:
+        try:
+            made_pair(mesh).refuse_interference()
+        except GeometryError as error:
+            raise GeometryError(f"mesh of {mesh.mesh.central}: {error}") from error

@@ -1,19 +1,16 @@
 """What others found of planetary sets."""
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from tol3d.planetary.grammar.moves.planetary import PlanetarySpec
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.scene import Scene
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.place import KeyPath
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import Figure, NotNegative
 from tol3d.strict import Strict
-
-if TYPE_CHECKING:
-    from tol3d.scene.schema import Scene
 
 
 class PublishedEfficiency(Strict):
@@ -43,6 +40,6 @@ class PublishedPlanetarySets(PublishedFigures):
         default_factory=dict, description="planetary sets of the scene"
     )
 
-    def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
+    def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         """Sets that the scene does not have."""
         return self.strangers("planetary_sets", self.planetary_sets, scene.of(PlanetarySpec), "a planetary set")

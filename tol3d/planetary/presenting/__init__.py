@@ -11,19 +11,15 @@ from tol3d.planetary.summary_types import PlanetaryOfRun, SpringSummary
 from tol3d.runs.summary.run import RunSummary
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from tol3d.gearing.links import LinkTrials, StatedLink
     from tol3d.gearing.presenting.shown_train import ShownLink
+    from tol3d.numerics.arrays import Array
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, Which
     from tol3d.runs.run import Run
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
     from tol3d.system.contributor import Contributor
-
-    Array = NDArray[np.float64]
 
 
 class PlanetaryPresenter(GearPresenter):
@@ -70,7 +66,7 @@ class PlanetaryPresenter(GearPresenter):
 
 
 def _draw_curve(spring: SpringSummary, path: Path) -> None:
-    _lazily("torque_curve").draw_curve(spring.curve, path)
+    import_module("tol3d.planetary.hysteresis_picture").draw_curve(spring.curve, path)
 
 
 def _lazily(module: str) -> Any:

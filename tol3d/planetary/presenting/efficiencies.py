@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tol3d.planetary.efficiency import LOCKED
 from tol3d.planetary.summary_types import EfficiencySummary, PlanetaryOfRun, PlanetarySetSummary
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
 from tol3d.runs.summary.run import RunSummary
 
 BALANCE: Final = "torques in equilibrium, pairs in contact carry alike"
 FORMULA: Final = "closed form of a 3K set, published E"
+LOCKED: Final = 0.0  # of an efficiency: at most so much where the set cannot be driven in that sense
 NEGLECTED: Final = (
     "friction of the teeth alone, of nominal gears under a static load; without bearings, seals, churning and windage"
 )

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tol3d.gearing.links import StatedLink
-from tol3d.planetary.planetary_set import PlanetarySet
+from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.presenting.efficiencies import set_blocks
 from tol3d.planetary.sections import set_sections
 from tol3d.planetary.set_link import SetLink

@@ -1,0 +1,1 @@
+"""The exact road of a cycloid stage: contacts in finite geometry."""

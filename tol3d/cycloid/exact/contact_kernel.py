@@ -1,0 +1,309 @@
+"""First contact of cycloid discs among their pins, compiled over trials, crank angles and pins.
+
+A first-order screen finds every working pin's turn from its nominal foot: gap / lever. It errs by the curvature of the
+path over the pin's distance from that foot, by the square of the turn, and by errors times the turn; the sum of these
+bounds says which pins may be first, and Newton's method is run on these only. A disc that leans touches with one of its
+faces, or between them where the gap is least inside.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+from tol3d.cycloid.exact.pin_contact import TURN, ContactShape, lobe_at, lobe_turn, placed, standing_gap, touched
+from tol3d.numerics.compiled import kernel, part
+
+MORE: Final = 1.25  # times a pin's own turn to first order, and
+LEAST_TURN: Final = 5e-6  # rad, are the turns for which its error is bounded
+NO_PIN: Final = -1
+MOST_CUTS: Final = 40  # of a disc's width, for the section that touches first
+FLAT: Final = 1e-9  # mm, by which a gap differs between the sections that may touch first
+
+
+@part
+def drift(shape: Any, linkage: Any, throw: float) -> float:
+    """How far errors take a pin's rate in the disc's frame off the nominal one, at most [mm per rad]."""
+    reach = shape.ground_circle + shape.eccentricity + 1.0
+    whole = np.sqrt(linkage[6] ** 2 + linkage[7] ** 2)
+    other = np.sqrt(linkage[8] ** 2 + linkage[9] ** 2) / whole
+    skew = abs(linkage[7]) / whole + other
+    throw_x = linkage[2] - shape.eccentricity * np.cos(throw)
+    throw_y = linkage[3] - shape.eccentricity * np.sin(throw)
+    found = np.sqrt(linkage[0] ** 2 + linkage[1] ** 2) + np.sqrt(linkage[4] ** 2 + linkage[5] ** 2)
+    found += abs(shape.rolling) * (np.sqrt(throw_x**2 + throw_y**2) + 2.0 * skew * shape.eccentricity)
+    bound: float = 2.0 * (found + (1.0 + abs(shape.rolling)) * other * reach)
+    return bound
+
+
+@part
+def curvature_within(shape: Any, speed: float, right: float, cos_phase: float, far: float) -> float:
+    """Largest curvature of the ground path [1/mm] within twice a distance of a point; inf where speed may halve.
+
+    Along a flank, curvature rises from the root to sharpest_cosine, and falls to the tip.
+    """
+    ratio = shape.eccentricity * shape.pins / shape.ground_circle
+    spread = 4.0 * far * shape.lobes / (shape.ground_circle * speed)
+    spread *= abs(right) + spread
+    low, high = max(cos_phase - spread, -1.0), min(cos_phase + spread, 1.0)
+    speed_low = 1.0 + ratio * (ratio - 2.0 * high)
+    speed_high = 1.0 + ratio * (ratio - 2.0 * low)
+    if not 4.0 * speed_low > speed * speed:
+        return np.inf
+    level = 1.0 + shape.pins * ratio * ratio
+    slope = (1.0 + shape.pins) * ratio
+    near_root = abs(level - slope * high) / (shape.ground_circle * speed_low * np.sqrt(speed_low))
+    near_tip = abs(level - slope * low) / (shape.ground_circle * speed_high * np.sqrt(speed_high))
+    found: float = max(near_root, near_tip)
+    return max(found, shape.sharpest) if low < shape.sharpest_cosine < high else found
+
+
+@part
+def bound(shape: Any, reach: float, most: float, own: float, bent: float, far: float) -> float:
+    """What curvature and the squares of turns change a gap by at most [mm]; inf where the path bends too much."""
+    moved = (1.0 + abs(shape.rolling)) * most + abs(own)
+    curved = 0.5 * bent * far / (1.0 - bent) if bent < 0.5 else np.inf
+    found: float = curved + 0.5 * reach * moved**2
+    return found
+
+
+@part
+def screened(
+    shape: Any, linkage: Any, throw: float, drifting: float, flanks: Any, pins: Any, around: Any, phi: float,
+    sense: float, disc: int, lean: Any, firsts: Any, slacks: Any,
+) -> None:  # fmt: skip
+    """Write the turn of each pin of a disc in a sense to first order, and its error at most; inf where it is idle.
+
+    Args:
+        around: cosine and sine of the pins' azimuths (pins, 2).
+        sense: +1 where the disc turns counter-clockwise, -1 back; turns are counted in it.
+        lean: see touched, with half the disc's width for the height.
+        firsts, slacks: of all discs' pins (discs pins,); written. A slack of inf is that of a pin whose bound is none.
+    """
+    lobe_pitch, lobe_profile = flanks
+    places, radii = pins
+    count = around.shape[0]
+    lead = (phi + throw) / shape.lobes
+    clock = -throw / shape.lobes
+    chi = -phi / shape.lobes
+    cos_psi, sin_psi, centre_x, centre_y = placed(linkage, np.cos(phi), np.sin(phi), np.cos(chi), np.sin(chi))
+    cos_clock, sin_clock = np.cos(clock), np.sin(clock)
+    cos_psi, sin_psi = cos_psi * cos_clock - sin_psi * sin_clock, sin_psi * cos_clock + cos_psi * sin_clock
+    cos_lead, sin_lead, e, f = np.cos(lead), np.sin(lead), np.cos(shape.pins * lead), np.sin(shape.pins * lead)
+    shortening = shape.eccentricity * shape.pins / shape.ground_circle
+    nominal = shape.eccentricity * shape.pins / shape.pin_circle
+    pitch_radius = shape.eccentricity * shape.lobes
+    tau_x, tau_y = cos_clock * lean[0] + sin_clock * lean[1], cos_clock * lean[1] - sin_clock * lean[0]
+    steep = tau_x * tau_x + tau_y * tau_y
+    aside = np.sqrt(steep) * lean[2]
+    reach = shape.ground_circle + shape.eccentricity * (1.0 + abs(shape.rolling)) + 1.0
+    for j in range(count):
+        c = around[j, 0] * cos_lead - around[j, 1] * sin_lead
+        s = around[j, 1] * cos_lead + around[j, 0] * sin_lead
+        right = f * c - e * s
+        cos_phase = e * c + f * s
+        least = shape.window * shape.window * (1.0 + nominal * (nominal - 2.0 * cos_phase))
+        if not (-sense * right > 0.0 and right * right > least):
+            firsts[disc * count + j] = np.inf
+            continue
+        n_x, n_y = c - shortening * e, s - shortening * f
+        speed = np.sqrt(n_x * n_x + n_y * n_y)
+        lever = pitch_radius * right / speed
+        lobe = lobe_at(TURN * j / shape.pins + lead, shape.lobes)
+        own = lobe_turn(shape, lobe_pitch, lobe, right)
+        x, y = places[j, 0] - centre_x, places[j, 1] - centre_y
+        x, y = cos_psi * x + sin_psi * y, cos_psi * y - sin_psi * x
+        x, y = x + own * y, y - own * x
+        x = x - shape.ground_circle * c + shape.eccentricity * e
+        y = y - shape.ground_circle * s + shape.eccentricity * f
+        off = radii[j] - shape.ground_radius + lobe_profile[lobe]
+        arm = abs(lever) * (1.0 + shape.rolling / shape.lobes)
+        first = ((n_x * x + n_y * y - abs(n_x * tau_x + n_y * tau_y) * lean[2]) / speed - off) / arm
+        most = MORE * (abs(first) + max(shape.deflection, 0.0) / arm) + LEAST_TURN
+        away = np.sqrt(x * x + y * y) + aside
+        far = away + reach * (most + abs(own))
+        bent = curvature_within(shape, speed, right, cos_phase, far) * far
+        error = bound(shape, reach, most, own, bent, far)
+        error += most * (away + drifting) + reach * steep + abs(own) * aside
+        slack = error / arm
+        firsts[disc * count + j] = first
+        slacks[disc * count + j] = slack if slack <= most - abs(first) - max(shape.deflection, 0.0) / arm else np.inf
+
+
+@part
+def exact(
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, extra: float,
+    leans: Any,
+) -> tuple[float, bool]:  # fmt: skip
+    """The turn at which a pin touches; its place counts all discs' pins. Pins that are thicker touch earlier."""
+    lobe_pitch, lobe_profile = flanks
+    places, radii = pins
+    disc, j = place // around.shape[0], place % around.shape[0]
+    u = TURN * j / shape.pins + (phi + throws[disc]) / shape.lobes
+    clock = -throws[disc] / shape.lobes
+    pin = (places[j, 0], places[j, 1], radii[j])
+    own = (lobe_pitch[disc], lobe_profile[disc])
+    x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
+    low = -high
+    turn, above, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, high))
+    if x * x + y * y == 0.0 or high == 0.0 or not found:
+        return turn, found
+    other, below, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, low))
+    # a pin on a right flank is cleared by a larger turn, on a left one by a smaller one
+    right = np.sin(phi + throws[disc] - TURN * j / shape.pins) > 0.0
+    turn = max(turn, other) if right else min(turn, other)
+    for _ in range(MOST_CUTS):
+        if not (found and below < 0.0 < above):
+            break
+        height = (low * above - high * below) / (above - below)
+        other, slope, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, height))
+        turn = max(turn, other) if right else min(turn, other)
+        if abs(slope) * (high - low) < FLAT:
+            break
+        if slope < 0.0:
+            low, below = height, slope
+        else:
+            high, above = height, slope
+    return turn, found
+
+
+@part
+def clear(
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, turn: float,
+    leans: Any,
+) -> bool:  # fmt: skip
+    """Whether a pin has a gap where the carrier stands, of a leaning disc at both faces and between."""
+    lobe_pitch, lobe_profile = flanks
+    places, radii = pins
+    disc, j = place // around.shape[0], place % around.shape[0]
+    u = TURN * j / shape.pins + (phi + throws[disc]) / shape.lobes
+    pin = (places[j, 0], places[j, 1], radii[j])
+    own = (lobe_pitch[disc], lobe_profile[disc])
+    x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
+    for height in (-high, 0.0, high):
+        clock = -throws[disc] / shape.lobes
+        if not standing_gap(shape, linkage[disc], clock, own, pin, phi, u, turn, (x, y, height)) > 0.0:
+            return False
+    return True
+
+
+@part
+def first_of(
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
+    leans: Any,
+) -> tuple[float, int]:  # fmt: skip
+    """The first contact in a sense: the carrier's turn and the pin's place; NaN where there is none, or none is known.
+
+    Pins of which Newton's method finds no turn are in the way unless they are clear where the others stop the discs.
+    """
+    firsts, slacks = screen
+    best = np.inf
+    begun = NO_PIN
+    for place in range(firsts.shape[0]):
+        if firsts[place] < best:
+            best, begun = firsts[place], place
+    if begun == NO_PIN:
+        return np.nan, NO_PIN
+    turn, found = exact(shape, linkage, throws, flanks, pins, around, phi, begun, 0.0, leans)
+    at, missed = begun, 0
+    if not found:
+        turn, at, missed = sense * np.inf, NO_PIN, 1
+    for place in range(firsts.shape[0]):
+        if firsts[place] < np.inf and place != begun and firsts[place] - slacks[place] < sense * turn:
+            other, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
+            if not found:
+                missed += 1
+            elif sense * other < sense * turn:
+                turn, at = other, place
+    if at == NO_PIN:
+        return np.nan, NO_PIN
+    if missed > 0:
+        for place in range(firsts.shape[0]):
+            if place == at or not (firsts[place] < np.inf and firsts[place] - slacks[place] < sense * turn):
+                continue
+            _, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
+            if not found and not (
+                firsts[place] > sense * turn
+                and clear(shape, linkage, throws, flanks, pins, around, phi, place, turn, leans)
+            ):
+                return np.nan, NO_PIN
+    return turn, at
+
+
+@part
+def near(
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
+    turn: float, leans: Any,
+) -> int:  # fmt: skip
+    """How many working pins have a gap of at most shape.deflection at a turn."""
+    firsts, slacks = screen
+    count = 0
+    lobes = shape.lobes
+    for place in range(firsts.shape[0]):
+        if not firsts[place] < np.inf:
+            continue
+        phase = TURN * (place % around.shape[0]) / shape.pins - phi - throws[place // around.shape[0]]
+        shortening = shape.eccentricity * shape.pins / shape.ground_circle
+        speed = np.sqrt(1.0 + shortening * (shortening - 2.0 * np.cos(phase)))
+        arm = shape.eccentricity * lobes * abs(np.sin(phase)) / speed * (1.0 + shape.rolling / lobes)
+        room = sense * turn - firsts[place] + shape.deflection / arm
+        if room > slacks[place]:
+            count += 1
+        elif room >= -slacks[place]:
+            other, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, shape.deflection, leans)
+            if found and sense * other <= sense * turn:
+                count += 1
+    return count
+
+
+@kernel(
+    ContactShape,
+    arrays="f8[::1], f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,::1], f8[:,::1], "
+    "f8[::1], f8[:,:,::1], i8[:,:,::1], i8[:,:,::1]",
+)
+def first_contacts(
+    shape: Any, throws: Any, around: Any, linkage: Any, places: Any, radii: Any, lobe_pitch: Any, lobe_profile: Any,
+    leans: Any, phis: Any, senses: Any, turns: Any, at: Any, counts: Any,
+) -> None:  # fmt: skip
+    """First contacts of trials at crank angles.
+
+    Args:
+        throws: directions of the cranks' throws (discs,) [rad].
+        around: cosine and sine of the pins' azimuths (pins, 2).
+        linkage: of the trials' discs (trials, discs, 10), see contact.linkage.
+        places, radii: of pins (trials, pins, 2) and (trials, pins) [mm].
+        lobe_pitch, lobe_profile: errors (trials, discs, lobes) [mm].
+        leans: of the discs (trials, discs, 3): tau in the frame of a disc's holes, and half its width [mm].
+        phis: crank angles (trials, positions) [rad].
+        senses: +1 and -1 (senses,).
+        turns: the carrier's, beyond -phi / Zc (trials, positions, senses) [rad]; written.
+        at: the pin that touches, disc pins + pin; -1 where none was found; written.
+        counts: working pins within shape.deflection of contact; written, where that is not below 0.
+    """
+    discs, count = throws.shape[0], around.shape[0]
+    screen = (np.empty(discs * count), np.empty(discs * count))
+    drifting = np.empty(discs)
+    for i in range(phis.shape[0]):
+        pins = (places[i], radii[i])
+        flanks = (lobe_pitch[i], lobe_profile[i])
+        for disc in range(discs):
+            drifting[disc] = drift(shape, linkage[i, disc], throws[disc])
+        for p in range(phis.shape[1]):
+            for s in range(senses.shape[0]):
+                for disc in range(discs):
+                    own = (lobe_pitch[i, disc], lobe_profile[i, disc])
+                    screened(
+                        shape, linkage[i, disc], throws[disc], drifting[disc], own, pins, around, phis[i, p],
+                        senses[s], disc, leans[i, disc], screen[0], screen[1],
+                    )  # fmt: skip
+                turn, place = first_of(
+                    shape, linkage[i], throws, flanks, pins, around, phis[i, p], senses[s], screen, leans[i]
+                )  # fmt: skip
+                turns[i, p, s] = turn
+                at[i, p, s] = place
+                if shape.deflection >= 0.0:
+                    counts[i, p, s] = 0
+                    if place != NO_PIN:
+                        counts[i, p, s] = near(
+                            shape, linkage[i], throws, flanks, pins, around, phis[i, p], senses[s], screen, turn,
+                            leans[i],
+                        )  # fmt: skip

@@ -1,0 +1,209 @@
+"""One pin of a cycloid stage and one disc: the turn at which they touch, and their gap; parts of the contact kernels.
+
+Unknown are the carrier's turn delta and the parameter u of the foot on the path c of pin centres that the disc is
+ground for. In the frame of the lobe that is touched, the pin's centre q lies off the foot by d = r_pin - r_ground +
+f_profile along the normal n = -i c'/|c'|:
+
+    q(delta) = c(u) + d n(u),   dq/d delta = -i (q + rho a e^(i Zp u)) but for terms in errors.
+
+A disc that leans meets the pin in each of its sections as an ellipse whose centre moves across the section by tau per
+height, tau the tangent of the lean: q is stretched by 1 / cos(lean) along tau, zeta tau is added at the height zeta,
+and the ellipse of a pin of radius r stands off by r (n + tau (tau . n)) / sqrt(1 + (tau . n)^2) instead of r n.
+
+Newton's method solves both coordinates at once. The rate leaves terms in errors out, some 1e-4 of it, so that each step
+still gains four digits; d n/du is exact. See contact.py for the pose and for what errors move. It finds no
+turn at which a pin touches where none would have it touch, at a root whose lever is next to nothing, or where the flank
+bends within micrometres. Whether such a pin is in the way is told by its gap where the others stop the disc.
+"""
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from tol3d.numerics.compiled import part
+
+MOST_STEPS: Final = 30  # three are needed where errors are some 20 um
+TURN_XTOL: Final = 1e-14  # rad; the next step is a thousandth of it
+FOOT_XTOL: Final = 1e-9  # rad; gaps change by the square of it
+LONGEST_STEP: Final = 0.05  # of a lobe pitch, by which the foot moves
+TURN: Final = 2.0 * np.pi
+
+
+class ContactShape(NamedTuple):
+    """Nominal numbers that a contact kernel reads [mm, rad]; counts are floats, too.
+
+    Attributes:
+        pins, lobes: Zp and Zc.
+        eccentricity: a.
+        ground_circle, ground_radius: of the pins that the discs are ground for: shift and offset are in them.
+        pin_circle, pin_radius: rp and r.
+        rotation: of the right flanks, as tol3d.cycloid.model.profile has it.
+        window: least lever of a working pin over a Zc.
+        rolling: turns of the cranks in space per turn of the carrier where its transmission error turns it.
+        sharpest: largest curvature of convex parts of the ground path [1/mm].
+        sharpest_cosine: cosine of its phase.
+        deflection: a pin counts whose gap in contact is at most so much; below 0 none is counted.
+    """
+
+    pins: float
+    lobes: float
+    eccentricity: float
+    ground_circle: float
+    ground_radius: float
+    pin_circle: float
+    pin_radius: float
+    rotation: float
+    window: float
+    rolling: float
+    sharpest: float
+    sharpest_cosine: float
+    deflection: float
+
+
+@part
+def placed(linkage: Any, cos_phi: float, sin_phi: float, cos_chi: float, sin_chi: float) -> Any:
+    """The disc's turn off the nominal frame's, as cosine and sine, and its centre [mm]; see contact.linkage."""
+    x = cos_chi * linkage[6] - sin_chi * linkage[7] + cos_phi * linkage[8] - sin_phi * linkage[9]
+    y = sin_chi * linkage[6] + cos_chi * linkage[7] + sin_phi * linkage[8] + cos_phi * linkage[9]
+    size = 1.0 / np.sqrt(x * x + y * y)
+    cos_psi, sin_psi = x * size, y * size
+    centre_x = cos_chi * linkage[0] - sin_chi * linkage[1] + cos_phi * linkage[2] - sin_phi * linkage[3]
+    centre_y = sin_chi * linkage[0] + cos_chi * linkage[1] + sin_phi * linkage[2] + cos_phi * linkage[3]
+    centre_x -= cos_psi * linkage[4] - sin_psi * linkage[5]
+    centre_y -= sin_psi * linkage[4] + cos_psi * linkage[5]
+    return cos_psi, sin_psi, centre_x, centre_y
+
+
+@part
+def lobe_at(u: float, lobes: float) -> int:
+    """The lobe on which a parameter lies, 0 to lobes - 1."""
+    turns = u * lobes / TURN
+    lobe = int(np.floor(turns - lobes * np.floor(turns / lobes)))
+    return lobe if lobe < int(lobes) else 0
+
+
+@part
+def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
+    """By how much a flank is turned about the disc's axis [rad]: its lobe's pitch error, and the modification."""
+    turned: float = shape.rotation if right > 0.0 else -shape.rotation
+    found: float = lobe_pitch[lobe] * shape.pins / (shape.lobes * shape.pin_circle) + turned
+    return found
+
+
+@part
+def seen_from_lobe(shape: Any, linkage: Any, phi: float, turn: float, pin: Any, own: float, lean: Any) -> Any:
+    """Where a pin meets a section of a disc, and tau, in the frame of a lobe that is turned by own in its disc."""
+    tau_x, tau_y, height = lean
+    crank = phi + shape.rolling * turn
+    chi = turn - phi / shape.lobes
+    cos_psi, sin_psi, x, y = placed(linkage, np.cos(crank), np.sin(crank), np.cos(chi), np.sin(chi))
+    x, y = pin[0] - x, pin[1] - y
+    x, y = cos_psi * x + sin_psi * y, cos_psi * y - sin_psi * x
+    stretch = 1.0 / (1.0 + np.sqrt(1.0 + tau_x * tau_x + tau_y * tau_y))  # (1 / cos - 1) / tan^2
+    across = stretch * (tau_x * x + tau_y * y) + height
+    x, y = x + across * tau_x, y + across * tau_y
+    c, s = np.cos(own), np.sin(own)
+    return c * x + s * y, c * y - s * x, c * tau_x + s * tau_y, c * tau_y - s * tau_x
+
+
+@part
+def touched(
+    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, phi: float, u: float, extra: float, lean: Any
+) -> tuple[float, float, bool]:  # fmt: skip
+    """The carrier's turn [rad] at which one pin touches one section of a disc, beyond -phi / Zc.
+
+    Args:
+        shape: ContactShape.
+        linkage: of the disc (10,).
+        clock: by which the disc's profile is turned against its crank holes [rad].
+        flanks: pitch and profile errors of the disc's lobes.
+        pin: x and y of its centre, and its radius [mm].
+        phi: crank angle [rad].
+        u: where the foot is sought first [rad].
+        extra: added to the pin's radius [mm].
+        lean: tau in the frame of the disc's holes, and the section's height [mm].
+
+    Returns:
+        The turn, by how much the gap grows per height, and whether they were found.
+    """
+    lobe_pitch, lobe_profile = flanks
+    longest = LONGEST_STEP * TURN / shape.lobes
+    shortening = shape.eccentricity * shape.pins / shape.ground_circle
+    turn = 0.0
+    for _ in range(MOST_STEPS):
+        c, s = np.cos(u), np.sin(u)
+        e, f = np.cos(shape.pins * u), np.sin(shape.pins * u)
+        right = f * c - e * s  # sin(Zc u)
+        lobe = lobe_at(u, shape.lobes)
+        own = clock + lobe_turn(shape, lobe_pitch, lobe, right)
+        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+        speed = np.sqrt((c - shortening * e) ** 2 + (s - shortening * f) ** 2)
+        n_x, n_y = (c - shortening * e) / speed, (s - shortening * f) / speed
+        leans = n_x * tau_x + n_y * tau_y
+        stands = (pin[2] + extra) / np.sqrt(1.0 + leans * leans)
+        off = stands - shape.ground_radius + lobe_profile[lobe]
+        miss_x = x - shape.ground_circle * c + shape.eccentricity * e - off * n_x - stands * leans * tau_x
+        miss_y = y - shape.ground_circle * s + shape.eccentricity * f - off * n_y - stands * leans * tau_y
+        arm = shape.rolling * shape.eccentricity
+        rate_x, rate_y = y + arm * f, -(x + arm * e)
+        step = -(n_x * miss_x + n_y * miss_y) / (n_x * rate_x + n_y * rate_y)
+        cos_phase = e * c + f * s
+        bend = 1.0 + shortening * (shortening * shape.pins - (1.0 + shape.pins) * cos_phase)
+        along = shape.ground_circle * speed + off * bend / (speed * speed)
+        foot = (-n_y * (miss_x + rate_x * step) + n_x * (miss_y + rate_y * step)) / along
+        if not along > 0.0 or not abs(step) < 1.0:
+            return np.nan, leans, False
+        foot = min(max(foot, -longest), longest)
+        turn += step
+        u += foot
+        if abs(step) < TURN_XTOL and abs(foot) < FOOT_XTOL:
+            return turn, leans, True
+    return np.nan, 0.0, False
+
+
+FEET: Final = 64  # parameters over a lobe, from the nearest of which Newton's method starts
+
+
+@part
+def standing_gap(
+    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, phi: float, u: float, turn: float, lean: Any
+) -> float:
+    """Gap along the normal [mm] between a pin and a section of a disc; below 0 they overlap, -inf where it is unknown.
+
+    Args:
+        shape, linkage, clock, flanks, pin, phi, u, lean: see touched.
+        turn: of the carrier beyond -phi / Zc [rad].
+    """
+    lobe_pitch, lobe_profile = flanks
+    shortening = shape.eccentricity * shape.pins / shape.ground_circle
+    own = clock + lobe_turn(shape, lobe_pitch, lobe_at(u, shape.lobes), np.sin(shape.lobes * u))
+    x, y, _, _ = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+    nearest, foot = np.inf, u
+    for k in range(FEET + 1):
+        at = u + TURN / shape.lobes * (k / FEET - 0.5)
+        off_x = x - shape.ground_circle * np.cos(at) + shape.eccentricity * np.cos(shape.pins * at)
+        off_y = y - shape.ground_circle * np.sin(at) + shape.eccentricity * np.sin(shape.pins * at)
+        if off_x * off_x + off_y * off_y < nearest:
+            nearest, foot = off_x * off_x + off_y * off_y, at
+    for _ in range(MOST_STEPS):
+        c, s, e, f = np.cos(foot), np.sin(foot), np.cos(shape.pins * foot), np.sin(shape.pins * foot)
+        lobe = lobe_at(foot, shape.lobes)
+        own = clock + lobe_turn(shape, lobe_pitch, lobe, f * c - e * s)
+        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+        speed = np.sqrt((c - shortening * e) ** 2 + (s - shortening * f) ** 2)
+        n_x, n_y = (c - shortening * e) / speed, (s - shortening * f) / speed
+        leans = n_x * tau_x + n_y * tau_y
+        stands = pin[2] / np.sqrt(1.0 + leans * leans)
+        off_x = x - shape.ground_circle * c + shape.eccentricity * e - stands * leans * tau_x
+        off_y = y - shape.ground_circle * s + shape.eccentricity * f - stands * leans * tau_y
+        away = n_x * off_x + n_y * off_y
+        bend = 1.0 + shortening * (shortening * shape.pins - (1.0 + shape.pins) * (e * c + f * s))
+        along = shape.ground_circle * speed + away * bend / (speed * speed)
+        if not along > 0.0:
+            return -np.inf
+        step = (n_x * off_y - n_y * off_x) / along
+        if abs(step) < FOOT_XTOL:
+            gap: float = away - stands + shape.ground_radius - lobe_profile[lobe]
+            return gap
+        foot += step
+    return -np.inf

@@ -1,0 +1,1 @@
+"""The analytic road of a cycloid stage: turns to first order."""

@@ -1,1 +1,0 @@
-"""Kinds of part, one file each."""

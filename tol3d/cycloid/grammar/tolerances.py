@@ -1,0 +1,217 @@
+"""Kinds of tolerance of RV reducers."""
+
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.units import Dimension
+
+
+class OfPart(ToleranceSpec):
+    """A tolerance of one kind of part."""
+
+    owners: ClassVar[tuple[type[PartSpec], ...]]
+
+    of: Name
+
+    def references(self) -> tuple[Reference, ...]:
+        """What it is a tolerance of."""
+        return (Reference(("of",), self.of, self.owners),)
+
+
+class OfDisc(OfPart):
+    """A tolerance of the disc."""
+
+    owners: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec,)
+
+    of: Name = Field(description="the disc")
+
+
+class OfPinRing(OfPart):
+    """A tolerance of the ring of pins."""
+
+    owners: ClassVar[tuple[type[PartSpec], ...]] = (PinRingSpec,)
+
+    of: Name = Field(description="the ring of pins")
+
+
+class OfCrankshaft(OfPart):
+    """A tolerance of the crankshaft."""
+
+    owners: ClassVar[tuple[type[PartSpec], ...]] = (CrankshaftSpec,)
+
+    of: Name = Field(description="the crankshaft")
+
+
+class OfCarrier(OfPart):
+    """A tolerance of the carrier."""
+
+    owners: ClassVar[tuple[type[PartSpec], ...]] = (CrankCarrierSpec,)
+
+    of: Name = Field(description="the carrier")
+
+
+class BearingPlaySpec(OfPart):
+    """A length: the diametral clearance of each bearing, twice what an inner ring may lie off the middle of its hole.
+
+    That is the radial internal clearance of ISO 5753-1, which is stated on the diameter, as it is left when fitted. Of
+    a disc it is the bearing of each eccentric in it, of a carrier that of each crankshaft. Less than 0 is none.
+    """
+
+    words: ClassVar[str] = "play of the cranks' bearings"
+    owners: ClassVar[tuple[type[PartSpec], ...]] = (CycloidDiscSpec, CrankCarrierSpec)
+
+    kind: Literal["bearing_play"]
+    of: Name = Field(description="the disc or the carrier")
+    each: Literal["hole"] = Field(default="hole", description="hole: every bearing has its own")
+
+
+class CarrierBearingSpec(OfCarrier):
+    """A length: the axis of the carrier lies off that of its main bearing, in a random direction that turns with it.
+
+    Half of a run-out of the inner ring.
+    """
+
+    words: ClassVar[str] = "the main bearing of a carrier"
+
+    kind: Literal["carrier_bearing"]
+    of: Name = Field(description="the carrier")
+
+
+class CarrierHoleSpec(OfCarrier):
+    """A length: holes for crankshafts lie off their places in the carrier, in a random direction that turns with it.
+
+    `hole` takes a deviation of every hole; `circle` one of their common centre.
+    """
+
+    words: ClassVar[str] = "places of a carrier's holes"
+
+    kind: Literal["carrier_hole"]
+    each: Literal["hole", "circle"] = Field(default="hole", description="hole: every hole by itself; circle: all alike")
+
+
+class CrankEccentricitySpec(OfCrankshaft):
+    """A length: an eccentric, or its bearing, lies off its place on the crankshaft, in a random direction of its own.
+
+    Half of a run-out. `disc` takes one deviation for the eccentrics of all cranks that carry one disc; `crank` one for
+    every eccentric, of which a disc follows the mean.
+    """
+
+    words: ClassVar[str] = "eccentricity of a crankshaft's eccentrics"
+
+    kind: Literal["crank_eccentricity"]
+    each: Literal["crank", "disc"] = Field(
+        default="crank", description="crank: every eccentric by itself; disc: alike on all cranks"
+    )
+
+
+class CrankPhaseSpec(OfCrankshaft):
+    """An angle: each crankshaft is turned against its planet by it, counter-clockwise; each one's own deviation."""
+
+    words: ClassVar[str] = "phases of crankshafts"
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+
+    kind: Literal["crank_phase"]
+    each: Literal["crank"] = Field(default="crank", description="crank: every crankshaft deviates by itself")
+
+
+class DiscEccentricitySpec(OfDisc):
+    """A length: the profile's centre lies off that of the crank holes, in a random direction that turns with the disc.
+
+    Half of a run-out.
+    """
+
+    words: ClassVar[str] = "eccentricity of discs"
+
+    kind: Literal["disc_eccentricity"]
+    each: Literal["disc"] = Field(default="disc", description="disc: every disc deviates by itself")
+
+
+class DiscHoleSpec(OfDisc):
+    """A length: each hole for a crank lies off its place in the disc by it, in a random direction."""
+
+    words: ClassVar[str] = "places of a disc's holes"
+
+    kind: Literal["disc_hole"]
+    each: Literal["hole"] = Field(default="hole", description="hole: every hole of every disc deviates by itself")
+
+
+class DiscTiltSpec(OfDisc):
+    """An angle: each disc leans by it about an axis in its plane, in a random direction that turns with the disc.
+
+    Pins are upright, so that a face of the disc touches first, or what lies between its faces.
+    """
+
+    words: ClassVar[str] = "tilt of discs"
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+
+    kind: Literal["disc_tilt"]
+    of: Name = Field(description="the disc, whose width counts")
+    each: Literal["disc"] = Field(default="disc", description="disc: every disc deviates by itself")
+
+
+class LobePitchSpec(OfDisc):
+    """A length: each lobe lies counter-clockwise of its place by this arc; each one's own deviation, on every disc.
+
+    Its best flank moves by K of it along the normal, K = a Zp/rp.
+    """
+
+    words: ClassVar[str] = "places of lobes"
+
+    kind: Literal["lobe_pitch"]
+    each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
+
+
+class LobeProfileSpec(OfDisc):
+    """A length: each lobe has so much more material along the normal; each one's own deviation, on every disc."""
+
+    words: ClassVar[str] = "profiles of lobes"
+
+    kind: Literal["lobe_profile"]
+    each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
+
+
+class PinCircleSpec(OfPinRing):
+    """A length: the radius of the pins' circle is larger by it, alike for all pins."""
+
+    words: ClassVar[str] = "radius of the pins' circle"
+
+    kind: Literal["pin_circle"]
+    of: Name = Field(description="the ring of pins")
+
+
+class PinPositionSpec(OfPinRing):
+    """A length: each pin lies off its place; each one's own deviation.
+
+    `radial` is positive outwards, `tangential` counter-clockwise; `random` takes the law for the distance from the
+    place, in any direction.
+    """
+
+    words: ClassVar[str] = "places of pins"
+
+    kind: Literal["pin_position"]
+    each: Literal["pin"] = Field(default="pin", description="pin: every pin deviates by itself")
+    direction: Literal["radial", "tangential", "random"] = Field(description="radial, tangential or random")
+
+
+class PinRadiusSpec(OfPinRing):
+    """A length: the radius of each pin is larger by it; each one's own deviation."""
+
+    words: ClassVar[str] = "radii of pins"
+
+    kind: Literal["pin_radius"]
+    each: Literal["pin"] = Field(default="pin", description="pin: every pin deviates by itself")
+
+
+class PinRingOffsetSpec(OfPinRing):
+    """A length: the pins' circle lies off the axis of the carrier by it, in a random direction."""
+
+    words: ClassVar[str] = "the pin ring off its axis"
+
+    kind: Literal["pin_ring_offset"]
+    of: Name = Field(description="the ring of pins")

@@ -1,0 +1,1 @@
+"""The nominal cycloid stage and its deviations."""

@@ -1,0 +1,132 @@
+"""What each tolerance of an RV reducer acts on, and how its components are drawn."""
+
+import math
+from typing import Any
+
+from tol3d.cycloid.grammar.tolerances import (
+    BearingPlaySpec,
+    CarrierBearingSpec,
+    CarrierHoleSpec,
+    CrankEccentricitySpec,
+    CrankPhaseSpec,
+    DiscEccentricitySpec,
+    DiscHoleSpec,
+    DiscTiltSpec,
+    LobePitchSpec,
+    LobeProfileSpec,
+    PinCircleSpec,
+    PinPositionSpec,
+    PinRadiusSpec,
+    PinRingOffsetSpec,
+)
+from tol3d.cycloid.reducer.deviated import Acts, Effect
+from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.distributions import Distribution
+from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
+from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.scene import Scene
+from tol3d.scene.direction import At
+from tol3d.scene.entry import kind_of
+from tol3d.system.draw import Draw, Each, Planar, Scalar
+from tol3d.system.each_planar import EachPlanar
+
+OF_THE_STAGE: dict[type, Effect] = {
+    PinCircleSpec: "pin circle",
+    PinRingOffsetSpec: "pin ring",
+    PinRadiusSpec: "pin radius",
+    LobePitchSpec: "lobe pitch",
+    LobeProfileSpec: "lobe profile",
+    DiscEccentricitySpec: "disc offset",
+    DiscHoleSpec: "disc hole",
+    DiscTiltSpec: "disc tilt",
+    CrankPhaseSpec: "crank phase",
+    CarrierBearingSpec: "carrier offset",
+}
+OF_GEARS = (ToothThicknessSpec, EccentricitySpec)
+OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec, BearingPlaySpec)
+
+
+def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
+    """What a tolerance acts on.
+
+    Raises:
+        SceneError: nothing of an RV reducer, or what is not told.
+    """
+    if isinstance(spec, DiscTiltSpec) and own.width is None:
+        words = f"expected the width of the disc, over which it tilts by {name!r}, such as 'width: 20 mm'; got none"
+        raise scene.refuse(("parts", own.disc), words)
+    if type(spec) in OF_THE_STAGE:
+        return Acts(OF_THE_STAGE[type(spec)])
+    if isinstance(spec, PinPositionSpec):
+        directions: dict[str, Effect] = {"radial": "pin outwards", "tangential": "pin round", "random": "pin place"}
+        return Acts(directions[spec.direction])
+    if isinstance(spec, CrankEccentricitySpec):
+        return Acts("crank throw" if spec.each == "crank" else "crank throw of a disc")
+    if isinstance(spec, CarrierHoleSpec):
+        return Acts("carrier hole" if spec.each == "hole" else "carrier circle")
+    if isinstance(spec, BearingPlaySpec):
+        return Acts("disc play" if spec.of == own.disc else "carrier play")
+    if isinstance(spec, OF_GEARS):
+        return _of_a_gear(scene, own, name, spec)
+    words = ", ".join(str(kind_of(kind)) for kind in (*OF_THE_STAGE, *OF_A_CHOICE, *OF_GEARS))
+    sentence = f"expected of an RV reducer one of {words}, got {kind_of(type(spec))}"
+    raise scene.refuse(("tolerances", name, "kind"), sentence)
+
+
+def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | EccentricitySpec) -> Acts:
+    first = own.first
+    assert first is not None  # other gears take part in no move
+    of_sun = spec.of == first.sun
+    if isinstance(spec, EccentricitySpec):
+        if isinstance(spec.direction, At):
+            words = "expected random: how a gear's teeth are turned on its shaft is not stated, got {at: ...}"
+            raise scene.refuse(("tolerances", name, "direction"), words)
+        return Acts("sun offset" if of_sun else "planet offset")
+    counted = 1 / math.cos(first.pair.pinion.pressure_angle) if spec.measured == "normal" else 1.0
+    return Acts("sun thickness" if of_sun else "planet thickness", counted)
+
+
+def draw_of(own: RVSet, acts: Acts, law: Distribution) -> Draw:
+    """How the components of a contributor are drawn."""
+    discs = _numbered("disc", own.discs)
+    pins, cranks = _numbered("pin", own.profile.pins), _numbered("crank", own.cranks)
+    names: dict[Effect, tuple[str, ...]] = {
+        "pin outwards": pins,
+        "pin round": pins,
+        "pin place": pins,
+        "pin radius": pins,
+        "lobe pitch": _of_each(discs, _numbered("lobe", own.profile.lobes)),
+        "lobe profile": _of_each(discs, _numbered("lobe", own.profile.lobes)),
+        "disc offset": discs,
+        "disc tilt": discs,
+        "disc hole": _of_each(discs, _numbered("hole", own.cranks)),
+        "crank throw": _of_each(cranks, discs),
+        "crank throw of a disc": discs,
+        "crank phase": cranks,
+        "carrier hole": _numbered("hole", own.cranks),
+        "disc play": _of_each(discs, _numbered("hole", own.cranks)),
+        "carrier play": _numbered("hole", own.cranks),
+        "planet thickness": _numbered("planet", own.cranks),
+        "planet offset": _numbered("planet", own.cranks),
+    }
+    planar = acts.effect in PLANAR
+    if acts.effect not in names:
+        return Planar(law, None) if planar else Scalar(law)
+    return EachPlanar(law, names[acts.effect], None) if planar else Each(law, names[acts.effect])
+
+
+NOT_NEGATIVE: tuple[Effect, ...] = ("disc play", "carrier play")
+"""Effects of a clearance."""
+PLANAR: tuple[Effect, ...] = (
+    "pin ring", "pin place", "disc offset", "disc tilt", "disc hole", "crank throw", "crank throw of a disc",
+    "carrier hole", "carrier circle", "carrier offset", "sun offset", "planet offset",
+)  # fmt: skip
+"""Effects of a length, or a tilt, in a random direction."""
+
+
+def _numbered(word: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{word} {k + 1}" for k in range(count))
+
+
+def _of_each(outer: tuple[str, ...], inner: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{one} {other}" for one in outer for other in inner)

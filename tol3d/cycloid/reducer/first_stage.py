@@ -1,0 +1,167 @@
+"""The first stage of an RV reducer: how far planets turn on a sun that stands, and so their cranks.
+
+Discs hold the throws of all cranks parallel, so that they turn together as far as the first planet lets them: load
+paths in parallel, of which one carries. A phase of a crank so is a turn of its planet. Both roads find the turn beyond
+where teeth without backlash would have the planets, counted counter-clockwise. Meshes are looked at in frames that turn
+with the carrier, the sun at the origin, the planet on x.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from tol3d.cycloid.model.stage import Deviated
+from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
+from tol3d.gears import LEFT, RIGHT, Displaced, Flank
+from tol3d.numerics.arrays import Array, Complex, Places
+from tol3d.numerics.plane import as_complex, as_points
+
+OneMesh = Callable[[RVSet, FirstStage, RVDeviated, Array, int, Flank], Array]
+
+ROUNDS: Final = 2
+"""How often a planet is turned; each time leaves its eccentricity over its base radius of the error of the last."""
+
+
+def crank_turns(
+    own: RVSet, deviated: RVDeviated, turns: Array, sense: float, one_mesh: OneMesh
+) -> tuple[Array, Places]:
+    """How far the throws turn beyond their place (trials, positions) [rad], and which planet stops them.
+
+    Args:
+        turns: of the output (trials, positions) or (1, positions).
+        sense: of the carrier's turn; cranks turn the other way.
+    """
+    shape = len(deviated.sun_thickness), turns.shape[1]
+    if own.first is None:
+        return np.zeros(shape), np.zeros(shape, dtype=np.int64)
+    flank = LEFT if sense < 0 else RIGHT
+    found = np.stack(
+        [throw_turn(own, own.first, deviated, turns, crank, flank, one_mesh) for crank in range(own.cranks)]
+    )
+    first = found.argmin(axis=0) if sense < 0 else found.argmax(axis=0)
+    return np.take_along_axis(found, first[None], axis=0)[0], first
+
+
+def throw_turn(
+    own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh
+) -> Array:
+    """How far one crank's throws turn (trials, positions) [rad]: its planet, which they lead by their phase."""
+    return one_mesh(own, first, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
+
+
+def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
+    """The cycloid stage, its throws parallel where discs hold them so; cranks that are the input keep their phases."""
+    stage = deviated.stage
+    return stage if own.first is None else replace(stage, crank_phases=np.zeros_like(stage.crank_phases))
+
+
+def placed_mesh(
+    own: RVSet,
+    first: FirstStage,
+    deviated: RVDeviated,
+    turns: Array,
+    crank: int,
+    flank: Flank,
+    carried: float | Array = 0.0,
+) -> Array:
+    """How far one planet turns (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
+
+    Args:
+        own, first, deviated, turns, crank, flank: see OneMesh.
+        carried: how far the carrier has turned beyond its place while the sun stands (trials, positions) [rad]. 100 arc
+            seconds turn an eccentricity of 10 um by 5 nm.
+    """
+    shape = len(deviated.sun_thickness), turns.shape[1]
+    sun = angles(own, first, turns, crank)[0] - carried
+    planet = first.pair.driven_angle(sun)
+    origins = np.zeros((*shape, 2, 3))
+    origins[..., 0, :2] = as_points(as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
+    place = first.pair.centre_distance + _carried(own, deviated, crank)[:, None]
+    thicker = np.stack([deviated.sun_thickness, deviated.planet_thickness[:, crank]], axis=-1)
+    reference = np.array([gear.module * gear.teeth for gear in (first.pair.pinion, first.pair.wheel)])
+    flank_turn = np.broadcast_to((thicker / reference)[:, None], (*shape, 2)).reshape(-1, 2)
+    rows = np.broadcast_to(sun, shape).reshape(-1)
+    upright, turn = np.zeros((len(rows), 2, 3)), np.zeros(shape)
+    for _ in range(ROUNDS):
+        off = as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
+        origins[..., 1, :2] = as_points(place + off)
+        displaced = Displaced(origins.reshape(-1, 2, 3), upright, flank_turn)
+        turn = (first.pair.touching_angle(rows, flank, displaced) - first.pair.driven_angle(rows)).reshape(shape)
+    return turn
+
+
+def first_order_mesh(
+    own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank
+) -> Array:
+    """The same to first order.
+
+    Along the line of action, with alpha the working pressure angle and sigma the flank,
+
+    r_b2 beta = cos(alpha) d_t + sigma ((E1 + E2) cos(alpha_0)/2 - sin(alpha) d_r - j_bn/2),
+
+    of a planet displaced against its sun by d_r outwards and d_t counter-clockwise, of thicker teeth and of the nominal
+    backlash.
+    """
+    sun, planet = angles(own, first, turns, crank)
+    pair = first.pair
+    alpha = pair.working_pressure_angle
+    apart = _carried(own, deviated, crank)[:, None] + as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
+        1j * planet
+    )
+    apart = apart - as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun)
+    thicker = (deviated.sun_thickness + deviated.planet_thickness[:, crank])[:, None]
+    closing = thicker * math.cos(pair.pinion.pressure_angle) / 2 - math.sin(alpha) * apart.real
+    closing = closing - pair.normal_backlash / 2
+    return np.asarray((math.cos(alpha) * apart.imag + flank * closing) / pair.wheel.base_radius)
+
+
+def add_rates(
+    own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float | Array
+) -> None:
+    """Add what the first planet's turn changes by per deviation, times a factor.
+
+    Args:
+        rates: of the trials; written.
+        turns: of the output (trials,).
+        planets: which planet stops the cranks (trials,).
+        flank: of the sun.
+        factor: what a turn of the cranks counts for, alike or of each trial.
+    """
+    first = own.first
+    if first is None:
+        return
+    rows, alpha, arm = np.arange(len(turns)), first.pair.working_pressure_angle, first.pair.wheel.base_radius
+    push = factor / arm * complex(-flank * math.sin(alpha), math.cos(alpha))
+    thicker = factor / arm * flank * math.cos(first.pair.pinion.pressure_angle) / 2
+    relative = own.azimuths[planets]
+    sun = _sun_angle(own, turns) - relative
+    planet = first.pair.driven_angle(sun)
+    carried = as_points(push * np.exp(1j * relative))
+    rates.sun_offset[...] += as_points(-push * np.exp(-1j * sun))
+    rates.planet_offset[rows, planets] += as_points(push * np.exp(-1j * planet))
+    rates.sun_thickness[...] += thicker
+    rates.planet_thickness[rows, planets] += thicker
+    rates.stage.crank_phases[rows, planets] += factor
+    rates.stage.carrier_holes[rows, planets] += carried
+    rates.stage.carrier_offsets[...] += carried
+
+
+def angles(own: RVSet, first: FirstStage, turns: Array, crank: int) -> tuple[Array, Array]:
+    """Turns of sun and planet in the frame of their mesh [rad], where the output has made so many turns."""
+    sun = _sun_angle(own, turns) - own.azimuths[crank]
+    return sun, first.pair.driven_angle(sun)
+
+
+def _sun_angle(own: RVSet, turns: Array) -> Array:
+    """Of the sun against the carrier [rad], whole turns after which the planets stand as before left out."""
+    return np.asarray(2 * math.pi * np.mod(float(own.gear_ratio * own.profile.pins) * turns, own.gear_ratio.numerator))
+
+
+def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> Complex:
+    """By how much a crank's axis lies off its place (trials,) in the frame of its mesh [mm]."""
+    off = as_complex(deviated.stage.carrier_offsets) + as_complex(deviated.stage.carrier_holes[:, crank])
+    return np.asarray(off * np.exp(-1j * own.azimuths[crank]))

@@ -1,0 +1,97 @@
+"""Links of a train that are mechanisms with an output of their own: what reducers and planetary sets have in common."""
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from tol3d.gearing.links import LinkTrials, StatedLink
+from tol3d.numerics.arrays import Array
+from tol3d.scene import Scene
+from tol3d.scene.part import PartSpec
+from tol3d.system.taken import ROWS_AT_ONCE
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputLink(StatedLink):
+    """A mechanism whose input and output turn with shafts of a train, its third shaft held in the world.
+
+    It stands as by itself, its output at 0 where the driver is at 0, and is read where the driver stands nominally: by
+    how little the play of the stages before turns it more, nothing of it notices.
+
+    Args:
+        own: the mechanism: its ratio, and its period in turns of the output.
+        height: of its middle along the driver's z [mm].
+        actions: what each contributor acts on, by its name.
+    """
+
+    has_middle: ClassVar[bool] = True
+    compares: ClassVar[bool] = True
+    housed: ClassVar[bool] = False
+
+    own: Any
+    height: float
+    actions: tuple[tuple[str, Any], ...]
+
+    @property
+    def turns(self) -> Fraction:
+        """Turns of the input until all meets again as it did."""
+        return Fraction(self.own.period * abs(self.own.ratio))
+
+    @cached_property
+    def acts(self) -> Mapping[str, Any]:
+        """What each contributor acts on."""
+        return dict(self.actions)
+
+    def output_turns(self, seen: LinkTrials) -> Array:
+        """Turns of the output (trials, positions) where the driver stands nominally."""
+        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
+
+    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+        """By what touches in each trial, to first order; see StatedLink, and regressors.py of the mechanism."""
+        found = [
+            {name: self.part_of(slopes, acts, piece.deviations[name] - means[name]) for name, acts in self.actions}
+            for piece, _, slopes in self.slopes(seen)
+        ]
+        return {name: np.concatenate([each[name] for each in found]) for name in self.acts}
+
+    @abstractmethod
+    def part_of(self, slopes: Any, acts: Any, off: Array) -> Array:
+        """What a contributor that lies off its mean (trials, components) adds to the play (trials,) [rad]."""
+
+    @abstractmethod
+    def slopes_at(self, piece: LinkTrials, turns: Array) -> Any:
+        """What the play at the first position, turns (trials, 1) of the output, changes by per deviation."""
+
+    def slopes(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, Any]]:
+        """The same piece by piece of the trials, with turns of the output (trials,)."""
+        for first in range(0, len(seen), ROWS_AT_ONCE):
+            piece = seen.part(first, first + ROWS_AT_ONCE)
+            turns = self.output_turns(piece)[:, :1]
+            yield piece, turns[:, 0], self.slopes_at(piece, turns)
+
+
+def refuse_alone(scene: Scene, kind: type, ends: Mapping[str, tuple[str, str]], words: str) -> None:
+    """Refuse measures of a mechanism alone, which trains read; by its name, the parts of its input and its output."""
+    for name, measure in scene.measures.items():
+        if isinstance(measure, kind):
+            spec: Any = measure
+            driver, output = ends[spec.of]
+            raise scene.refuse(
+                ("measures", name, "kind"),
+                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
+                f"of a train whose output turns with {output!r}, and of the {words} alone one whose held shaft turns "
+                f"with {driver!r}",
+            )
+
+
+def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Mapping[str, Any], words: str) -> None:
+    """Refuse parts of mechanisms that no move names."""
+    for name, part in scene.parts.items():
+        if isinstance(part, kinds) and name not in used:
+            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; name it in {words} or take it out")

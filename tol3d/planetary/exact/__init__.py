@@ -1,0 +1,1 @@
+"""The exact road of planetary sets: placed gears."""

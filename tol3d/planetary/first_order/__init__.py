@@ -1,0 +1,1 @@
+"""The analytic road of planetary sets: gaps to first order."""

@@ -1,0 +1,146 @@
+"""The analytic road: how far each flank of each mesh may go, to first order in the deviations, and what that leaves.
+
+Along the line of action, with alpha_w the working pressure angle and s = 1 of a sun, -1 of a ring: a tooth thicker by
+an arc E takes E cos(alpha)/2 from each flank; a planet displaced against its central gear by d_r outwards and d_t
+counter-clockwise opens the flanks by s (sin(alpha_w) d_r +- cos(alpha_w) d_t); a gear turned on its shaft by a moves
+them by r_b a. Working radii alone decide the rest: see PlanetarySet.all_rows. Nothing here sees a pose.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tol3d.numerics.arrays import Array
+from tol3d.numerics.plane import turned
+from tol3d.numerics.programme import ranges
+from tol3d.planetary.first_order.curve_kernel import first_order_curve
+from tol3d.planetary.model.deviated import Deviated, Free, cosines_and_sines
+from tol3d.planetary.model.planetary_set import PlanetarySet
+
+
+@dataclass(frozen=True)
+class StackUp:
+    """First-order gaps of a set and what they leave free."""
+
+    own: PlanetarySet
+
+    def sides(self, deviated: Deviated, turns: Array) -> tuple[Array, Array]:
+        """Lower and upper side (trials, planets x meshes) [mm] of n, at turns (trials,) of the output."""
+        own = self.own
+        lower = np.empty((len(turns), own.planets, len(own.meshes)))
+        upper = np.empty_like(lower)
+        azimuths = np.array(own.azimuths) / (2 * np.pi)
+        of_centrals, of_planet = own.gear_rates
+        for place, mesh in enumerate(own.meshes):
+            gear = own.gear_of(mesh)
+            s, angle = mesh.sense, mesh.working_pressure_angle
+            central = deviated.central_offset[:, None, place].repeat(own.planets, axis=1)
+            central = turned(central, (of_centrals[place] * turns)[:, None] - azimuths)
+            phases = own.phases / (2 * np.pi)
+            planet = turned(deviated.planet_offset[:, gear], (of_planet * turns)[:, None] + phases)
+            aside = turned(deviated.aside[:, None, place].repeat(own.planets, axis=1), -azimuths)
+            apart = planet + deviated.pins - central + aside
+            thicker = deviated.central_thickness[:, place, None] + deviated.planet_thickness[:, gear]
+            room = mesh.clearance - thicker * np.cos(mesh.central.pressure_angle) / 2
+            room = room + s * np.sin(angle) * apart[..., 0]
+            moved = s * np.cos(angle) * apart[..., 1]
+            moved = moved - mesh.planet.base_radius * deviated.planet_clocking[:, gear]
+            moved = moved - s * mesh.central.base_radius * deviated.central_clocking[:, place, None]
+            lower[:, :, place] = moved - room
+            upper[:, :, place] = moved + room
+        return lower.reshape(len(turns), -1), upper.reshape(len(turns), -1)
+
+    def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
+        """How far a shaft turns while another one and the held one stand."""
+        own, found = self.own, Free.of(len(turns))
+        sides = zip(self.sides(deviated, turns), own.pushed, strict=True)
+        lower, upper = (np.hstack([side, np.tile(push, (len(turns), 1))]) for side, push in sides)
+        ranges(own.rows(stands), lower, upper, *own.asked(stands, shaft), *found.written)
+        return found
+
+    def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
+        """The lower (0) or upper (1) end of a shaft's turn at turns (positions,) of the output; see free."""
+        coefficients = np.zeros((len(deviated.pins), len(turns)))
+        return self._run(deviated, turns, shaft, stands, end, coefficients)[0]
+
+    def slopes(
+        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
+    ) -> Deviated:
+        """Change of a sum of ends by a unit of each deviation while the contacts that are met stay the same.
+
+        Positions with a coefficient of 0 are left out.
+
+        Args:
+            turns: of the output, (positions,) of all trials or (trials, positions) of each.
+            shaft, stands, end: see `followed`.
+            coefficients: of the ends in the sum (trials, positions).
+        """
+        _, slopes = self._run(deviated, turns, shaft, stands, end, coefficients)
+        return self._by_deviation(*slopes)
+
+    def _run(
+        self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
+    ) -> tuple[Free, tuple[Array, Array, Array]]:
+        """Ends, and what their sum changes with; see first_order_curve."""
+        own, trials = self.own, len(deviated.pins)
+        rates, planet = own.gear_rates
+        still = replace(
+            deviated,
+            central_offset=np.zeros_like(deviated.central_offset),
+            planet_offset=np.zeros_like(deviated.planet_offset),
+        )
+        sides = zip(self.sides(still, np.zeros(trials)), own.pushed, strict=True)
+        lower, upper = (np.ascontiguousarray(np.hstack([side, np.tile(push, (trials, 1))])) for side, push in sides)
+        across = [
+            (m.sense * np.sin(m.working_pressure_angle), m.sense * np.cos(m.working_pressure_angle)) for m in own.meshes
+        ]
+        phases = own.phases / (2 * np.pi)
+        flat, found = np.ravel(turns), Free.of(*coefficients.shape)
+        slopes = (
+            np.zeros((trials, 2, len(own.all_rows))),
+            np.zeros(deviated.central_offset.shape),
+            np.zeros(deviated.planet_offset.shape),
+        )
+        first_order_curve(
+            own.rows(stands),
+            lower,
+            upper,
+            np.ascontiguousarray(deviated.central_offset),
+            np.ascontiguousarray(deviated.planet_offset),
+            np.array(across),
+            np.array([own.gear_of(mesh) for mesh in own.meshes]),
+            cosines_and_sines(np.array(own.azimuths) / (2 * np.pi)),
+            cosines_and_sines(phases),
+            cosines_and_sines(flat[:, None] * rates),
+            cosines_and_sines(flat * planet),
+            *own.asked(stands, shaft, end),
+            coefficients,
+            *found.written,
+            *slopes,
+        )
+        return found, slopes
+
+    def _by_deviation(self, on_sides: Array, on_central: Array, on_planet: Array) -> Deviated:
+        """Change a unit of each deviation of each trial, in the places of the deviations themselves.
+
+        Args:
+            on_sides: by lower and upper sides of contacts and springs (trials, 2, rows).
+            on_central, on_planet: by offsets of gears (trials, centrals, 2), (trials, gears, planets, 2).
+        """
+        own = self.own
+        contacts = len(own.meshes) * own.planets
+        lower, upper = (on_sides[:, side, :contacts].reshape(-1, own.planets, len(own.meshes)) for side in range(2))
+        opened, moved = upper - lower, upper + lower
+        found = Deviated.nothing(own, len(lower))
+        found.central_offset[...], found.planet_offset[...] = on_central, on_planet
+        for place, mesh in enumerate(own.meshes):
+            gear, s, angle = own.gear_of(mesh), mesh.sense, mesh.working_pressure_angle
+            thicker = -np.cos(mesh.central.pressure_angle) / 2 * opened[:, :, place]
+            found.central_thickness[:, place] += thicker.sum(axis=1)
+            found.planet_thickness[:, gear] += thicker
+            pushed = np.stack([np.sin(angle) * opened[:, :, place], np.cos(angle) * moved[:, :, place]], axis=-1) * s
+            found.pins[...] += pushed
+            found.aside[:, place] += turned(pushed, np.array(own.azimuths) / (2 * np.pi)).sum(axis=1)
+            found.planet_clocking[:, gear] -= mesh.planet.base_radius * moved[:, :, place]
+            found.central_clocking[:, place] -= s * mesh.central.base_radius * moved[:, :, place].sum(axis=1)
+        return found

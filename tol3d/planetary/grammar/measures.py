@@ -1,0 +1,97 @@
+"""Kinds of measure of planetary sets."""
+
+from typing import ClassVar, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.scene.direction import RandomOrFixed
+from tol3d.scene.measure import AngleSpec
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference
+from tol3d.strict import refused
+
+
+class PlanetaryMeasureSpec(AngleSpec):
+    """An angle that is read on a planetary set."""
+
+    of: Name = Field(description="the planetary set")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The set."""
+        return (Reference(("of",), self.of, (PlanetarySpec,)),)
+
+
+class PlanetaryFreeTurnSpec(PlanetaryMeasureSpec):
+    """A free turn of a shaft at one position, or a part of it."""
+
+    gives_curve: ClassVar[bool] = False
+    several_positions: ClassVar[bool] = False
+
+    at: Literal["output", "input"] = Field(default="output", description="the shaft that turns: output or input")
+    over: RandomOrFixed = Field(default="random", description="position of the output: random or {at: angle}")
+
+
+class PlanetaryLostMotionSpec(PlanetaryFreeTurnSpec):
+    """An angle: the free turn of the output while the input stands, or of the input while the output stands.
+
+    Planets, and shafts that neither are held nor drive, turn with it as their meshes let them.
+    """
+
+    kind: Literal["planetary_lost_motion"]
+
+
+class PlanetaryLowStiffnessSpec(PlanetaryFreeTurnSpec):
+    """An angle: how far a shaft turns against the springs of a flexible carrier alone, both ways together.
+
+    From where springs hold the planets, beyond the breakaway torque, to where contacts stop them for good: the region
+    in which the set is as stiff as its springs. The lost motion that springs leave is not in it.
+    """
+
+    kind: Literal["planetary_low_stiffness"]
+
+
+class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
+    """An angle: how far the output leads its nominal position while a load on it keeps the meshes on one side.
+
+    Counted in the sense in which the output turns, 0 at the first position.
+    """
+
+    kind: Literal["planetary_transmission_error"]
+    flank: Literal["drive", "back"] = Field(
+        default="drive", description="drive: the load resists the output; back: it drives it on"
+    )
+    over: Literal["turn", "long_period"] = Field(
+        default="turn",
+        description="positions of the output: turn (one of it) or long_period (until the same teeth meet again)",
+    )
+    take: Literal["min", "max", "range", "harmonic", "curve"] = Field(
+        default="range",
+        description="min, max, range (peak to peak), harmonic (one sine, peak to peak) or curve of these positions",
+    )
+    order: int | None = Field(
+        default=None, ge=1, description="of the harmonic: cycles a turn of the output; 1 if not given"
+    )
+    positions: int = Field(
+        default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the input"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_orders(self) -> Self:
+        if self.order is None:
+            return self
+        if self.take != "harmonic":
+            raise refused("order", f"none beside take: {self.take}; only a harmonic has an order", self.order)
+        if self.order > (highest := (self.positions - 1) // 2):
+            raise refused("order", f"at most {highest}, which {self.positions} positions resolve", self.order)
+        return self
+
+    @property
+    def gives_curve(self) -> bool:
+        """Whether a trial gives a value at every position instead of one."""
+        return self.take == "curve"
+
+    @property
+    def several_positions(self) -> bool:
+        """Always."""
+        return True

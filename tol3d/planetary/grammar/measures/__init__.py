@@ -1,1 +1,0 @@
-"""Kinds of measure, one file each."""

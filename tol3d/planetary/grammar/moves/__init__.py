@@ -1,1 +1,0 @@
-"""Kinds of move, one file each."""

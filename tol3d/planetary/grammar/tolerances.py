@@ -1,0 +1,63 @@
+"""Kinds of tolerance of planetary sets."""
+
+from collections.abc import Iterator
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.assembly.grammar.zone import LawUnion
+from tol3d.planetary.grammar.parts import CarrierSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import Length
+from tol3d.scene.place import KeyPath
+from tol3d.scene.reference import Reference
+from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
+from tol3d.strict import Strict
+
+
+class RoundZoneSpec(Strict):
+    """A cylinder about where an axis should be."""
+
+    diameter: Length = Field(description="of the cylinder: ⌀ in the frame of the drawing")
+
+
+class BorePositionSpec(ToleranceEntry):
+    """A true position of the bores for the pins, to the carrier's own axis: each bore's axis lies in its cylinder.
+
+    Axes stay parallel to the set's. Laws are those of position tolerances of general parts.
+    """
+
+    words: ClassVar[str] = "a position tolerance of bores"
+
+    kind: Literal["bore_position"]
+    of: Name = Field(description="the carrier")
+    each: Literal["planet"] = Field(default="planet", description="planet: every bore deviates by itself")
+    zone: RoundZoneSpec = Field(description="how much room the drawing leaves: a diameter")
+    law: LawUnion
+
+    def references(self) -> tuple[Reference, ...]:
+        """The carrier."""
+        return (Reference(("of",), self.of, (CarrierSpec,)),)
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        """Those that its law reads."""
+        return ((("law", *path), name) for path, name in self.law.file_names())
+
+
+class PlanetPinSpec(ToleranceSpec):
+    """A length: each pin, or the bore of the carrier that holds it, lies off its place; each one's own deviation.
+
+    `radial` is positive outwards, `tangential` counter-clockwise; `random` takes the law for the distance from the
+    place, in any direction, as the axis of a bore within a round position zone.
+    """
+
+    words: ClassVar[str] = "places of pins"
+
+    kind: Literal["planet_pin"]
+    of: Name = Field(description="the carrier")
+    each: Literal["planet"] = Field(default="planet", description="planet: every pin deviates by itself")
+    direction: Literal["radial", "tangential", "random"] = Field(description="radial, tangential or random")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The carrier."""
+        return (Reference(("of",), self.of, (CarrierSpec,)),)

@@ -1,0 +1,1 @@
+"""A planetary set, its tooth numbers and its deviations."""

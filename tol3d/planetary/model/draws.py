@@ -1,0 +1,150 @@
+"""Tolerances of planetary sets: which there are, on what each acts, and how it is drawn."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.assembly.from_scene.zones import drawn_by
+from tol3d.assembly.zones import Process
+from tol3d.assembly.zones.catalogue import axis_section
+from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
+from tol3d.distributions import DeviationLaw
+from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
+from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
+from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.numerics.arrays import Array
+from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
+from tol3d.planetary.model.deviated import Acts
+from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.scene import Scene
+from tol3d.scene.direction import At
+from tol3d.scene.entry import kind_of
+from tol3d.system.draw import Draw, Each, Planar, Scalar, Values
+from tol3d.system.each_planar import EachOwn, EachPlanar, parts_of
+
+
+@dataclass(frozen=True)
+class EachZone(EachOwn):
+    """As many displacements as there are planets, each in a zone of its own: outwards and across, one after the other.
+
+    Args:
+        each: that of one planet, of two components.
+    """
+
+    axes: ClassVar[tuple[str, str]] = ("radial", "tangential")
+
+    each: ZoneDraw
+    names: tuple[str, ...]
+
+    @property
+    def distribution(self) -> DeviationLaw:
+        """Of one component."""
+        return self.each.distribution
+
+    @property
+    def words(self) -> str:
+        """See JointDraw."""
+        return f"{self.each.words}, each of {len(self.names)}"
+
+    @property
+    def covariance(self) -> Array:
+        """See JointDraw: planets are independent."""
+        return np.asarray(np.kron(np.eye(len(self.names)), self.each.covariance), dtype=np.float64)
+
+    def ends(self, values: Values, *, turning: bool) -> Array:
+        """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
+
+        All bores at their worst ends at once would be far rarer than the end of one.
+        """
+        steps, mean = np.maximum(np.sqrt(np.diagonal(self.covariance)), LEAST_STEP), np.array(self.mean(turning=False))
+        found = values(mean + np.concatenate([np.diag(steps), -np.diag(steps)]))
+        slopes = (found[: len(steps)] - found[len(steps) :]) / (2 * steps)
+        return np.stack([self._reach(slopes), self._reach(-slopes)])
+
+    def _reach(self, slopes: Array) -> Array:
+        """How far all of them go along slopes, each as large a part of its own reach as its slopes are of all."""
+        middle = np.array(self.each.mean(turning=False))
+        size = float(np.sqrt((slopes * slopes).sum())) or 1.0
+        ends = [
+            middle + float(np.sqrt((own * own).sum())) / size * (self.each.furthest(own) - middle)
+            for own in slopes.reshape(len(self.names), -1)
+        ]
+        return np.concatenate(ends)
+
+
+@dataclass(frozen=True)
+class EachJudgedZone(EachZone):
+    """The same of a process, which the zone judges only."""
+
+    def beyond(self, *components: Array) -> NDArray[np.bool_]:
+        """See JudgedDraw: where any bore lies outside its zone."""
+        outside = [~self.each.zone.inside(np.stack(own, axis=-1)) for own in parts_of(components, 2)]
+        return np.asarray(np.any(outside, axis=0))
+
+
+KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
+"""Tolerances of planetary sets; those of gears are shared with trains."""
+
+
+def refuse_other_tolerance(scene: Scene, name: str) -> None:
+    """Refuse a tolerance of a set that no set has.
+
+    Raises:
+        SceneError: with those that it has.
+    """
+    spec = scene.tolerances[name]
+    if not isinstance(spec, KINDS):
+        words = ", ".join(str(kind_of(kind)) for kind in KINDS)
+        sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
+        raise scene.refuse(("tolerances", name, "kind"), sentence)
+
+
+def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
+    """What a tolerance acts on."""
+    if isinstance(spec, PlanetPinSpec | BorePositionSpec):
+        if spec.of != own.carrier:
+            raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
+        if isinstance(spec, BorePositionSpec) or spec.direction == "random":
+            return Acts("pin")
+        return Acts("pin", direction=spec.direction)
+    known = [mesh.central.name for mesh in own.meshes] + [gear.name for gear in own.gears]
+    if spec.of not in known:
+        raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {own.name!r}, got {spec.of!r}")
+    if isinstance(spec, ToothThicknessSpec):
+        part = scene.parts[spec.of]
+        assert isinstance(part, GearSpec)
+        counted = 1 / math.cos(part.pressure_angle.internal) if spec.measured == "normal" else 1.0
+        return Acts("thickness", spec.of, factor=counted)
+    return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
+
+
+def draw_of(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
+    """How its components are drawn: of planets, pins and bores each one's own."""
+    return _bores(scene, own, spec) if isinstance(spec, BorePositionSpec) else _of_distribution(scene, own, spec)
+
+
+def _bores(scene: Scene, own: PlanetarySet, spec: BorePositionSpec) -> Draw:
+    """Each bore in its zone, its axis parallel to the set's."""
+    zone = axis_section(spec.zone.diameter.internal)
+    draw = drawn_by(spec.law, zone, scene.files)
+    return (EachJudgedZone if isinstance(draw, Process) else EachZone)(draw, planet_names(own))
+
+
+def planet_names(own: PlanetarySet) -> tuple[str, ...]:
+    """Of columns, counted from 1."""
+    return tuple(f"planet {planet + 1}" for planet in range(own.planets))
+
+
+def _of_distribution(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
+    law, names = spec.distribution.resolve(scene.files), planet_names(own)
+    of_planets = isinstance(spec, PlanetPinSpec) or spec.of in {gear.name for gear in own.gears}
+    if isinstance(spec, EccentricitySpec):
+        direction = spec.direction.at.internal if isinstance(spec.direction, At) else None
+        return EachPlanar(law, names, direction) if of_planets else Planar(law, direction)
+    if isinstance(spec, PlanetPinSpec) and spec.direction == "random":
+        return EachPlanar(law, names, None)
+    return Each(law, names) if of_planets else Scalar(law)
