@@ -8,14 +8,13 @@ from numpy.typing import NDArray
 from rv_250 import rv_250
 
 from tol3d.cycloid.exact.rest import RestStage
-from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.first_order.linear_rest import LinearRest
 from tol3d.cycloid.model.stage import Deviated, Play
 
 Array = NDArray[np.float64]
 
 SUN_HELD, WINDOW = 1.5, 0.7
-LINEAR = LinearRest(LinearStage(PROFILE, 2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW))
+LINEAR = LinearRest(PROFILE, 2, 3, CRANK_CIRCLE, SUN_HELD, WINDOW)
 ARCSEC = np.degrees(1.0) * 3600
 LEAVING = (0.022, 0.008)  # a planet of 42 mm base radius and 20 degrees
 
@@ -35,7 +34,7 @@ def test_both_roads_of_a_rest_differ_by_second_order(sense: int) -> None:
         deviated, phis, own = drawn(300, 0.002 * size, seed=5), phis_of(300), play(0.02 * size, 0.015 * size)
         rest = RestStage(profile, *sizes).rests(deviated, phis, own, float(sense))
         assert (rest.status == 0).all()
-        found = LinearRest(LinearStage(profile, *sizes)).rests(deviated, phis[:, 0], own, 1 if sense > 0 else -1)
+        found = LinearRest(profile, *sizes).rests(deviated, phis[:, 0], own, 1 if sense > 0 else -1)
         apart = ARCSEC * (found.turns - rest.turns[:, 0])
         assert np.abs(apart).max() < 1.0  # of a turn of some 38 arc seconds
         rms.append(float(np.sqrt((apart**2).mean())))

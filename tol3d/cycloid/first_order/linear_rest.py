@@ -63,14 +63,8 @@ class Forces:
 
 
 @dataclass(frozen=True)
-class LinearRest:
-    """A cycloid stage with play, to first order.
-
-    Args:
-        stage: the stage without play.
-    """
-
-    stage: LinearStage
+class LinearRest(LinearStage):
+    """A cycloid stage with play, to first order."""
 
     def rests(self, deviated: Deviated, phis: Array, play: Play, sense: Sense, aside: Array | None = None) -> Forces:
         """Turn the carrier by a torque, counter-clockwise (1) or back (-1), until contacts hold it.
@@ -80,13 +74,13 @@ class LinearRest:
             play: of the trials, its turns of cranks (trials, cranks, 2).
             aside: tilts of discs, see LinearStage.touches.
         """
-        stage, sizes = self.stage, (len(phis), self.stage.cranks, self.stage.discs)
+        sizes = len(phis), self.cranks, self.discs
         pins, held, pin_places = self._pins(deviated, phis, sense, aside)
         cones, off = self._bearings(deviated, phis)
         radial = np.concatenate(
             [np.broadcast_to(play.disc, sizes).reshape(len(phis), -1), np.broadcast_to(play.carrier, sizes[:2])], axis=1
         )
-        planets, turns = self._planets(cones[:, -stage.cranks :], off[:, -stage.cranks :], play)
+        planets, turns = self._planets(cones[:, -self.cranks :], off[:, -self.cranks :], play)
         given = ConeProgramme(
             np.concatenate([pins, planets], axis=1),
             np.concatenate([held, turns], axis=1),
@@ -102,41 +96,41 @@ class LinearRest:
 
         Trials have as many rows as the one with most working pins; those that work nowhere are far off.
         """
-        stage, profile = self.stage, self.stage.profile
-        found = [stage.nominal_gaps(deviated, disc, phis, aside) for disc in range(stage.discs)]
+        profile = self.profile
+        found = [self.nominal_gaps(deviated, disc, phis, aside) for disc in range(self.discs)]
         gaps, levers = (np.concatenate([own[k] for own in found], axis=1) for k in (0, 1))
         normals = np.concatenate([own[2] for own in found], axis=1) * np.exp(1j * phis / profile.lobes)[:, None]
-        works = sense * levers > stage.window * profile.pitch_radius
+        works = sense * levers > self.window * profile.pitch_radius
         places = np.argsort(~works, axis=1, kind="stable")[:, : int(works.sum(axis=1).max())]
         rows, trial = np.zeros((*places.shape, self._unknowns)), np.arange(len(phis))[:, None]
         at, number = 1 + 3 * (places // profile.pins), np.arange(places.shape[1])
         normal, lever = np.take_along_axis(normals, places, axis=1), np.take_along_axis(levers, places, axis=1)
         rows[trial, number, at], rows[trial, number, at + 1] = -normal.real, -normal.imag
-        rows[trial, number, at + 2] = -lever / stage.crank_circle
+        rows[trial, number, at + 2] = -lever / self.crank_circle
         idle = ~np.take_along_axis(works, places, axis=1)
         rows[idle] = 0.0
         return rows, np.where(idle, FAR, np.take_along_axis(gaps, places, axis=1)), places
 
     def _bearings(self, deviated: Deviated, phis: Array) -> tuple[Complex, Complex]:
         """Displacements in bearings, in the carrier's frame: slopes (trials, bearings, unknowns), and where y = 0."""
-        stage, discs = self.stage, self.stage.discs
-        holes, eccentricity = stage.crank_directions, stage.profile.eccentricity
-        ahead = np.exp(1j * phis * (1 + 1 / stage.profile.lobes))
-        slopes = np.zeros((len(phis), stage.cranks * (discs + 1), self._unknowns), dtype=np.complex128)
+        discs = self.discs
+        holes, eccentricity = self.crank_directions, self.profile.eccentricity
+        ahead = np.exp(1j * phis * (1 + 1 / self.profile.lobes))
+        slopes = np.zeros((len(phis), self.cranks * (discs + 1), self._unknowns), dtype=np.complex128)
         off = np.empty(slopes.shape[:2], dtype=np.complex128)
-        for crank in range(stage.cranks):
+        for crank in range(self.cranks):
             own, hole = 1 + 3 * discs + 3 * crank, 1j * holes[crank]
             for disc in range(discs):
                 row, at = crank * discs + disc, 1 + 3 * disc
-                swung = 1j * eccentricity * ahead * np.exp(1j * stage.throws[disc])
+                swung = 1j * eccentricity * ahead * np.exp(1j * self.throws[disc])
                 slopes[:, row, at : at + 3] = 1.0, 1j, hole
                 slopes[:, row, own : own + 2] = -1.0, -1j
-                slopes[:, row, own + 2] = -swung / stage.crank_circle
-                slopes[:, row, 0] = -stage.rolling * swung / stage.crank_circle
+                slopes[:, row, own + 2] = -swung / self.crank_circle
+                slopes[:, row, 0] = -self.rolling * swung / self.crank_circle
                 thrown = ahead * as_complex(deviated.crank_errors[:, crank, disc])
                 bored = as_complex(deviated.disc_holes[:, disc, crank]) - as_complex(deviated.disc_offsets[:, disc])
                 off[:, row] = bored - thrown - swung * deviated.crank_phases[:, crank]
-            row = stage.cranks * discs + crank
+            row = self.cranks * discs + crank
             slopes[:, row, own : own + 2] = 1.0, 1j
             slopes[:, row, 0] = -hole
             off[:, row] = -as_complex(deviated.carrier_holes[:, crank]) - as_complex(deviated.carrier_offsets)
@@ -144,14 +138,14 @@ class LinearRest:
 
     def _planets(self, slopes: Complex, off: Complex, play: Play) -> tuple[Array, Array]:
         """Rows and gaps of planets' flanks, those that hold cranks back first; given displacements in the carrier."""
-        stage, radius = self.stage, self.stage.crank_circle
+        radius = self.crank_circle
         around, outwards = play.leaving
-        turned = slopes * np.conj(stage.crank_directions)[:, None]
-        lies = off * np.conj(stage.crank_directions)
+        turned = slopes * np.conj(self.crank_directions)[:, None]
+        lies = off * np.conj(self.crank_directions)
         cranks = np.zeros(turned.shape)
-        for crank in range(stage.cranks):
-            cranks[:, crank, 3 * (stage.discs + 1 + crank)] = 1.0
-        free = radius * np.broadcast_to(play.crank, (len(off), stage.cranks, 2))
+        for crank in range(self.cranks):
+            cranks[:, crank, 3 * (self.discs + 1 + crank)] = 1.0
+        free = radius * np.broadcast_to(play.crank, (len(off), self.cranks, 2))
         back = cranks - radius * (around * turned.imag - outwards * turned.real)
         ahead = -cranks + radius * (around * turned.imag + outwards * turned.real)
         gaps = np.concatenate(
@@ -164,22 +158,22 @@ class LinearRest:
         return np.concatenate([back, ahead], axis=1), gaps
 
     def _forces(self, solved: Solved, places: Places, sense: Sense) -> Forces:
-        stage, trials = self.stage, len(places)
-        cranks, discs, pins = stage.cranks, stage.discs, stage.profile.pins
-        straight, turned = sense * solved.straight / stage.crank_circle, sense * solved.round / stage.crank_circle
+        trials = len(places)
+        cranks, discs, pins = self.cranks, self.discs, self.profile.pins
+        straight, turned = sense * solved.straight / self.crank_circle, sense * solved.round / self.crank_circle
         on_pins = np.zeros((trials, discs * pins))
         np.put_along_axis(on_pins, places, straight[:, : places.shape[1]], axis=1)
         of_bearings = np.sqrt((turned * turned).sum(axis=-1))
         split = cranks * discs
         return Forces(
-            turns=solved.y[:, 0] / stage.crank_circle,
+            turns=solved.y[:, 0] / self.crank_circle,
             pins=on_pins.reshape(trials, discs, pins),
             discs=-turned[:, :split].reshape(trials, cranks, discs, 2),
             carrier=-turned[:, split:],
             disc_play=sense * of_bearings[:, :split].reshape(trials, cranks, discs) / 2,
             carrier_play=sense * of_bearings[:, split:] / 2,
             planets=np.stack(np.split(straight[:, places.shape[1] :], 2, axis=1), axis=-1)
-            * stage.crank_circle
+            * self.crank_circle
             * np.array([-1.0, 1.0]),
             gaps=solved.gaps[:, : places.shape[1]],
             gives=solved.y[:, -1],
@@ -188,4 +182,4 @@ class LinearRest:
     @property
     def _unknowns(self) -> int:
         """The carrier's turn, places and turns of discs and cranks, and what all parts give."""
-        return 2 + 3 * (self.stage.discs + self.stage.cranks)
+        return 2 + 3 * (self.discs + self.cranks)

@@ -15,12 +15,12 @@ import numpy as np
 
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.deviated import RVDeviated
-from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
+from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.gears import LEFT, RIGHT, Displaced, Flank
 from tol3d.numerics.arrays import Array, Complex, Places
 from tol3d.numerics.plane import as_complex, as_points
 
-OneMesh = Callable[[RVSet, FirstStage, RVDeviated, Array, int, Flank], Array]
+OneMesh = Callable[[RVSet, RVDeviated, Array, int, Flank], Array]
 
 ROUNDS: Final = 2
 """How often a planet is turned; each time leaves its eccentricity over its base radius of the error of the last."""
@@ -39,18 +39,14 @@ def crank_turns(
     if own.first is None:
         return np.zeros(shape), np.zeros(shape, dtype=np.int64)
     flank = LEFT if sense < 0 else RIGHT
-    found = np.stack(
-        [throw_turn(own, own.first, deviated, turns, crank, flank, one_mesh) for crank in range(own.cranks)]
-    )
+    found = np.stack([throw_turn(own, deviated, turns, crank, flank, one_mesh) for crank in range(own.cranks)])
     first = found.argmin(axis=0) if sense < 0 else found.argmax(axis=0)
     return np.take_along_axis(found, first[None], axis=0)[0], first
 
 
-def throw_turn(
-    own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh
-) -> Array:
+def throw_turn(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh) -> Array:
     """How far one crank's throws turn (trials, positions) [rad]: its planet, which they lead by their phase."""
-    return one_mesh(own, first, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
+    return one_mesh(own, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
 
 
 def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
@@ -60,29 +56,23 @@ def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
 
 
 def placed_mesh(
-    own: RVSet,
-    first: FirstStage,
-    deviated: RVDeviated,
-    turns: Array,
-    crank: int,
-    flank: Flank,
-    carried: float | Array = 0.0,
+    own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, carried: float | Array = 0.0
 ) -> Array:
     """How far one planet turns (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
 
     Args:
-        own, first, deviated, turns, crank, flank: see OneMesh.
+        own, deviated, turns, crank, flank: see OneMesh.
         carried: how far the carrier has turned beyond its place while the sun stands (trials, positions) [rad]. 100 arc
             seconds turn an eccentricity of 10 um by 5 nm.
     """
-    shape = len(deviated.sun_thickness), turns.shape[1]
-    sun = angles(own, first, turns, crank)[0] - carried
-    planet = first.pair.driven_angle(sun)
+    pair, shape = own.pair, (len(deviated.sun_thickness), turns.shape[1])
+    sun = angles(own, turns, crank)[0] - carried
+    planet = pair.driven_angle(sun)
     origins = np.zeros((*shape, 2, 3))
     origins[..., 0, :2] = as_points(as_complex(deviated.sun_offset)[:, None] * np.exp(1j * sun))
-    place = first.pair.centre_distance + _carried(own, deviated, crank)[:, None]
+    place = pair.centre_distance + _carried(own, deviated, crank)[:, None]
     thicker = np.stack([deviated.sun_thickness, deviated.planet_thickness[:, crank]], axis=-1)
-    reference = np.array([gear.module * gear.teeth for gear in (first.pair.pinion, first.pair.wheel)])
+    reference = np.array([gear.module * gear.teeth for gear in (pair.pinion, pair.wheel)])
     flank_turn = np.broadcast_to((thicker / reference)[:, None], (*shape, 2)).reshape(-1, 2)
     rows = np.broadcast_to(sun, shape).reshape(-1)
     upright, turn = np.zeros((len(rows), 2, 3)), np.zeros(shape)
@@ -90,13 +80,11 @@ def placed_mesh(
         off = as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(1j * (planet + turn))
         origins[..., 1, :2] = as_points(place + off)
         displaced = Displaced(origins.reshape(-1, 2, 3), upright, flank_turn)
-        turn = (first.pair.touching_angle(rows, flank, displaced) - first.pair.driven_angle(rows)).reshape(shape)
+        turn = (pair.touching_angle(rows, flank, displaced) - pair.driven_angle(rows)).reshape(shape)
     return turn
 
 
-def first_order_mesh(
-    own: RVSet, first: FirstStage, deviated: RVDeviated, turns: Array, crank: int, flank: Flank
-) -> Array:
+def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank) -> Array:
     """The same to first order.
 
     Along the line of action, with alpha the working pressure angle and sigma the flank,
@@ -106,8 +94,8 @@ def first_order_mesh(
     of a planet displaced against its sun by d_r outwards and d_t counter-clockwise, of thicker teeth and of the nominal
     backlash.
     """
-    sun, planet = angles(own, first, turns, crank)
-    pair = first.pair
+    sun, planet = angles(own, turns, crank)
+    pair = own.pair
     alpha = pair.working_pressure_angle
     apart = _carried(own, deviated, crank)[:, None] + as_complex(deviated.planet_offset[:, crank])[:, None] * np.exp(
         1j * planet
@@ -131,15 +119,15 @@ def add_rates(
         flank: of the sun.
         factor: what a turn of the cranks counts for, alike or of each trial.
     """
-    first = own.first
-    if first is None:
+    if own.first is None:
         return
-    rows, alpha, arm = np.arange(len(turns)), first.pair.working_pressure_angle, first.pair.wheel.base_radius
+    pair = own.pair
+    rows, alpha, arm = np.arange(len(turns)), pair.working_pressure_angle, pair.wheel.base_radius
     push = factor / arm * complex(-flank * math.sin(alpha), math.cos(alpha))
-    thicker = factor / arm * flank * math.cos(first.pair.pinion.pressure_angle) / 2
+    thicker = factor / arm * flank * math.cos(pair.pinion.pressure_angle) / 2
     relative = own.azimuths[planets]
     sun = _sun_angle(own, turns) - relative
-    planet = first.pair.driven_angle(sun)
+    planet = pair.driven_angle(sun)
     carried = as_points(push * np.exp(1j * relative))
     rates.sun_offset[...] += as_points(-push * np.exp(-1j * sun))
     rates.planet_offset[rows, planets] += as_points(push * np.exp(-1j * planet))
@@ -150,10 +138,10 @@ def add_rates(
     rates.stage.carrier_offsets[...] += carried
 
 
-def angles(own: RVSet, first: FirstStage, turns: Array, crank: int) -> tuple[Array, Array]:
+def angles(own: RVSet, turns: Array, crank: int) -> tuple[Array, Array]:
     """Turns of sun and planet in the frame of their mesh [rad], where the output has made so many turns."""
     sun = _sun_angle(own, turns) - own.azimuths[crank]
-    return sun, first.pair.driven_angle(sun)
+    return sun, own.pair.driven_angle(sun)
 
 
 def _sun_angle(own: RVSet, turns: Array) -> Array:

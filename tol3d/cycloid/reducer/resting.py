@@ -129,7 +129,7 @@ def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mes
         return Play(disc, carrier, free)
     for crank in range(own.cranks):
         for side, flank in enumerate((RIGHT, LEFT)):
-            free[:, :, crank, side] = throw_turn(own, own.first, deviated, turns, crank, flank, one_mesh) - beta
+            free[:, :, crank, side] = throw_turn(own, deviated, turns, crank, flank, one_mesh) - beta
     free[..., 0], free[..., 1] = np.minimum(free[..., 0], 0.0), np.maximum(free[..., 1], 0.0)
     pair = own.first.pair
     alpha, arm = pair.working_pressure_angle, pair.wheel.base_radius
@@ -179,7 +179,7 @@ class LinearResting:
         own, (rows, position) = self.own, at
         played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
         aside = None if own.width is None else part.disc_tilts * (own.width / 2)
-        return LinearRest(own.linear).rests(held_stage(own, part), phis, played, 1 if sense > 0 else -1, aside)
+        return LinearRest.of(own).rests(held_stage(own, part), phis, played, 1 if sense > 0 else -1, aside)
 
 
 def exact_turning(own: RVSet) -> Turning:

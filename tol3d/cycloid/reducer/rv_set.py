@@ -75,6 +75,12 @@ class RVSet:
         return self.crankshaft if self.first is None else self.first.sun
 
     @property
+    def pair(self) -> SpurPair:
+        """Sun and planet of its first stage, which it must have."""
+        assert self.first is not None
+        return self.first.pair
+
+    @property
     def gear_ratio(self) -> Fraction:
         """z2 / z1 of the first stage; 0 without one."""
         return Fraction(0) if self.first is None else Fraction(self.first.teeth[1], self.first.teeth[0])
