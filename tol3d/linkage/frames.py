@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.placing.poses import IDENTITY, Pose
 from tol3d.linkage.joint_kinds import ROLLING
-from tol3d.linkage.structure import ROOT, Structure
+from tol3d.linkage.structure import ROOT, Step, Structure
 
 Array = NDArray[np.float64]
 
@@ -37,17 +37,16 @@ def joint_frames(
         else:
             base[own.frame], child[own.frame] = before, after @ rest.inverse
         if own.joint.kind == ROLLING:
-            base[own.frame + 1] = _carried(structure, own.joint.carrier, own.carrier, own, pose_of)
+            base[own.frame + 1] = _carried(structure, own, pose_of)
     return base, child
 
 
-def _carried(structure: Structure, carrier: str, body: int, own: object, pose_of: Callable[[str], Pose]) -> Pose:
+def _carried(structure: Structure, own: Step, pose_of: Callable[[str], Pose]) -> Pose:
     """The frame on a carrier of the gear that it carries."""
-    joint = own.joint  # type: ignore[attr-defined]
-    there = structure.carried(joint)
+    carrier, there = own.joint.carrier, structure.carried(own.joint)
     if "." in carrier:
         return pose_of(carrier) @ Pose.of(np.linalg.inv(structure.world(carrier)) @ there)
-    if body == ROOT:
+    if own.carrier == ROOT:
         return Pose.of(there)
     return Pose.of(np.linalg.inv(structure.drawn[carrier]) @ there)
 

@@ -260,9 +260,10 @@ def _position(
             if share in (0.0, 1.0):
                 found = ends[int(share)]
             else:
-                before = f"{path}{STEP}{k - 1}"
-                start = _position(spec, name, scene, kinematics, before, known, key)
-                found = _between(spec, kinematics, (first, last), ends, share, start)
+                for before in range(k):  # one by one, for each begins at the one before
+                    if (*key, f"{path}{STEP}{before}") not in known:
+                        _position(spec, name, scene, kinematics, f"{path}{STEP}{before}", known, key)
+                found = _between(spec, kinematics, (first, last), ends, share, known[*key, f"{path}{STEP}{k - 1}"])
         else:
             found = _reached(spec, kinematics, pose, kinematics.drawn)
     except UnreachedError as error:

@@ -12,8 +12,9 @@ from scipy.spatial.transform import Rotation
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.poses import Pose
 from tol3d.errors import InputError
-from tol3d.linkage.closing import equations, forward, loops_closed, rows_of
+from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.frames import joint_frames, stacked
+from tol3d.linkage.joint_equations import equations, forward, rows_of
 from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SWING
 from tol3d.linkage.structure import FREEDOMS, ROOT, Structure
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.linkage.closing import rows_of
+from tol3d.linkage.joint_equations import rows_of
 from tol3d.linkage.joint_kinds import (
     ALONG,
     BALL,
