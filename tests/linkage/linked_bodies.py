@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
-from oracles.closed_loops import Loops, Pair, Poses, displaced, facing, followed, pose
+from oracles.closed_loops import Loops, Pair, Poses, closed, displaced, facing, followed, pose
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
@@ -162,8 +162,9 @@ class Linkage:
             lines += [f"  {name}:", "    kind: solid"]
             lines += [f"    placed: {{at: {triple(at)}, z: {triple(z, '')}, x: {triple(x, '')}}}", "    features:"]
             lines += [f"      {key}: {own.text}" for key, own in part.features.items()]
-        lines += ["tolerances:"]
-        for name in self.held if deviating is None else deviating:
+        named = self.held if deviating is None else deviating
+        lines += ["tolerances:"] if named else []
+        for name in named:
             lines += [f"  {key}: {own}" for key, own in self.feature(name).tolerances(name).items()]
         lines += ["moves:"] + [f"  fix {name}: {{kind: fix, part: {name}}}" for name in self.fixed]
         lines += self.loop_lines("drive", self.placed_bodies, self.joints, self.inputs, self.poses)
@@ -252,8 +253,6 @@ class Linkage:
         start = followed(self.loops, self.loops, wanted)
         assert start is not None, "a pose that the linkage reaches"
         off = {name: own + zeros.get(name, 0.0) for name, own in wanted.items()}
-        from oracles.closed_loops import closed
-
         found = closed(self.loops, self.deviated(deviations), start, off)
         return None if found is None else self.seen(found)
 

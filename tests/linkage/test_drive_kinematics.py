@@ -5,6 +5,7 @@ import pytest
 from linkage.drive_by_hand import drive, tilt
 from linkage.linked_bodies import Array
 from oracles.spherical_drive import MEANT, MISPRINT, TABLE, rates, travels
+from scipy.spatial.transform import Rotation
 
 from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
 
@@ -111,8 +112,6 @@ def test_gear_2_tilts_twice_as_far_and_does_not_spin(own: Kinematics) -> None:
     """r1 = r2: its rotation vector is twice the ring's, and its centre lies on the ring's axis."""
     there = at(own, 35.0, 110.0)
     gear = there.poses[own.structure.body_of["gear 2"]]
-    from scipy.spatial.transform import Rotation
-
     turned = Rotation.from_matrix(gear[:3, :3]).as_rotvec()
     assert turned[:2] == pytest.approx(2 * tilt(np.radians(35.0), np.radians(110.0)), abs=1e-10)
     assert turned[2] == pytest.approx(0.0, abs=1e-10)
