@@ -321,9 +321,12 @@ def moved_rigidly(linkage: Linkage, by: Array) -> Linkage:
 
 
 def drawn_elsewhere(linkage: Linkage, name: str, by: Array) -> Linkage:
-    """A part whose coordinates are others; it lies where it was."""
+    """A part whose coordinates are others; it lies where it was. Its features' x are others, too."""
     own = linkage.parts[name]
-    features = {key: replace(each, frame=by @ each.frame) for key, each in own.features.items()}
+    frames = {key: by @ each.frame for key, each in own.features.items()}
+    features = {
+        key: replace(each, frame=facing(frames[key][:3, 2], frames[key][:3, 3])) for key, each in own.features.items()
+    }
     return replace(linkage, parts={**linkage.parts, name: Part(own.placed @ np.linalg.inv(by), features)})
 
 

@@ -235,3 +235,12 @@ def displaced(loops: Loops, frames: Mapping[str, tuple[Array | None, Array | Non
         pair = pairs[name]
         pairs[name] = replace(pair, base=pair.base if base is None else base, own=pair.own if own is None else own)
     return replace(loops, pairs=pairs)
+
+
+def conditioned(loops: Loops) -> float:
+    """The condition number of all equations as drawn; of freedoms that nothing notices too."""
+    count = 6 * len(loops.bodies)
+    ends = STEP * np.concatenate([np.eye(count), -np.eye(count)])
+    each = _equations(loops, loops, _moved(loops.bodies, ends), dict.fromkeys(loops.inputs, 0.0))
+    sizes = np.linalg.svd((each[:count] - each[count:]) / (2 * STEP), compute_uv=False)
+    return float(sizes[0] / max(sizes[-1], 1e-300))
