@@ -16,6 +16,9 @@ from tol3d.system.road import Answers
 from tol3d.system.stated import component_count, component_slices, stated
 
 Array = NDArray[np.float64]
+Trial = tuple[Mapping[str, Array], Mapping[str, float]]
+"""Deviations of features [mm], and of inputs [mm or rad]."""
+
 AXES = ("x", "y", "z")
 LAW = "{kind: normal, mean: 0 mm, sigma: 10 um}"
 ANGLE = "{kind: normal, mean: 0 deg, sigma: 0.005 deg}"
@@ -247,14 +250,18 @@ class Linkage:
             found.append((into @ own @ self.feature(probe).frame)[:3, 3] - first.features["zero"].frame[:3, 3])
         return np.array(found)
 
-    def expected(self, where: str, deviations: Mapping[str, Array], zeros: Mapping[str, float]) -> Array | None:
-        """What the oracle has of the probes (probes, 3) [mm]: nominal first, then the deviations brought in."""
-        wanted = self.poses.get(where, {name: 0.0 for name in self.inputs})
+    def expected(self, where: str, trials: Sequence[Trial]) -> Array:
+        """The oracle's places of the probes (trials, probes, 3) [mm]: the nominal pose, then the deviations."""
+        wanted = self.poses.get(where, dict.fromkeys(self.inputs, 0.0))
         start = followed(self.loops, self.loops, wanted)
         assert start is not None, "a pose that the linkage reaches"
-        off = {name: own + zeros.get(name, 0.0) for name, own in wanted.items()}
-        found = closed(self.loops, self.deviated(deviations), start, off)
-        return None if found is None else self.seen(found)
+        found = []
+        for deviations, zeros in trials:
+            off = {name: own + zeros.get(name, 0.0) for name, own in wanted.items()}
+            poses = closed(self.loops, self.deviated(deviations), start, off)
+            assert poses is not None, "deviations with which it closes"
+            found.append(self.seen(poses))
+        return np.stack(found)
 
 
 @dataclass(frozen=True)
@@ -306,9 +313,7 @@ def study_of(linkage: Linkage, folder: Path, deviating: Sequence[str] | None = N
     return Study(linkage, assembled(linkage.text(deviating), folder))
 
 
-def random_deviations(
-    linkage: Linkage, rng: np.random.Generator, size: float, angle: float
-) -> tuple[Mapping[str, Array], Mapping[str, float]]:
+def random_deviations(linkage: Linkage, rng: np.random.Generator, size: float, angle: float) -> Trial:
     """Of all features of joints [mm], and of all inputs [mm or rad]."""
     deviations = {name: size * rng.normal(size=4 if linkage.feature(name).kind == "axis" else 3) for name in linkage.held}
     zeros = {name: rng.normal() * (size if linkage.is_slide(name) else angle) for name in linkage.inputs}

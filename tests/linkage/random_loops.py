@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from linkage.linked_bodies import Array, Feature, Joint, Linkage, Part, point, random_pose
-from oracles.closed_loops import conditioned, facing
+from oracles.closed_loops import conditioned, facing, followed
 
 FREEDOMS = {"revolute": 1, "prismatic": 1, "screw": 1, "cylindrical": 2, "universal": 2, "swing": 2, "ball": 3}
 MOTIONS = {
@@ -55,7 +55,7 @@ def random_loop(seed: int, kinds: Sequence[str] | None = None, *, given: int | N
     """A loop of bodies from the frame to the frame; with `two`, a second one that ends on a body of the first.
 
     Args:
-        seed: of its places; the first that is well conditioned, from there.
+        seed: of its places; the first from there that reaches its far pose and is well conditioned.
         kinds: of its joints, 7 freedoms together; at random if not given.
         given: which joint has the input; any that can if not given.
         two: whether there is a second loop, of 6 freedoms.
@@ -63,7 +63,8 @@ def random_loop(seed: int, kinds: Sequence[str] | None = None, *, given: int | N
     rng = np.random.default_rng(seed)
     while True:
         found = _one(rng, kinds or kinds_at_random(rng, 7), given, two)
-        if conditioned(found.loops) < WELL:
+        far = followed(found.loops, found.loops, found.poses["on"])
+        if far is not None and max(conditioned(found.loops, own) for own in (found.loops.bodies, far)) < WELL:
             return found
 
 

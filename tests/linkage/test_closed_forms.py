@@ -187,8 +187,5 @@ def test_random_deviations_displace_what_they_should() -> None:
     """The oracle is no constant: deviations of 0.1 mm move its probes by some 0.1 mm."""
     linkage = rssr()
     rng = np.random.default_rng(1)
-    nominal = linkage.expected("on", {}, {})
-    off = linkage.expected("on", *random_deviations(linkage, rng, 0.1, 1e-3))
-    assert nominal is not None
-    assert off is not None
+    nominal, off = linkage.expected("on", [({}, {}), random_deviations(linkage, rng, 0.1, 1e-3)])
     assert 0.01 < np.abs(off - nominal).max() < 1.0

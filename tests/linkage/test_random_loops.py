@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from linkage.linked_bodies import Linkage, random_deviations, study_of
+from linkage.linked_bodies import Linkage, Trial, random_deviations, study_of
 from linkage.random_loops import FREEDOMS, open_chain, random_loop
 
 LIMIT = 1e-9  # mm
@@ -13,11 +13,10 @@ LIMIT = 1e-9  # mm
 def assert_as_the_oracle(linkage: Linkage, folder: Path, seed: int = 0) -> None:
     study = study_of(linkage, folder)
     rng = np.random.default_rng(seed)
-    trials = [({}, {}), *(random_deviations(linkage, rng, 0.01, 1e-4) for _ in range(2))]
+    trials: list[Trial] = [({}, {}), *(random_deviations(linkage, rng, 0.01, 1e-4) for _ in range(2))]
     rows = np.stack([study.columns(*own) for own in trials])
     for where in linkage.poses:
-        expected = np.stack([linkage.expected(where, *own) for own in trials])
-        assert np.abs(study.seen(rows, where) - expected).max() < LIMIT
+        assert np.abs(study.seen(rows, where) - linkage.expected(where, trials)).max() < LIMIT
 
 
 def assert_second_order(linkage: Linkage, folder: Path) -> None:

@@ -218,7 +218,7 @@ def closed(drawn: Loops, loops: Loops, start: Poses, wanted: Mapping[str, float]
     return poses if np.abs(_equations(drawn, loops, poses, wanted)).max() < 1e-10 else None
 
 
-def followed(drawn: Loops, loops: Loops, wanted: Mapping[str, float], steps: int = 8) -> Poses | None:
+def followed(drawn: Loops, loops: Loops, wanted: Mapping[str, float], steps: int = 4) -> Poses | None:
     """Bodies where inputs have gone so far, step by step from where they are drawn."""
     poses: Poses | None = drawn.bodies
     for share in np.linspace(0.0, 1.0, steps + 1):
@@ -237,10 +237,10 @@ def displaced(loops: Loops, frames: Mapping[str, tuple[Array | None, Array | Non
     return replace(loops, pairs=pairs)
 
 
-def conditioned(loops: Loops) -> float:
-    """The condition number of all equations as drawn; of freedoms that nothing notices too."""
+def conditioned(loops: Loops, poses: Poses) -> float:
+    """The condition number of all equations; infinite where something is free."""
     count = 6 * len(loops.bodies)
     ends = STEP * np.concatenate([np.eye(count), -np.eye(count)])
-    each = _equations(loops, loops, _moved(loops.bodies, ends), dict.fromkeys(loops.inputs, 0.0))
+    each = _equations(loops, loops, _moved(poses, ends), dict.fromkeys(loops.inputs, 0.0))
     sizes = np.linalg.svd((each[:count] - each[count:]) / (2 * STEP), compute_uv=False)
     return float(sizes[0] / max(sizes[-1], 1e-300))
