@@ -31,10 +31,9 @@ def test_plays_move_bodies_as_the_oracle_moves_them(name: str, tmp_path: Path) -
     for k in range(3):
         row, found = study.columns({}, {}), {}
         for joint, own in plays.items():
-            shares = np.zeros(4)
+            shares = np.zeros(4 if own.length else 3)
             if own.floating == "random" and k:
-                count = 4 if own.length else 3
-                shares = rng.uniform(-0.7, 0.7, count)
+                shares = rng.uniform(-0.7, 0.7, len(shares))
                 row[slices[f"float of {joint}"]] = shares
             wider = 0.01 * rng.normal() if k else 0.0
             row[slices[f"clearance of {joint}"]] = wider
