@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
@@ -147,7 +148,7 @@ class Kinematics:
             coordinates, turns = self._stepped(coordinates, turns, free, step * scale)
             right, matrix, twists, poses = self._linear(coordinates, turns)
         else:
-            raise InputError(self._open(first, right))
+            raise InputError(self._open(first, self._least_open(coordinates, turns, free, scale)))
         self._refuse_unfit(matrix * scale / own.length, twists * scale, poses)
         held, singular, sign = self._held(matrix * scale / own.length, None)
         base, child = self._frames
@@ -164,6 +165,15 @@ class Kinematics:
             if own.joint.kind == BALL and free[own.first] >= 0:
                 turns[own.frame] = rotation(step[free[own.first] : free[own.first] + 3]) @ turns[own.frame]
         return coordinates, turns
+
+    def _least_open(self, coordinates: Array, turns: Array, free: NDArray[np.int64], scale: Array) -> Array:
+        """What the equations lack at the least, near some coordinates (rows,)."""
+
+        def lacks(step: Array) -> Array:
+            return self._linear(*self._stepped(coordinates, turns, free, step * scale))[0]
+
+        found: Array = least_squares(lacks, np.zeros(len(scale))).fun
+        return found
 
     def _open(self, first: Array, right: Array) -> str:
         """Which joint stays open, and how far."""
