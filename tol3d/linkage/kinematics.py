@@ -15,7 +15,7 @@ from tol3d.assembly.placing.poses import IDENTITY, Pose
 from tol3d.errors import InputError
 from tol3d.linkage.closing import equations, forward, loops_closed, rows_of
 from tol3d.linkage.frames import joint_frames, stacked
-from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SWING
+from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SCREW, SWING
 from tol3d.linkage.structure import FREEDOMS, ROOT, Structure
 
 Array = NDArray[np.float64]
@@ -320,7 +320,20 @@ class Kinematics:
         if sign != start.sign:
             return None
         base, child = self._with_output(target)
+        coordinates = self._wound(coordinates, poses, base, child)
         return Position(coordinates, turns, held, sign, base, child, singular, poses)
+
+    def _wound(self, coordinates: Array, poses: Array, base: Array, child: Array) -> Array:
+        """With the turns of screws that shut loops, which may be several: the next ones count from there."""
+        found = coordinates.copy()
+        for own in self.structure.shut:
+            if own.joint.kind == SCREW:
+                first = base[own.frame][:, :3] if own.on == ROOT else poses[own.on, :3, :3] @ base[own.frame][:, :3]
+                last = child[own.frame][:, :3] if own.body == ROOT else poses[own.body, :3, :3] @ child[own.frame][:, :3]
+                seen = first.T @ last
+                turn, before = float(np.arctan2(seen[1, 0], seen[0, 0])), coordinates[own.first]
+                found[own.first] = turn + 2 * np.pi * np.round((before - turn) / (2 * np.pi))
+        return found
 
     def _run(
         self, start: Position, inputs: Mapping[str, float], target: Array | None
