@@ -49,7 +49,8 @@ def drive(middle: Literal["swing", "universal"] = "swing") -> Kinematics:
     bodies = ["ring", "gear 2", "rod 1", "nut 1", "rod 2", "nut 2"]
     inputs = {f"travel {k}": (f"guide {k}", 0) for k in (1, 2)}
     return Kinematics(
-        structured("drive", bodies, joints, inputs, Output("ring.axis", "frame.axis", False), drawn, frames, None), drawn
+        structured("drive", bodies, joints, inputs, Output("ring.axis", "frame.axis", False), drawn, frames, None),
+        drawn,
     )
 
 

@@ -61,7 +61,9 @@ def _side(k: int) -> tuple[str, str, str, str]:
     return parts, tolerances, joints, inputs
 
 
-def drive_text(measures: str, trials: int = 4000, middle: str = "kind: swing, between: [frame.centre, ring.centre]") -> str:
+def drive_text(
+    measures: str, trials: int = 4000, middle: str = "kind: swing, between: [frame.centre, ring.centre]"
+) -> str:
     """The scene.
 
     Args:

@@ -315,7 +315,9 @@ def study_of(linkage: Linkage, folder: Path, deviating: Sequence[str] | None = N
 
 def random_deviations(linkage: Linkage, rng: np.random.Generator, size: float, angle: float) -> Trial:
     """Of all features of joints [mm], and of all inputs [mm or rad]."""
-    deviations = {name: size * rng.normal(size=4 if linkage.feature(name).kind == "axis" else 3) for name in linkage.held}
+    deviations = {
+        name: size * rng.normal(size=4 if linkage.feature(name).kind == "axis" else 3) for name in linkage.held
+    }
     zeros = {name: rng.normal() * (size if linkage.is_slide(name) else angle) for name in linkage.inputs}
     return deviations, zeros
 

@@ -7,7 +7,9 @@ from oracles.closed_loops import pose
 ZERO = {"zero": point((0.0, 0.0, 0.0))}
 
 
-def placed(at: Array | tuple[float, float, float] = (0.0, 0.0, 0.0), turn: tuple[float, float, float] = (0, 0, 0)) -> Array:
+def placed(
+    at: Array | tuple[float, float, float] = (0.0, 0.0, 0.0), turn: tuple[float, float, float] = (0, 0, 0)
+) -> Array:
     return pose(turn, at)
 
 
@@ -23,13 +25,24 @@ def slider_crank() -> Linkage:
     square = np.cross(along, [0.0, 0.0, 1.0])
     return Linkage(
         parts={
-            "frame": Part(placed(), {**ZERO, "shaft": axis((0, 0, 0), (0, 0, 1)), "guide": axis((100.0, *GUIDE[1:]), (1, 0, 0), 60.0)}),
-            "crank": Part(placed(), {"bore": axis((0, 0, 0), (0, 0, 1)), "pin": point(pin), "probe": point((12.0, 30.0, 5.0))}),
+            "frame": Part(
+                placed(),
+                {**ZERO, "shaft": axis((0, 0, 0), (0, 0, 1)), "guide": axis((100.0, *GUIDE[1:]), (1, 0, 0), 60.0)},
+            ),
+            "crank": Part(
+                placed(), {"bore": axis((0, 0, 0), (0, 0, 1)), "pin": point(pin), "probe": point((12.0, 30.0, 5.0))}
+            ),
             "rod": Part(
-                placed(pin), {"big": point((0, 0, 0)), "small": axis(along, square, 10.0), "probe": point(along / 2 + [0, 0, 9.0])}
+                placed(pin),
+                {"big": point((0, 0, 0)), "small": axis(along, square, 10.0), "probe": point(along / 2 + [0, 0, 9.0])},
             ),
             "slider": Part(
-                placed(end), {"sleeve": axis((0, 0, 0), (1, 0, 0)), "pin": axis((0, 0, 0), (0, 0, 1)), "probe": point((10.0, 4.0, -3.0))}
+                placed(end),
+                {
+                    "sleeve": axis((0, 0, 0), (1, 0, 0)),
+                    "pin": axis((0, 0, 0), (0, 0, 1)),
+                    "probe": point((10.0, 4.0, -3.0)),
+                },
             ),
         },
         fixed=("frame",),
@@ -68,10 +81,20 @@ def four_bar(angle: float = 1.1) -> Linkage:
             "frame": Part(placed(), {**ZERO, "A": axis((0, 0, 0), (0, 0, 1)), "D": axis(ground, (0, 0, 1))}),
             "crank": Part(placed(), {"A": axis((0, 0, 0), (0, 0, 1)), "B": point(a), "probe": point((9.0, 20.0, 6.0))}),
             "coupler": Part(
-                placed(a), {"B": point((0, 0, 0)), "C": axis(b - a, (0, 0, 1), 30.0), "probe": point((b - a) / 2 + [3.0, 8.0, -5.0])}
+                placed(a),
+                {
+                    "B": point((0, 0, 0)),
+                    "C": axis(b - a, (0, 0, 1), 30.0),
+                    "probe": point((b - a) / 2 + [3.0, 8.0, -5.0]),
+                },
             ),
             "rocker": Part(
-                placed(ground), {"C": axis(b - ground, (0, 0, 1), 30.0), "D": axis((0, 0, 0), (0, 0, 1)), "probe": point((5.0, 30.0, 2.0))}
+                placed(ground),
+                {
+                    "C": axis(b - ground, (0, 0, 1), 30.0),
+                    "D": axis((0, 0, 0), (0, 0, 1)),
+                    "probe": point((5.0, 30.0, 2.0)),
+                },
             ),
         },
         fixed=("frame",),
@@ -96,7 +119,9 @@ def rssr() -> Linkage:
             "frame": Part(placed(), {**ZERO, "A": axis((0, 0, 0), (0, 0, 1)), "D": axis(pivot, skew)}),
             "crank": Part(placed(), {"A": axis((0, 0, 0), (0, 0, 1)), "B": point(b), "probe": point((9.0, 20.0, 6.0))}),
             "rod": Part(placed(b), {"B": point((0, 0, 0)), "C": point(c - b)}),
-            "rocker": Part(placed(pivot), {"C": point(c - pivot), "D": axis((0, 0, 0), skew), "probe": point((5.0, 30.0, 2.0))}),
+            "rocker": Part(
+                placed(pivot), {"C": point(c - pivot), "D": axis((0, 0, 0), skew), "probe": point((5.0, 30.0, 2.0))}
+            ),
         },
         fixed=("frame",),
         joints={
@@ -121,7 +146,10 @@ def stewart(seed: int = 0) -> Linkage:
     platform = pose(rng.uniform(-0.1, 0.1, 3), np.array([0.0, 0.0, 180.0]) + rng.uniform(-10, 10, 3))
     parts = {
         "frame": Part(placed(), dict(ZERO)),
-        "platform": Part(platform, {"probe": point((10.0, 20.0, 5.0)), "other": point((-30.0, 15.0, -8.0)), "third": point((7.0, -40.0, 3.0))}),
+        "platform": Part(
+            platform,
+            {"probe": point((10.0, 20.0, 5.0)), "other": point((-30.0, 15.0, -8.0)), "third": point((7.0, -40.0, 3.0))},
+        ),
     }
     joints, inputs = {}, {}
     frame, plate = dict(ZERO), dict(parts["platform"].features)
@@ -134,7 +162,9 @@ def stewart(seed: int = 0) -> Linkage:
         frame[f"foot {k}"] = axis(base[k], first)
         plate[f"ball {k}"] = point(top[k])
         # the cylinder's second axis lies across the first; the leg slides along the third direction
-        parts[f"cylinder {k}"] = Part(placed(base[k]), {"foot": axis((0, 0, 0), second), "bore": axis(along / 2, along, 60.0)})
+        parts[f"cylinder {k}"] = Part(
+            placed(base[k]), {"foot": axis((0, 0, 0), second), "bore": axis(along / 2, along, 60.0)}
+        )
         parts[f"piston {k}"] = Part(placed(base[k]), {"rod": axis(along / 2, along, 60.0), "ball": point(along)})
         joints |= {
             f"foot {k}": Joint("universal", f"frame.foot {k}", f"cylinder {k}.foot"),
@@ -158,7 +188,10 @@ def delta() -> Linkage:
     down = 60.0
     high = np.sqrt(rod**2 - (base + arm * np.cos(np.radians(down)) - plate) ** 2)
     centre = np.array([0.0, 0.0, -arm * np.sin(np.radians(down)) - high])
-    frame, top = dict(ZERO), {"probe": point((3.0, 5.0, -4.0)), "other": point((-20.0, 8.0, 2.0)), "third": point((1.0, 15.0, 7.0))}
+    frame, top = (
+        dict(ZERO),
+        {"probe": point((3.0, 5.0, -4.0)), "other": point((-20.0, 8.0, 2.0)), "third": point((1.0, 15.0, 7.0))},
+    )
     parts, joints, inputs = {}, {}, {}
     for k in range(3):
         out = np.array([np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3), 0.0])
@@ -190,7 +223,11 @@ def delta() -> Linkage:
 def swash(kind: str = "swing") -> Linkage:
     """A plate on a swing or universal joint, pushed by two inclined screws and rods of unequal length."""
     frame = {**ZERO, "centre": point((0, 0, 0), (0.1, -0.2, 1.0))}
-    plate = {"centre": point((0, 0, 0), (0.05, 0.1, 1.0)), "probe": point((10.0, 12.0, 5.0)), "other": point((-8.0, 3.0, 9.0))}
+    plate = {
+        "centre": point((0, 0, 0), (0.05, 0.1, 1.0)),
+        "probe": point((10.0, 12.0, 5.0)),
+        "other": point((-8.0, 3.0, 9.0)),
+    }
     parts, joints, inputs = {}, {}, {}
     if kind == "universal":
         frame["yoke"], plate["yoke"] = axis((0, 0, 0), (1.0, 0.3, 0.0)), axis((0, 0, 0), (-0.3, 1.0, 0.4))
@@ -198,7 +235,10 @@ def swash(kind: str = "swing") -> Linkage:
     else:
         joints["middle"] = Joint("swing", "frame.centre", "plate.centre")
     for k, (ball, rod, guide) in enumerate(
-        (((-40.0, 69.0, 3.0), (4.0, -7.0, 240.0), (0.1, 0.05, 1.0)), ((42.0, 65.0, -2.0), (-6.0, 3.0, 215.0), (-0.12, 0.02, 1.0)))
+        (
+            ((-40.0, 69.0, 3.0), (4.0, -7.0, 240.0), (0.1, 0.05, 1.0)),
+            ((42.0, 65.0, -2.0), (-6.0, 3.0, 215.0), (-0.12, 0.02, 1.0)),
+        )
     ):
         end = np.array(ball)
         foot = end - np.array(rod)

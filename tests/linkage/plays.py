@@ -53,5 +53,7 @@ def with_plays(linkage: Linkage) -> tuple[Linkage, Mapping[str, Play]]:
             plays[name] = Play(0.05 + 0.01 * count, kinds[count % 3], along=(0.3, -0.5 - count, 0.8))
         elif own.kind in AXIAL:
             plays[name] = Play(0.04, "centred" if count % 4 == 3 else "random", 14.0)
-    joints = {name: replace(own, more=plays[name].text if name in plays else "") for name, own in linkage.joints.items()}
+    joints = {
+        name: replace(own, more=plays[name].text if name in plays else "") for name, own in linkage.joints.items()
+    }
     return replace(linkage, joints=joints), plays

@@ -51,7 +51,9 @@ def _drawn(kind: str, frame: Array) -> Feature:
     return Feature("point" if kind in ("ball", "swing") else "axis", facing(frame[:3, 2], frame[:3, 3]))
 
 
-def random_loop(seed: int, kinds: Sequence[str] | None = None, *, given: int | None = None, two: bool = False) -> Linkage:
+def random_loop(
+    seed: int, kinds: Sequence[str] | None = None, *, given: int | None = None, two: bool = False
+) -> Linkage:
     """A loop of bodies from the frame to the frame; with `two`, a second one that ends on a body of the first.
 
     Args:
@@ -136,5 +138,3 @@ def open_chain() -> Linkage:
         [f"link {k}.probe" for k in (0, 1, 2, 3, 5, 7)],
         {"drawn": dict.fromkeys(inputs, 0.0), "on": values},
     )
-
-

@@ -46,7 +46,13 @@ def test_a_four_bar_by_the_cosine_rule(tmp_path: Path) -> None:
         assert crank == pytest.approx(pose([0, 0, turned], [0, 0, 0])[:3, :3] @ [9.0, 20.0, 6.0], abs=LIMIT)
         for found, ends, drawn, own, start in (
             (coupler, last - first, np.subtract(*four_bar_points(1.1)[::-1]), None, first),
-            (rocker, last - [FOUR["ground"], 0], four_bar_points(1.1)[1] - [FOUR["ground"], 0], [5.0, 30.0, 2.0], [FOUR["ground"], 0]),
+            (
+                rocker,
+                last - [FOUR["ground"], 0],
+                four_bar_points(1.1)[1] - [FOUR["ground"], 0],
+                [5.0, 30.0, 2.0],
+                [FOUR["ground"], 0],
+            ),
         ):
             local = np.append(drawn / 2, 0.0) + [3.0, 8.0, -5.0] if own is None else np.array(own)
             spin = np.arctan2(ends[1], ends[0]) - np.arctan2(drawn[1], drawn[0])
@@ -161,7 +167,12 @@ def test_random_stewart_platforms_hang_where_scipy_finds_them(platform: Study, c
         slid = np.array([values[name] + zeros[name] for name in values])
         lengths = np.linalg.norm((long + slid)[:, None] * alongs + low, axis=1)
         where = hung(feet, balls + high, lengths, nominal)
-        expected.append([(where @ np.append(platform.linkage.feature(own).frame[:3, 3], 1.0))[:3] for own in platform.linkage.probes])
+        expected.append(
+            [
+                (where @ np.append(platform.linkage.feature(own).frame[:3, 3], 1.0))[:3]
+                for own in platform.linkage.probes
+            ]
+        )
     assert np.abs(platform.seen(np.stack(rows), far) - np.array(expected)).max() < LIMIT
 
 
@@ -174,9 +185,7 @@ def test_the_legs_of_stewart_platforms_by_their_places(tmp_path: Path) -> None:
         balls = np.array([linkage.feature(f"platform.ball {k}").frame[:3, 3] for k in range(6)])
         drawn = linkage.parts["platform"].placed
         there = drawn @ pose(rng.uniform(-0.15, 0.15, 3), rng.uniform(-15, 15, 3))
-        lengths = [
-            np.linalg.norm(balls @ own[:3, :3].T + own[:3, 3] - feet, axis=1) for own in (drawn, there)
-        ]
+        lengths = [np.linalg.norm(balls @ own[:3, :3].T + own[:3, 3] - feet, axis=1) for own in (drawn, there)]
         poses = {"there": dict(zip(linkage.inputs, (lengths[1] - lengths[0]).tolist(), strict=True))}
         study = study_of(replace(linkage, poses=poses), tmp_path, [])
         want = [(there @ np.append(linkage.feature(own).frame[:3, 3], 1.0))[:3] for own in linkage.probes]

@@ -27,7 +27,12 @@ MEASURES = "".join(error(f"error {pose}", f"after: drive, at: {pose}") for pose 
     for part in PARTS
     for pose in ("rest", "middle", "far")
 )
-DIGEST = {"rest": (1.27, 0.70, 0.005), "middle": (1.42, 0.84, 0.005), "wide": (2.40, 1.70, 0.005), "far": (5.8, 4.4, 0.05)}
+DIGEST = {
+    "rest": (1.27, 0.70, 0.005),
+    "middle": (1.42, 0.84, 0.005),
+    "wide": (2.40, 1.70, 0.005),
+    "far": (5.8, 4.4, 0.05),
+}
 """Mean and sigma of the error, and to what they are printed [']."""
 
 
@@ -147,9 +152,15 @@ def test_trials_against_two_equations_in_two_unknowns(sample: Sample, pose: str)
         for side in (1, 2):
             s = side - 1
             b[s] += [float(sample.column(f"ball {side} {axis}")[k, 0]) for axis in "xyz"]
-            way = nominal[s] + sum(float(sample.column(f"{name} of travel {side}")[k, 0]) * share for name, share in (
-                ("zero", 1.0), ("lead", abs(nominal[s]) / 300), ("backlash", 5 / (2 * np.pi)), ("sine", 5 / (2 * np.pi))
-            ))
+            way = nominal[s] + sum(
+                float(sample.column(f"{name} of travel {side}")[k, 0]) * share
+                for name, share in (
+                    ("zero", 1.0),
+                    ("lead", abs(nominal[s]) / 300),
+                    ("backlash", 5 / (2 * np.pi)),
+                    ("sine", 5 / (2 * np.pi)),
+                )
+            )
             a[s] += [*(float(sample.column(f"guide {side} {axis}")[k, 0]) for axis in "xy"), way - ROD]
             a[s] += 0.005 * sample.column(f"float of lower {side}")[k]
             own = 0.005 * sample.column(f"float of upper {side}")[k]

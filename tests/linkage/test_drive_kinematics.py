@@ -82,10 +82,14 @@ def test_the_first_singular_pose_is_at_76_1655_degrees(own: Kinematics, azimuth:
 @pytest.mark.parametrize(("azimuth", "reaches"), [(50.93, False), (60.0, True), (90.0, True), (40.0, True)])
 def test_elsewhere_the_ring_tilts_further(own: Kinematics, azimuth: float, reaches: bool) -> None:
     """By the determinant of the closed formula's rates, which keeps its sign on the way there and no further."""
-    ways = np.array([np.linalg.det(rates(angle, np.radians(azimuth))) for angle in np.radians(np.arange(1.0, 76.3, 0.01))])
+    ways = np.array(
+        [np.linalg.det(rates(angle, np.radians(azimuth))) for angle in np.radians(np.arange(1.0, 76.3, 0.01))]
+    )
     assert (ways < 0).all() == reaches
     if reaches:
-        assert nuts(own, at(own, 76.2, azimuth)) == pytest.approx(travels(np.radians(76.2), np.radians(azimuth)), abs=1e-9)
+        assert nuts(own, at(own, 76.2, azimuth)) == pytest.approx(
+            travels(np.radians(76.2), np.radians(azimuth)), abs=1e-9
+        )
     else:
         with pytest.raises(UnreachedError):
             at(own, 76.2, azimuth)

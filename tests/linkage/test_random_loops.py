@@ -1,10 +1,12 @@
 """Loops of joints of any kinds at random places, against the oracle and road against road."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from linkage.linked_bodies import Linkage, Trial, random_deviations, study_of
+from linkage.linked_bodies import Joint, Linkage, Part, Trial, axis, random_deviations, study_of
+from linkage.mechanisms import ZERO, placed
 from linkage.random_loops import FREEDOMS, open_chain, random_loop
 
 LIMIT = 1e-9  # mm
@@ -53,3 +55,57 @@ def test_random_loops_are_as_the_oracle_has_them(seed: int, tmp_path: Path) -> N
 @pytest.mark.parametrize("seed", [*range(4), *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 60))])
 def test_the_roads_of_random_loops_differ_by_second_order(seed: int, tmp_path: Path) -> None:
     assert_second_order(random_loop(100 + seed, two=seed % 2 == 0), tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["cylindrical", "universal", "swing"])
+def test_an_input_of_one_of_two_freedoms_counts_wherever_its_joint_is_listed(kind: str, tmp_path: Path) -> None:
+    """Among five revolute joints it is the one that shuts the loop, but for its input."""
+    linkage = random_loop(5, ["revolute", "revolute", kind, "revolute", "revolute", "revolute"], given=2)
+    others = {name: own for name, own in linkage.joints.items() if name != "a 2"}
+    last = replace(linkage, joints={**others, "a 2": linkage.joints["a 2"]})
+    assert_as_the_oracle(last, tmp_path)
+
+
+X, Y, Z = np.eye(3).tolist()
+
+
+@pytest.mark.parametrize("order", ["screw first", "screw last"])
+def test_a_jack_climbs_by_its_lead_for_each_of_many_turns(order: str, tmp_path: Path) -> None:
+    """Its nut is held by slides along x, y and z and turns about x and y; the screw may be what shuts the loop."""
+    chain = {
+        "pz": ("prismatic", Z),
+        "py": ("prismatic", Y),
+        "px": ("prismatic", X),
+        "ry": ("revolute", Y),
+        "rx": ("revolute", X),
+    }
+    names = ["frame", "f", "e", "d", "c", "nut"]
+    parts = {name: Part(placed((0.0, 0.0, 10.0 if name != "frame" else 0.0)), {}) for name in names}
+    features = {name: dict(ZERO) for name in [*names, "screw"]}
+    joints = {}
+    for (name, (kind, way)), before, after in zip(chain.items(), names[:-1], names[1:], strict=True):
+        features[before][name] = axis((0, 0, 10.0 if before == "frame" else 0.0), way)
+        features[after][name] = axis((0, 0, 0), way)
+        joints[name] = Joint(kind, f"{before}.{name}", f"{after}.{name}")
+    features["frame"]["r"] = features["screw"]["r"] = features["nut"]["s"] = axis((0, 0, 0), Z)
+    features["screw"]["s"] = axis((0, 0, 10.0), Z)
+    joints["r"] = Joint("revolute", "frame.r", "screw.r")
+    screw = {"s": Joint("screw", "screw.s", "nut.s", lead=5.0)}
+    parts = {name: Part(own.placed, features[name]) for name, own in parts.items()} | {
+        "screw": Part(placed(), features["screw"])
+    }
+    turns = {"half": 0.5, "three": 3.05, "back": -3.2}
+    linkage = Linkage(
+        parts,
+        ("frame",),
+        screw | joints if order == "screw first" else joints | screw,
+        {"turn": ("r", "turn")},
+        ("nut.zero",),
+        {name: {"turn": 2 * np.pi * count} for name, count in turns.items()},
+    )
+    study = study_of(linkage, tmp_path, [])
+    for name, count in turns.items():
+        # a screw that turns lifts a nut that does not the other way
+        assert study.seen(study.columns({}, {})[None], name)[0, 0] == pytest.approx(
+            [0, 0, 10.0 - 5.0 * count], abs=1e-9
+        )

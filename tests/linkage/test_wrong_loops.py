@@ -141,7 +141,11 @@ WRONG = {
         "got 'rod.side', which it leaves free: 'rod' turns about",
     ),
     "an input that it does not reach": (
-        scene(inputs="{angle: {of: d}}", poses="{here: {angle: 0 deg}, on: {angle: 170 deg}}", measure=MEASURE.replace("here", "on")),
+        scene(
+            inputs="{angle: {of: d}}",
+            poses="{here: {angle: 0 deg}, on: {angle: 170 deg}}",
+            measure=MEASURE.replace("here", "on"),
+        ),
         "moves.loop.poses.on",
         "expected a pose that the loop reaches, got 'on'; it gets as far as angle ",
     ),
@@ -233,9 +237,7 @@ WRONG = {
         "angle",
     ),
     "lengths for angles": (
-        scene(
-            inputs="{angle: {of: a, deviations: {off: {distribution: {kind: normal, mean: 0 mm, sigma: 1 um}}}}}"
-        ),
+        scene(inputs="{angle: {of: a, deviations: {off: {distribution: {kind: normal, mean: 0 mm, sigma: 1 um}}}}}"),
         "moves.loop.inputs.angle.deviations.off.distribution",
         "expected angles, as the input is, got lengths",
     ),
@@ -354,7 +356,8 @@ DRIVE = {
     ),
     "the spin of a rod": (
         drive_text("  gap: {kind: direction_error, of: rod 1.side, at: far}\n").replace(
-            "features: {bottom:", "features: {side: {kind: axis, at: [9 mm, 0 mm, 9 mm], axis: [1, 0, 0], length: 9 mm}, bottom:"
+            "features: {bottom:",
+            "features: {side: {kind: axis, at: [9 mm, 0 mm, 9 mm], axis: [1, 0, 0], length: 9 mm}, bottom:",
         ),
         "measures.gap.of",
         "'rod 1' turns about [0, 0, 1]",
@@ -372,7 +375,9 @@ def test_check_refuses_of_the_drive(name: str, tmp_path: Path, tol3d: Command) -
 
 def test_a_clearance_that_is_drawn_below_0_is_no_build(tmp_path: Path) -> None:
     """That trial alone; the others keep their values."""
-    clearance = "clearance: {diameter: 5 um, distribution: {kind: normal, mean: 0 um, sigma: 3 um}, float: {kind: random}}"
+    clearance = (
+        "clearance: {diameter: 5 um, distribution: {kind: normal, mean: 0 um, sigma: 3 um}, float: {kind: random}}"
+    )
     made = assembled(scene({"b": f"{{kind: ball, between: [crank.P, rod.P], {clearance}}}"}), tmp_path)
     rows = np.zeros((4, component_count(made.system)))
     rows[:, component_slices(made.system)["clearance of b"]] = np.array([[0.0], [-0.004], [-0.0051], [0.004]])

@@ -111,7 +111,7 @@ class Kinematics:
     # what it lacks and what is free -----------------------------------------------------------------
 
     def _linear(self, coordinates: Array, turns: Array) -> tuple[Array, Array, Array, Array]:
-        """What the equations lack (rows,), their Jacobian (rows, free), twists (bodies, 6, free) and poses of bodies."""
+        """What the equations lack (rows,), their Jacobian (rows, free), twists (bodies, 6, free), poses of bodies."""
         own, free = self.structure, self.structure.free(inputs=False)
         count = int(free.max(initial=-1)) + 1
         base, child = self._frames
@@ -328,9 +328,8 @@ class Kinematics:
         found = coordinates.copy()
         for own in self.structure.shut:
             if own.joint.kind == SCREW:
-                first = base[own.frame][:, :3] if own.on == ROOT else poses[own.on, :3, :3] @ base[own.frame][:, :3]
-                last = child[own.frame][:, :3] if own.body == ROOT else poses[own.body, :3, :3] @ child[own.frame][:, :3]
-                seen = first.T @ last
+                turns = [np.eye(3) if body == ROOT else poses[body, :3, :3] for body in (own.on, own.body)]
+                seen = (turns[0] @ base[own.frame, :, :3]).T @ turns[1] @ child[own.frame, :, :3]
                 turn, before = float(np.arctan2(seen[1, 0], seen[0, 0])), coordinates[own.first]
                 found[own.first] = turn + 2 * np.pi * np.round((before - turn) / (2 * np.pi))
         return found
