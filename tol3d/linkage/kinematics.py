@@ -7,15 +7,16 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing.poses import Pose
+from tol3d.assembly.placing.poses import IDENTITY, Pose
 from tol3d.errors import InputError
 from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.frames import joint_frames, stacked
 from tol3d.linkage.joint_equations import equations, forward, rows_of
-from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SWING
+from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SCREW, SWING
 from tol3d.linkage.structure import FREEDOMS, ROOT, Structure
 
 Array = NDArray[np.float64]
@@ -110,8 +111,8 @@ class Kinematics:
 
     # what it lacks and what is free -----------------------------------------------------------------
 
-    def _linear(self, coordinates: Array, turns: Array) -> tuple[Array, Array, Array]:
-        """What the equations lack (rows,), their Jacobian (rows, free) and twists of bodies (bodies, 6, free)."""
+    def _linear(self, coordinates: Array, turns: Array) -> tuple[Array, Array, Array, Array]:
+        """What the equations lack (rows,), their Jacobian (rows, free), twists (bodies, 6, free), poses of bodies."""
         own, free = self.structure, self.structure.free(inputs=False)
         count = int(free.max(initial=-1)) + 1
         base, child = self._frames
@@ -124,7 +125,7 @@ class Kinematics:
         forward(model, state, room)
         matrix, right = np.zeros((own.rows, count)), np.zeros(own.rows)
         equations(model, state, room, own.length, matrix, right)
-        return right, matrix, twists
+        return right, matrix, twists, poses
 
     @cached_property
     def drawn(self) -> Position:
@@ -138,7 +139,7 @@ class Kinematics:
         free = own.free(inputs=False)
         scale = own.scale(free)
         coordinates, turns = np.zeros(own.width), own.drawn_turns()
-        right, matrix, twists = self._linear(coordinates, turns)
+        right, matrix, twists, poses = self._linear(coordinates, turns)
         first = right
         for _ in range(ROUNDS):
             if not right.size or np.abs(right).max() <= CLOSED * own.length:
@@ -146,10 +147,10 @@ class Kinematics:
             step = np.linalg.lstsq(matrix * scale / own.length, -right / own.length, rcond=DEPENDENT)[0]
             step *= min(1.0, 0.2 / max(np.abs(step).max(), 1e-12))
             coordinates, turns = self._stepped(coordinates, turns, free, step * scale)
-            right, matrix, twists = self._linear(coordinates, turns)
+            right, matrix, twists, poses = self._linear(coordinates, turns)
         else:
-            raise InputError(self._open(first, right))
-        self._refuse_unfit(matrix * scale / own.length, twists * scale)
+            raise InputError(self._open(first, self._least_open(coordinates, turns, free, scale)))
+        self._refuse_unfit(matrix * scale / own.length, twists * scale, poses)
         held, singular, sign = self._held(matrix * scale / own.length, None)
         base, child = self._frames
         found = self._solved(Position(coordinates, turns, held, sign, base, child, singular, np.empty(0)), {}, None)
@@ -166,6 +167,15 @@ class Kinematics:
                 turns[own.frame] = rotation(step[free[own.first] : free[own.first] + 3]) @ turns[own.frame]
         return coordinates, turns
 
+    def _least_open(self, coordinates: Array, turns: Array, free: NDArray[np.int64], scale: Array) -> Array:
+        """What the equations lack at the least, near some coordinates (rows,)."""
+
+        def lacks(step: Array) -> Array:
+            return self._linear(*self._stepped(coordinates, turns, free, step * scale))[0]
+
+        found: Array = least_squares(lacks, np.zeros(len(scale))).fun
+        return found
+
     def _open(self, first: Array, right: Array) -> str:
         """Which joint stays open, and how far."""
         worst, size, start = "", -1.0, 0
@@ -181,7 +191,7 @@ class Kinematics:
             "are `placed`"
         )
 
-    def _refuse_unfit(self, matrix: Array, twists: Array) -> None:
+    def _refuse_unfit(self, matrix: Array, twists: Array, poses: Array) -> None:
         """Refuse equations that ask twice for the same, and freedoms that move what joints hold."""
         own = self.structure
         if matrix.size:
@@ -200,7 +210,7 @@ class Kinematics:
                 )
         for motion in self._idle(matrix):
             moved = np.einsum("bij,j->bi", twists, motion)
-            if self._moves_joints(moved):
+            if self._moves_joints(moved, poses):
                 raise InputError(
                     f"moves.{own.name}: expected joints and inputs that leave nothing free, got a freedom: "
                     f"{self._in_words(moved)}; give an input or another joint"
@@ -240,18 +250,19 @@ class Kinematics:
         rank = int((sizes > DEPENDENT * max(sizes.max(), 1.0)).sum())
         return np.asarray(right[rank:])
 
-    def _moves_joints(self, moved: Array) -> bool:
-        """Whether motions of the bodies (bodies, 6) move features by which joints hold them."""
+    def _moves_joints(self, moved: Array, poses: Array) -> bool:
+        """Whether motions of the bodies (bodies, 6) move features by which joints hold them, where play has those."""
         own, tiny = self.structure, 1e-6
         size = max(np.abs(moved[:, :3]).max() * own.length, np.abs(moved[:, 3:]).max(), 1e-300)
-        poses = self._drawn_poses()
         for step in own.steps:
+            play = np.vstack([stacked([self.plays.get(step.joint.name, IDENTITY)])[0, 0], np.eye(4)[3:]])
             for feature in step.joint.features:
                 part = feature.partition(".")[0]
                 if part not in own.body_of:
                     continue
                 twist = moved[own.body_of[part]]
                 frame = poses[own.body_of[part]] @ own.frames[feature]
+                frame = frame @ play if feature == step.joint.on else frame
                 shift, z = twist[3:] + np.cross(twist[:3], frame[:3, 3]), frame[:3, 2]
                 if step.joint.kind in ON_AXES_KINDS:
                     shift = shift - z * (z @ shift)
@@ -261,9 +272,6 @@ class Kinematics:
                 if max(np.abs(shift).max(), np.abs(turned).max()) > tiny * size:
                     return True
         return False
-
-    def _drawn_poses(self) -> Array:
-        return np.array([self.structure.drawn[body] for body in self.structure.bodies])
 
     def _in_words(self, moved: Array) -> str:
         """The largest motion of a body."""
@@ -275,7 +283,7 @@ class Kinematics:
     def idle_freedoms(self) -> Sequence[tuple[str, Array]]:
         """Freedoms that move no joint: in words, and the motions of all bodies (bodies, 6)."""
         free = self.structure.free(inputs=False)
-        _, matrix, twists = self._linear(self.drawn.coordinates, self.drawn.turns)
+        _, matrix, twists, _ = self._linear(self.drawn.coordinates, self.drawn.turns)
         scale = self.structure.scale(free)
         motions = self._idle(matrix * scale / self.structure.length)
         alone = _each_by_itself([np.einsum("bij,j->bi", twists * scale, motion) for motion in motions])
@@ -313,7 +321,19 @@ class Kinematics:
         if sign != start.sign:
             return None
         base, child = self._with_output(target)
+        coordinates = self._wound(coordinates, poses, base, child)
         return Position(coordinates, turns, held, sign, base, child, singular, poses)
+
+    def _wound(self, coordinates: Array, poses: Array, base: Array, child: Array) -> Array:
+        """With the turns of screws that shut loops, which may be several: the next ones count from there."""
+        found = coordinates.copy()
+        for own in self.structure.shut:
+            if own.joint.kind == SCREW:
+                turns = [np.eye(3) if body == ROOT else poses[body, :3, :3] for body in (own.on, own.body)]
+                seen = (turns[0] @ base[own.frame, :, :3]).T @ turns[1] @ child[own.frame, :, :3]
+                turn, before = float(np.arctan2(seen[1, 0], seen[0, 0])), coordinates[own.first]
+                found[own.first] = turn + 2 * np.pi * np.round((before - turn) / (2 * np.pi))
+        return found
 
     def _run(
         self, start: Position, inputs: Mapping[str, float], target: Array | None

@@ -316,7 +316,7 @@ def structured(
         return part not in bodies or part in reached
 
     while len(reached) < len(bodies):
-        best: tuple[int, int, Joint, bool] | None = None
+        best: tuple[bool, int, int, Joint, bool] | None = None
         for place, own in enumerate(left):
             before, after = own.on.partition(".")[0], own.of.partition(".")[0]
             if is_reached(before) == is_reached(after):
@@ -326,18 +326,23 @@ def structured(
             ahead = after if is_reached(before) else before
             if own.kind != ROLLING and ahead in rolled:
                 continue
-            count = sum((own.name, k) not in given for k in range(len(FREEDOMS[own.kind])))
-            if best is None or (count, place) < best[:2]:
-                best = (count, place, own, is_reached(after))
+            freedoms = [(own.name, k) in given for k in range(len(FREEDOMS[own.kind]))]
+            # a freedom that is given is one of the tree's: a joint that shuts a loop has none
+            key = not any(freedoms), freedoms.count(False), place
+            if best is None or key < best[:3]:
+                best = (*key, own, is_reached(after))
         if best is None:
             lost = next(body for body in bodies if body not in reached)
             words = f"expected a joint that holds {lost!r}, got none that leads to it from a part that is placed"
             raise InputError(f"moves.{name}: {words}")
-        own, reverse = best[2], best[3]
+        own, reverse = best[3], best[4]
         left.remove(own)
         reached[(own.on if reverse else own.of).partition(".")[0]] = len(reached)
         tree.append((own, reverse))
     for own in left:
+        if any(own.name == joint for joint, _ in given):
+            words = "expected a loop with a joint of which nothing is given, got an input of each of its joints"
+            raise InputError(f"moves.{name}.joints.{own.name}: {words}")
         if own.kind == ROLLING:
             words = f"expected no other joint that leads to {own.of.partition('.')[0]!r} than this one"
             raise InputError(f"moves.{name}.joints.{own.name}: {words}, got one; let what it drives follow it")

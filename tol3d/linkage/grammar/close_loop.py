@@ -18,6 +18,7 @@ from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 from tol3d.system.plain import PlainContributor
+from tol3d.units import Quantity, refuse_dimension
 
 if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
@@ -144,7 +145,8 @@ class CloseLoopSpec(StatedMoveSpec):
         for name, joint in self.joints.items():
             ends = [part_of(feature) for feature in joint.between]
             if not set(ends) & set(self.bodies):
-                raise refused(f"joints.{name}.between", "a feature of one of the bodies", " and ".join(joint.between))
+                words = f"a feature of one of the bodies {', '.join(self.bodies)}"
+                raise refused(f"joints.{name}.between", words, " and ".join(joint.between))
             if other := pairs.get(frozenset(joint.between)):
                 words = f"features that no other joint is between, for {other!r} is"
                 raise refused(f"joints.{name}.between", words, " and ".join(joint.between))
@@ -177,8 +179,8 @@ class CloseLoopSpec(StatedMoveSpec):
                 raise refused(f"inputs.{name}.of", f"a freedom that {taken[which]!r} does not give", repr(own.of))
             taken[which] = name
             dimension = self.dimension_of(name)
-            if own.as_placed is not None and own.as_placed.dimension != dimension:
-                raise refused(f"inputs.{name}.as_placed", f"a {dimension}", str(own.as_placed))
+            if own.as_placed is not None:
+                refuse_dimension(own.as_placed, (dimension,), f"inputs.{name}.as_placed")
             for limit in own.range or ():
                 if limit.dimension != dimension:
                     raise refused(f"inputs.{name}.range", f"two {dimension}s", str(limit))
@@ -186,8 +188,8 @@ class CloseLoopSpec(StatedMoveSpec):
                 raise refused(f"inputs.{name}.range", "the lower limit first", f"{own.range[0]}, {own.range[1]}")
             for key, each in own.deviations.items():
                 at = f"inputs.{name}.deviations.{key}"
-                if each.per is not None and each.per.dimension != dimension:
-                    raise refused(f"{at}.per", f"a {dimension}, as the input is", str(each.per))
+                if each.per is not None:
+                    refuse_dimension(each.per, (dimension,), f"{at}.per")
                 if each.is_angle and dimension == "length" and own.lead is None:
                     raise refused(f"{at}.distribution", "lengths, or the `lead` of the input beside angles", "angles")
                 if not each.is_angle and dimension == "angle":
@@ -219,7 +221,7 @@ class CloseLoopSpec(StatedMoveSpec):
             else:
                 self._refuse_unfit_values(at, pose)
 
-    def _refuse_unfit_values(self, at: str, pose: Mapping[str, object]) -> None:
+    def _refuse_unfit_values(self, at: str, pose: Mapping[str, Quantity]) -> None:
         lacking = [own for own in self.inputs if own not in pose]
         for own in pose:
             if own not in self.inputs:
@@ -229,5 +231,4 @@ class CloseLoopSpec(StatedMoveSpec):
             words = f"a value of each of the {len(self.inputs)} inputs"
             raise refused(at, words, f"none of {', '.join(map(repr, lacking))}")
         for own, value in pose.items():
-            if (dimension := getattr(value, "dimension", "")) != self.dimension_of(own):
-                raise refused(f"{at}.{own}", f"a {self.dimension_of(own)}", f"{value}, a {dimension}")
+            refuse_dimension(value, (self.dimension_of(own),), f"{at}.{own}")

@@ -120,12 +120,13 @@ class PathSpec(Strict):
 
 
 def _form(value: Any) -> str:
+    """The tag of a pose; no key may be such a word, or messages would take the tag for the key."""
     keys = set(value) if isinstance(value, Mapping) else set(getattr(type(value), "model_fields", ()))
     if "path" in keys:
-        return "path"
+        return "pose:path"
     if keys & {"tilt", "azimuth"}:
-        return "tilt"
-    return "place" if keys & {"at", "turned"} else "inputs"
+        return "pose:tilt"
+    return "pose:place" if keys & {"at", "turned"} else "pose:inputs"
 
 
 def _a_mapping(value: Any) -> Any:
@@ -135,10 +136,10 @@ def _a_mapping(value: Any) -> Any:
 
 
 PoseSpec = Annotated[
-    Annotated[PathSpec, Tag("path")]
-    | Annotated[TiltPoseSpec, Tag("tilt")]
-    | Annotated[PlacePoseSpec, Tag("place")]
-    | Annotated[Mapping[Name, Amount], Tag("inputs")],
+    Annotated[PathSpec, Tag("pose:path")]
+    | Annotated[TiltPoseSpec, Tag("pose:tilt")]
+    | Annotated[PlacePoseSpec, Tag("pose:place")]
+    | Annotated[Mapping[Name, Amount], Tag("pose:inputs")],
     Discriminator(_form),
     BeforeValidator(_a_mapping),
 ]

@@ -1,0 +1,111 @@
+"""Loops of joints of any kinds at random places, against the oracle and road against road."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from linkage.linked_bodies import Joint, Linkage, Part, Trial, axis, random_deviations, study_of
+from linkage.mechanisms import ZERO, placed
+from linkage.random_loops import FREEDOMS, open_chain, random_loop
+
+LIMIT = 1e-9  # mm
+
+
+def assert_as_the_oracle(linkage: Linkage, folder: Path, seed: int = 0) -> None:
+    study = study_of(linkage, folder)
+    rng = np.random.default_rng(seed)
+    trials: list[Trial] = [({}, {}), *(random_deviations(linkage, rng, 0.01, 1e-4) for _ in range(2))]
+    rows = np.stack([study.columns(*own) for own in trials])
+    for where in linkage.poses:
+        assert np.abs(study.seen(rows, where) - linkage.expected(where, trials)).max() < LIMIT
+
+
+def assert_second_order(linkage: Linkage, folder: Path) -> None:
+    """Halving all deviations quarters the rms difference of the roads, within what a third order makes of 20 trials."""
+    study = study_of(linkage, folder)
+    rng = np.random.default_rng(3)
+    rows = np.stack([study.columns(*random_deviations(linkage, rng, 0.02, 2e-4)) for _ in range(20)])
+    for where in linkage.poses:
+        off = [study.seen(f * rows, where) - study.seen(f * rows, where, "analytic") for f in (1.0, 0.5)]
+        whole, half = (float(np.sqrt(np.mean(own**2))) for own in off)
+        assert whole > 1e-9
+        assert half / whole == pytest.approx(0.25, abs=0.01)
+
+
+def test_a_row_of_every_kind_of_joint_lies_where_its_inputs_say(tmp_path: Path) -> None:
+    assert_as_the_oracle(open_chain(), tmp_path)
+
+
+@pytest.mark.parametrize("kind", [own for own in FREEDOMS if own != "ball"])
+def test_every_kind_of_joint_shuts_a_loop(kind: str, tmp_path: Path) -> None:
+    """A loop that it alone can shut: with others of as many freedoms, and the input before it."""
+    count = {1: 7, 2: 4}[FREEDOMS[kind]]
+    kinds = ["revolute", *[kind] * (count - 1)]
+    if kind == "prismatic":  # three slides, then turns
+        kinds = ["revolute", "prismatic", "revolute", "prismatic", "revolute", "revolute", "prismatic"]
+    assert_as_the_oracle(random_loop(20, kinds, given=0), tmp_path)
+
+
+@pytest.mark.parametrize("seed", [*range(8), *(pytest.param(k, marks=pytest.mark.slow) for k in range(8, 60))])
+def test_random_loops_are_as_the_oracle_has_them(seed: int, tmp_path: Path) -> None:
+    assert_as_the_oracle(random_loop(seed, two=seed % 2 == 1), tmp_path, seed)
+
+
+@pytest.mark.parametrize("seed", [*range(4), *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 60))])
+def test_the_roads_of_random_loops_differ_by_second_order(seed: int, tmp_path: Path) -> None:
+    assert_second_order(random_loop(100 + seed, two=seed % 2 == 0), tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["cylindrical", "universal", "swing"])
+def test_an_input_of_one_of_two_freedoms_counts_wherever_its_joint_is_listed(kind: str, tmp_path: Path) -> None:
+    """Among five revolute joints it is the one that shuts the loop, but for its input."""
+    linkage = random_loop(5, ["revolute", "revolute", kind, "revolute", "revolute", "revolute"], given=2)
+    others = {name: own for name, own in linkage.joints.items() if name != "a 2"}
+    last = replace(linkage, joints={**others, "a 2": linkage.joints["a 2"]})
+    assert_as_the_oracle(last, tmp_path)
+
+
+X, Y, Z = np.eye(3).tolist()
+
+
+@pytest.mark.parametrize("order", ["screw first", "screw last"])
+def test_a_jack_climbs_by_its_lead_for_each_of_many_turns(order: str, tmp_path: Path) -> None:
+    """Its nut is held by slides along x, y and z and turns about x and y; the screw may be what shuts the loop."""
+    chain = {
+        "pz": ("prismatic", Z),
+        "py": ("prismatic", Y),
+        "px": ("prismatic", X),
+        "ry": ("revolute", Y),
+        "rx": ("revolute", X),
+    }
+    names = ["frame", "f", "e", "d", "c", "nut"]
+    parts = {name: Part(placed((0.0, 0.0, 10.0 if name != "frame" else 0.0)), {}) for name in names}
+    features = {name: dict(ZERO) for name in [*names, "screw"]}
+    joints = {}
+    for (name, (kind, way)), before, after in zip(chain.items(), names[:-1], names[1:], strict=True):
+        features[before][name] = axis((0, 0, 10.0 if before == "frame" else 0.0), way)
+        features[after][name] = axis((0, 0, 0), way)
+        joints[name] = Joint(kind, f"{before}.{name}", f"{after}.{name}")
+    features["frame"]["r"] = features["screw"]["r"] = features["nut"]["s"] = axis((0, 0, 0), Z)
+    features["screw"]["s"] = axis((0, 0, 10.0), Z)
+    joints["r"] = Joint("revolute", "frame.r", "screw.r")
+    screw = {"s": Joint("screw", "screw.s", "nut.s", lead=5.0)}
+    parts = {name: Part(own.placed, features[name]) for name, own in parts.items()} | {
+        "screw": Part(placed(), features["screw"])
+    }
+    turns = {"half": 0.5, "three": 3.05, "back": -3.2}
+    linkage = Linkage(
+        parts,
+        ("frame",),
+        screw | joints if order == "screw first" else joints | screw,
+        {"turn": ("r", "turn")},
+        ("nut.zero",),
+        {name: {"turn": 2 * np.pi * count} for name, count in turns.items()},
+    )
+    study = study_of(linkage, tmp_path, [])
+    for name, count in turns.items():
+        # a screw that turns lifts a nut that does not the other way
+        assert study.seen(study.columns({}, {})[None], name)[0, 0] == pytest.approx(
+            [0, 0, 10.0 - 5.0 * count], abs=1e-9
+        )

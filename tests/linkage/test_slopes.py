@@ -1,0 +1,136 @@
+"""First-order slopes of everything that acts, against central differences of the finite road at random poses."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from assembly_trials import assembled
+from linkage.linked_bodies import Array, Linkage, Study, study_of
+from linkage.mechanisms import ALL
+from linkage.plays import with_plays
+from linkage.random_loops import open_chain
+
+from tol3d.system.stated import component_count, component_slices
+
+STEPS = {"mm": 1e-3, "µm": 1e-3, "um": 1e-3, "1": 0.05}  # mm, shares of a radius of some 0.02 mm; all others rad
+ANGLE = 1e-5
+REACHES = {
+    "slider crank": {"angle": 3.0},
+    "four-bar": {"angle": 3.0},
+    "rssr": {"angle": 0.8},
+    "stewart": {f"length {k}": 15.0 for k in range(6)},
+    "delta": {f"angle {k}": 0.3 for k in range(3)},
+    "swash on swing": {"turn 0": 20.0, "turn 1": 2.0},
+    "swash on universal": {"turn 0": 20.0, "turn 1": 2.0},
+    "planet": {"tilt x": 0.8, "tilt y": 0.8},
+}
+"""How far inputs go at random either way [mm or rad]."""
+
+
+def at_random(linkage: Linkage, reaches: dict[str, float], count: int, seed: int) -> Linkage:
+    rng = np.random.default_rng(seed)
+    poses = {
+        f"pose {k}": {name: float(reach * rng.uniform(-1, 1)) for name, reach in reaches.items()} for k in range(count)
+    }
+    return replace(linkage, poses=poses)
+
+
+def steps_of(system: Any) -> Array:
+    """How far each deviation goes either way (components,)."""
+    found = np.empty(component_count(system))
+    slices = component_slices(system)
+    for own in system.contributors:
+        found[slices[own.name]] = STEPS.get(own.unit, ANGLE)
+    return found
+
+
+def slopes(study: Study, where: str) -> tuple[Array, Array]:
+    """Of all probes by each deviation (components, probes, 3): of the finite road, and to first order."""
+    steps = steps_of(study.system)
+    rows = np.diag(steps)
+    there = study.seen(np.concatenate([rows, -rows]), where)
+    count = len(steps)
+    finite = (there[:count] - there[count:]) / (2 * steps[:, None, None])
+    linear = study.seen(np.concatenate([rows, 0 * rows[:1]]), where, "analytic")
+    return finite, (linear[:-1] - linear[-1]) / steps[:, None, None]
+
+
+def assert_same(finite: Array, linear: Array) -> None:
+    """To 1e-6 of the largest of a deviation, or of a share of the loop where one acts on nothing."""
+    off = np.abs(finite - linear).max(axis=(1, 2))
+    size = np.abs(linear).max(axis=(1, 2))
+    acts = size > 1e-6
+    assert acts.mean() > 0.5
+    assert (off[acts] < 1e-6 * np.maximum(size[acts], 1e-2)).all()
+    assert (off[~acts] < 1e-8).all()
+
+
+@pytest.mark.parametrize("plays", [False, True], ids=["", "with play"])
+@pytest.mark.parametrize("name", ALL)
+def test_slopes_at_random_poses(name: str, plays: bool, tmp_path: Path) -> None:
+    linkage = ALL[name]()
+    if plays:
+        linkage = with_plays(linkage)[0]
+    count = {"stewart": 3, "delta": 4}.get(name, 8)
+    linkage = at_random(linkage, REACHES[name], count, seed=7)
+    study = study_of(linkage, tmp_path)
+    for where in linkage.poses:
+        assert_same(*slopes(study, where))
+
+
+def test_slopes_of_a_row_of_all_kinds_of_joints(tmp_path: Path) -> None:
+    linkage = with_plays(open_chain())[0]
+    study = study_of(linkage, tmp_path)
+    for where in linkage.poses:
+        assert_same(*slopes(study, where))
+
+
+INPUT = """
+          zero: {distribution: {kind: normal, lower: -5 um, upper: 5 um}}
+          lead: {distribution: {kind: normal, lower: -23 um, upper: 23 um}, per: 300 mm}
+          backlash: {distribution: {kind: uniform, lower: -0.5 arcmin, upper: 0.5 arcmin}}
+          turn error: {distribution: {kind: normal, lower: -0.5 arcmin, upper: 0.5 arcmin}, per: 100 mm}"""
+
+
+def test_deviations_of_an_input_by_its_way_and_by_its_lead(tmp_path: Path) -> None:
+    """A slide of 12 mm by a screw of 5 mm: lead 12/300, an angle 5/2π, an angle per 100 mm 5/2π 12/100."""
+    text = f"""
+scene: one slide
+parts:
+  frame: {{kind: solid, features: {{zero: {{kind: point, at: [0 mm, 0 mm, 0 mm]}}, way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}}}}}
+  car: {{kind: solid, features: {{way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}, nose: {{kind: point, at: [3 mm, 0 mm, 0 mm]}}}}}}
+moves:
+  base: {{kind: fix, part: frame}}
+  slide:
+    kind: close_loop
+    bodies: [car]
+    joints: {{way: {{kind: prismatic, between: [frame.way, car.way]}}}}
+    inputs:
+      travel:
+        of: way
+        lead: 5 mm
+        as_placed: 100 mm
+        deviations: {INPUT}
+    poses: {{ahead: {{travel: 112 mm}}, behind: {{travel: 70 mm}}}}
+measures:
+  ahead: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], at: ahead}}
+  behind: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], at: behind}}
+study: {{trials: 10}}
+"""
+    made = assembled(text, tmp_path)
+    slices = component_slices(made.system)
+    by = 5.0 / (2 * np.pi)
+    for where, way in (("ahead", 12.0), ("behind", -30.0)):
+        shares = {"zero": 1.0, "lead": abs(way) / 300, "backlash": by, "turn error": by * abs(way) / 100}
+        for road in ("exact", "analytic"):
+            answers = made.system.road(road, made.system.materials(road))
+            from tol3d.system.stated import stated
+
+            rows = np.zeros((5, component_count(made.system)))
+            for k, name in enumerate(shares):
+                rows[k, slices[f"{name} of travel"]] = 1e-3
+            measures = [own for own in made.system.measures if own.name == where]
+            found = answers.answers(stated(made.system, rows), measures).values[where][:, 0]
+            assert found == pytest.approx(3.0 + way + 1e-3 * np.array([*shares.values(), 0.0]), abs=1e-12)
