@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from tol3d.distributions import Distribution, standard_normal
 from tol3d.distributions.empirical import Empirical
 from tol3d.system.draw import Values
+from tol3d.system.normals import Group, scalars, shifted
 
 Array = NDArray[np.float64]
 
@@ -39,6 +40,10 @@ class Pattern(ABC):
     @abstractmethod
     def uniforms(self, teeth: int) -> int:
         """How many uniforms a pattern takes."""
+
+    def groups(self, teeth: int) -> tuple[Group, ...]:
+        """What they are, see Smooth: each by itself if not said otherwise."""
+        return scalars(self.uniforms(teeth))
 
     @abstractmethod
     def drawn(self, uniforms: Sequence[Array]) -> list[Array]:
@@ -82,6 +87,10 @@ class RunOutAndRandom(Pattern):
     def uniforms(self, teeth: int) -> int:
         """See Pattern: a phase, and one a tooth."""
         return 1 + teeth
+
+    def groups(self, teeth: int) -> tuple[Group, ...]:
+        """See Pattern."""
+        return Group("phase", (0,)), *scalars(teeth, 1)
 
     def drawn(self, uniforms: Sequence[Array]) -> list[Array]:
         """See Pattern."""
@@ -151,6 +160,12 @@ class PitchDraw:
     def uniforms(self) -> int:
         """See Draw: of each side how full its limits are, and its pattern."""
         return len(self.sides) * self._side_uniforms
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        one = (*scalars(1), *shifted(self.pattern.groups(self.teeth), 1))
+        return tuple(own for k in range(len(self.sides)) for own in shifted(one, k * self._side_uniforms))
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See Draw."""
@@ -223,6 +238,7 @@ class GivenDraw:
     whence: str = "given"
 
     uniforms = 0
+    groups: ClassVar[tuple[Group, ...]] = ()
     sigma = 0.0
 
     @property

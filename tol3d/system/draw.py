@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import DeviationLaw, Distribution
+from tol3d.system.normals import Group, scalars
 
 Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
@@ -125,6 +126,7 @@ class Scalar:
 
     uniforms = 1
     components = ("",)
+    groups = scalars(1)
 
     @property
     def sigma(self) -> float:
@@ -162,6 +164,11 @@ class Planar:
     def uniforms(self) -> int:
         """How many uniforms a trial takes: the length, and the direction unless it is fixed."""
         return 1 if self.direction is not None else 2
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        return scalars(1) if self.direction is not None else (Group("plane", (0, 1)),)
 
     @property
     def sigma(self) -> float:
@@ -203,6 +210,7 @@ class Ball:
 
     uniforms = 3
     components = ("x", "y", "z")
+    groups = (Group("space", (0, 1, 2)),)
 
     @property
     def sigma(self) -> float:
@@ -250,6 +258,11 @@ class Each:
     def components(self) -> tuple[str, ...]:
         """The features."""
         return self.names
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        return scalars(len(self.names))
 
     @property
     def sigma(self) -> float:

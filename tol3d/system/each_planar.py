@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
 from tol3d.system.draw import Planar, Values
+from tol3d.system.normals import Group, groups_of, shifted
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,14 @@ class EachOwn:
     def uniforms(self) -> int:
         """Those of one a feature."""
         return len(self.names) * int(self.each.uniforms)
+
+    @property
+    def groups(self) -> tuple[Group, ...] | None:
+        """See Smooth; None where one does not say."""
+        own, count = groups_of(self.each), int(self.each.uniforms)
+        if own is None:
+            return None
+        return tuple(group for k in range(len(self.names)) for group in shifted(own, k * count))
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from scipy.special import ndtri
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+from tol3d.system.normals import Group
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,10 @@ class UniformFlat(UnitLaw):
 
     uniforms = 2
 
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return self.section.groups
+
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""
         return self.section.uniform(_ONE, *uniforms)
@@ -120,6 +125,10 @@ class NormalFlat(UnitLaw):
 
     uniforms = 2
 
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return self.section.groups
+
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""
         return self.section.normal(_ONE, *uniforms)
@@ -134,6 +143,10 @@ class RingFlat(UnitLaw):
     """At the edge of a disc, at a uniform phase."""
 
     uniforms = 1
+
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return (Group("phase", (0,)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""
@@ -177,6 +190,10 @@ class UniformSphere(UnitLaw):
 
     uniforms = 3
 
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return (Group("space", (0, 1, 2)),)
+
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""
         return _in_space(np.cbrt(uniforms[0]), *uniforms[1:])
@@ -191,6 +208,10 @@ class NormalSphere(UnitLaw):
     """Normal of sigma 1/3, conditioned on the sphere: the radius is a truncated Maxwell, by a table."""
 
     uniforms = 3
+
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return (Group("space", (0, 1, 2)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import erf, ndtri
 
 from tol3d.assembly.zones.domain import Array
+from tol3d.system.normals import Group, scalars
 
 SIGMAS = 3.0  # of a normal coordinate within its largest value
 
@@ -25,6 +26,11 @@ class CrossSection(ABC):
     @abstractmethod
     def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
         """Both rises (trials,), normal and within sections of radii (trials,) up to 1."""
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """What the two uniforms are, see Smooth: each by itself."""
+        return scalars(2)
 
     @property
     @abstractmethod
@@ -81,6 +87,8 @@ class Diamond(CrossSection):
 @dataclass(frozen=True)
 class Disc(CrossSection):
     """hypot(x, y) <= r: by radius and angle."""
+
+    groups = (Group("plane", (0, 1)),)
 
     def uniform(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
         """See CrossSection: the square of the radius is uniform."""

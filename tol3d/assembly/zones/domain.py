@@ -5,6 +5,8 @@ from abc import ABC, abstractmethod
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.system.normals import Group, scalars
+
 Array = NDArray[np.float64]
 Ratio = float | Array
 """Width of the orientation zone over that of the zone, in (0, 1]: one number, or one a trial."""
@@ -17,6 +19,10 @@ class UnitLaw(ABC):
     @abstractmethod
     def uniforms(self) -> int:
         """How many uniforms a trial takes."""
+
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """What the uniforms are, see Smooth: each by itself if not said otherwise."""
+        return scalars(self.uniforms)
 
     @abstractmethod
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:

@@ -13,6 +13,7 @@ from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_rayleigh
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.half_difference import QUARTER_TURN, UNIFORM_DIFFERENCE, uniform_lens
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+from tol3d.system.normals import Group, scalars
 
 ROUNDING = 1e-12
 
@@ -64,6 +65,12 @@ class UniformEnds(UnitLaw):
 
     uniforms = 4
 
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        if isinstance(ratio, float) and ratio >= 1.0:
+            return Group("plane", (0, 1)), Group("plane", (2, 3))
+        return Group("plane", (0, 3)), *scalars(2, 1)
+
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw: the radius and angle of each end; refined: length of d, m along and across d, angle of d."""
         u, v, p, q = uniforms
@@ -87,6 +94,10 @@ class NormalEnds(UnitLaw):
     """Normal: the middle m as of a point in the disc; d in a uniform direction, as far as m leaves, sigma ratio / 3."""
 
     uniforms = 4
+
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return Group("plane", (0, 1)), Group("plane", (2, 3))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw: the radius and angle of m, the length of d and its angle against m."""

@@ -14,6 +14,7 @@ from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
+from tol3d.system.normals import Group, scalars, shifted
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,10 @@ class UniformFace(UnitLaw):
         """Height and both rises."""
         return 3
 
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return (*scalars(1), *shifted(self.section.groups, 1))
+
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw: closed, for the height's distribution function is a line and a cubic."""
         of_height, u, v = uniforms
@@ -91,6 +96,10 @@ class NormalFace(UnitLaw):
     def uniforms(self) -> int:
         """Height and both rises."""
         return 3
+
+    def groups(self, ratio: Ratio) -> tuple[Group, ...]:
+        """See UnitLaw."""
+        return (*scalars(1), *shifted(self.section.groups, 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
         """See UnitLaw."""

@@ -9,6 +9,7 @@ import numpy as np
 from tol3d.assembly.zones.domain import Array
 from tol3d.distributions import Distribution, Normal, Uniform
 from tol3d.system.draw import Values
+from tol3d.system.normals import Group, scalars
 
 Law = Literal["disc", "interval", "direction", "fraction"]
 
@@ -40,6 +41,15 @@ class FloatDraw:
     def uniforms(self) -> int:
         """One a component."""
         return len(self.components)
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        kinds = (
+            (Group("plane", (own.start, own.start + 1)),) if law == "disc" else scalars(SIZES[law], own.start)
+            for law, own in self._blocks
+        )
+        return tuple(group for own in kinds for group in own)
 
     @cached_property
     def _blocks(self) -> tuple[tuple[Law, slice], ...]:

@@ -12,6 +12,7 @@ from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
 from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.system.dependent import Dependent, Given
+from tol3d.system.normals import Group, scalars
 
 POINTS: Final = 16384
 """Of a lattice, over which a covariance is averaged where the datum feature tilts: to about 1e-3 of it."""
@@ -58,6 +59,11 @@ class GaugeShift(Widened):
     def reads(self) -> tuple[str, ...]:
         """See Dependent: the size, and what tilts."""
         return (self.size.name, *(own.name for own in self.leaning))
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth: of a lens along it and across."""
+        return scalars(self.uniforms) if self.leaning else super().groups
 
     def deviations_given(self, given: Given, *uniforms: Array) -> tuple[Array, ...]:
         """See Dependent: along the half difference and across it, as the middle of an axis lies in its zone."""

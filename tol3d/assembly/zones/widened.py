@@ -15,6 +15,7 @@ from tol3d.assembly.zones.domain import Array, Ratio
 from tol3d.assembly.zones.zone_draw import ComponentLaw, Confined, Process, ZoneDraw
 from tol3d.distributions import Distribution
 from tol3d.system.dependent import Given
+from tol3d.system.normals import Group
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,12 @@ class Widened(ZoneDraw):
     def uniforms(self) -> int:
         """See ZoneDraw."""
         return self.confined.uniforms
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth: as where the zone is as wide as in no other trial, if its orientation is limited by itself."""
+        _, ratio = self.zone.halves(np.array([self.zone.width]), None)
+        return self.confined.law.groups(ratio)
 
     @property
     def mean_vector(self) -> Array:

@@ -17,6 +17,7 @@ from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw, Values
+from tol3d.system.normals import Group, scalars
 
 LEAST_STEP = 1e-9  # mm; of a gradient, where a zone of width 0 has no sigma
 
@@ -161,6 +162,11 @@ class Confined(ZoneDraw):
         """See ZoneDraw."""
         return self.law.uniforms
 
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        return self.law.groups(self.zone.ratio)
+
     @cached_property
     def mean_vector(self) -> Array:
         """See ZoneDraw."""
@@ -224,6 +230,11 @@ class Process(ZoneDraw):
     def uniforms(self) -> int:
         """See ZoneDraw."""
         return len(self.laws)
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """See Smooth."""
+        return scalars(self.uniforms)
 
     @cached_property
     def mean_vector(self) -> Array:

@@ -1,0 +1,147 @@
+"""What analyses ask of scenes: the same values as their runs have, and the same laws from standard normals."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import ks_2samp, norm
+
+from tol3d import InputError, Overrides, run_scene
+from tol3d.analyses.response import Response, response_of
+from tol3d.assembly.zones.float_draw import FloatDraw
+from tol3d.distributions.normal import Normal
+from tol3d.distributions.uniform import Uniform
+from tol3d.scene.bundled import bundled_scenes
+from tol3d.simulate import load, simulation_of
+from tol3d.system.draw import Ball, Draw, Planar, Scalar
+from tol3d.system.normals import groups_of, normal_count, uniforms_of
+
+QUICK = ("spur_pair", "hole_and_slot", "gearbox_in_housing")
+TRIALS = 200
+
+
+def response(name: str, trials: int = TRIALS) -> Response:
+    return response_of(simulation_of(load(name), Overrides(trials=trials)))
+
+
+def _same_as_a_run(name: str, folder: Path) -> None:
+    run = run_scene(name, overrides=Overrides(trials=TRIALS, witness=0), out=folder / name)
+    columns, own = run.columns(), response(name)
+    found = own.values(*own.drawn(TRIALS))
+    for k, measure in enumerate(own.names):
+        codes = np.array(found.texts)[found.codes[:, k]]
+        assert codes.tolist() == np.asarray(columns[f"status:{measure}"]).tolist()
+        kept = np.asarray(columns[f"geometric:{measure}"], dtype=np.float64)
+        assert np.array_equal(
+            found.values[:, k], np.where(np.isfinite(found.values[:, k]), kept, np.nan), equal_nan=True
+        )
+        assert np.isfinite(found.values[found.seated[:, k], k]).all()
+    assert own.evaluations == TRIALS
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_values_of_kept_trials_are_theirs_to_the_bit(name: str, tmp_path: Path) -> None:
+    _same_as_a_run(name, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(set(bundled_scenes()) - set(QUICK)))
+def test_values_of_kept_trials_of_every_scene_are_theirs_to_the_bit(name: str, tmp_path: Path) -> None:
+    if all(own.take == "curve" for own in simulation_of(load(name)).system.measures):
+        pytest.skip("it has curves alone")
+    _same_as_a_run(name, tmp_path)
+
+
+def _drawn(draw: Draw, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Components of standard normals, and of uniforms (count, components)."""
+    generator = np.random.default_rng(5)
+    normals = generator.standard_normal((normal_count(draw), count))
+    uniforms = generator.random((draw.uniforms, count))
+    return np.array(draw.deviations(*uniforms_of(draw, list(normals)))).T, np.array(draw.deviations(*uniforms)).T
+
+
+DRAWS = {
+    "scalar": Scalar(Uniform(-1.0, 3.0)),
+    "planar": Planar(Normal(2.0, 0.5), None),
+    "planar fixed": Planar(Normal(2.0, 0.5), 0.3),
+    "ball": Ball(Uniform(0.0, 2.0)),
+    "float": FloatDraw(("disc", "interval", "fraction"), ("x", "y", "along", "fraction")),
+}
+
+
+@pytest.mark.parametrize("name", DRAWS)
+def test_normals_draw_the_same_law_as_uniforms(name: str) -> None:
+    """Each component, and the products of two of them; a fixed seed, so that one in a million fails by chance."""
+    by_normals, by_uniforms = _drawn(DRAWS[name], 20_000)
+    for k in range(by_normals.shape[1]):
+        for other in range(k + 1):
+            pair = (own[:, k] * (own[:, other] if other < k else 1.0) for own in (by_normals, by_uniforms))
+            assert ks_2samp(*pair).pvalue > 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(bundled_scenes()))
+def test_normals_draw_the_laws_of_every_scene(name: str) -> None:
+    own = response(name) if any(m.take != "curve" for m in simulation_of(load(name)).system.measures) else None
+    if own is None:
+        pytest.skip("it has curves alone")
+    assert own.rough == ()
+    by_normals = own.deviations(np.random.default_rng(6).standard_normal((20_000, own.dimension)))
+    by_study, _ = own.drawn(20_000, seed=8)
+    compared = [k for k in range(own.components) if by_study[:, k].std() > 0.0]
+    least = min((ks_2samp(by_normals[:, k], by_study[:, k]).pvalue for k in compared), default=1.0)
+    assert least > 1e-4 / max(len(compared), 1)
+
+
+def test_no_direction_of_a_plane_is_special() -> None:
+    """Turned normals are turned deviations, also where an angle begins anew; the length goes by its own quantile."""
+    draw = Planar(Normal(2.0, 0.5), None)
+    for angle in (-1e-9, 0.0, 1e-9, math.pi, 2.0):
+        x, y = draw.deviations(
+            *uniforms_of(draw, [np.array([1.5 * math.cos(angle)]), np.array([1.5 * math.sin(angle)])])
+        )
+        length = 2.0 + 0.5 * norm.ppf(-math.expm1(-(1.5**2) / 2))
+        assert (x[0], y[0]) == pytest.approx((length * math.cos(angle), length * math.sin(angle)), abs=1e-12)
+
+
+def test_gradients_are_the_slopes_of_theory() -> None:
+    """Of measures that are linear by the analytic road every slope is known; both roads' are those at small steps."""
+    own = response("door")
+    for measure in own.measures:
+        form = own.simulation.system.closed_form(measure)
+        assert form is not None
+        analytic = response_of(own.simulation, analytic=True).of(measure.name)
+        for asked, error in ((analytic, 1e-9), (own.of(measure.name), 1e-4)):
+            gradient = asked.gradient(asked.mean)[0, 0]
+            for share in form.shares:
+                size = float(np.linalg.norm(gradient[asked.slices[share.name]])) / measure.per_internal
+                assert size == pytest.approx(abs(share.coefficient), rel=error, abs=error)
+
+
+def test_other_tolerances_of_the_same_system() -> None:
+    own = response("spur_pair").of("normal backlash")
+    name = next(each.name for each in own.contributors if isinstance(each.draw, Scalar))
+    law = own.draws[name].distribution
+    other = own.with_draws({name: Scalar(Normal(law.mean + 1.0, law.sigma))})
+    shifted, same = other.drawn(50)[0] - own.drawn(50)[0], own.slices[name]
+    assert shifted[:, same] == pytest.approx(1.0, abs=1e-9)
+    assert np.abs(np.delete(shifted, np.arange(own.components)[same], axis=1)).max() == 0.0
+    assert other.mean[same] == pytest.approx(own.mean[same] + 1.0)
+    with pytest.raises(InputError, match="expected a contributor, got 'nobody'"):
+        own.with_draws({"nobody": Scalar(Normal(0.0, 1.0))})
+    with pytest.raises(InputError, match="expected a draw of 1 components, got one of 3"):
+        own.with_draws({name: Ball(Uniform(0.0, 1.0))})
+
+
+def test_a_draw_that_does_not_say_what_its_uniforms_are_is_told() -> None:
+    class Stranger:
+        uniforms = 2
+
+    assert groups_of(Stranger()) is None
+    assert normal_count(Stranger()) == 2
+
+
+def test_measures_are_chosen_by_name() -> None:
+    with pytest.raises(InputError, match="got 'normal backlas'; did you mean"):
+        response("spur_pair").of("normal backlas")

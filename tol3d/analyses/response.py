@@ -1,0 +1,300 @@
+"""What every analysis asks of a scene: values of its measures, in batches, of stated deviations or standard normals.
+
+A response is a simulation, one of its roads and some of its measures. It knows no mechanism: deviations are the columns
+of the contributors, positions those of the system's streams.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+from tol3d.scene.nearest import hint
+from tol3d.study.draws import sampler_of, streams_of
+from tol3d.study.evaluation import Evaluation
+from tol3d.study.simulation import Simulation
+from tol3d.study.task import materials_of, road_of
+from tol3d.system.contributor import Contributor
+from tol3d.system.dependent import Dependent, in_draw_order
+from tol3d.system.draw import Draw
+from tol3d.system.measure import Measure
+from tol3d.system.normals import groups_of, normal_count, uniforms_of
+from tol3d.system.road import ANALYTIC_ROAD, Road
+from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
+from tol3d.system.statuses import OK
+from tol3d.system.trials import Trials
+
+Codes = NDArray[np.int8]
+Standing = Literal["rest", "averaged", "drawn"]
+"""Positions of rows: at rest, the same drawn ones in all rows that are compared, or each row's own."""
+
+NUDGE: Final[Mapping[str, float]] = {"um": 1e-3, "arcmin": 1e-5, "K": 0.1, "1": 1e-3}
+"""Steps of central differences [mm, rad, K or shares], by the unit of a contributor's columns."""
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Of some rows.
+
+    Args:
+        values: of each measure in its unit (n, measures), not a number where a build does not seat, unless the measure
+            keeps how deep parts overlap.
+        codes: what became of each (n, measures), by `texts`.
+        texts: of the statuses.
+    """
+
+    values: Array
+    codes: Codes
+    texts: tuple[str, ...]
+
+    @property
+    def seated(self) -> NDArray[np.bool_]:
+        """Whether each is built and measured (n, measures)."""
+        return np.asarray(self.codes == OK)
+
+
+@dataclass
+class Count:
+    """How many builds were evaluated; shared by what is made of one response."""
+
+    evaluations: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Implements what analyses ask.
+
+    Args:
+        simulation: of the scene.
+        measures: which are read, none of them a curve.
+        road: that builds; None for the analytic one.
+        draws: by contributor, how it is drawn: the scene's, or other tolerances.
+        count: of evaluations.
+    """
+
+    simulation: Simulation
+    measures: tuple[Measure, ...]
+    road: Road | None
+    draws: Mapping[str, Draw]
+    count: Count = field(default_factory=Count)
+
+    @property
+    def evaluations(self) -> int:
+        """How many builds it has evaluated."""
+        return self.count.evaluations
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the measures."""
+        return tuple(own.name for own in self.measures)
+
+    @property
+    def contributors(self) -> Sequence[Contributor]:
+        """All of the system's."""
+        return self.simulation.system.contributors
+
+    @cached_property
+    def components(self) -> int:
+        """Columns of the deviations."""
+        return component_count(self.simulation.system)
+
+    @cached_property
+    def slices(self) -> Mapping[str, slice]:
+        """Columns of each contributor."""
+        return component_slices(self.simulation.system)
+
+    def of(self, *names: str) -> "Response":
+        """The same of some measures.
+
+        Raises:
+            InputError: one is not among them.
+        """
+        known = {own.name: own for own in self.measures}
+        for name in names:
+            if name not in known:
+                raise InputError(f"expected a measure of {', '.join(known)}, got {name!r}{hint(name, known)}")
+        return replace(self, measures=tuple(known[name] for name in names))
+
+    # what is built ----------------------------------------------------------------------------------
+
+    @property
+    def mean(self) -> Array:
+        """Every contributor at its mean (components,) [mm, rad, K]."""
+        row = mean_deviations(self.simulation.system, self.measures[0].positions)[0].copy()
+        for name, own in self.slices.items():
+            row[own] = self.draws[name].mean(turning=False)
+        return row
+
+    def positions(self, count: int, how: Standing, seed: int = 1) -> Mapping[str, Array]:
+        """Positions of rows; see Standing.
+
+        Args:
+            count: of rows.
+            how: they stand.
+            seed: of drawn ones.
+        """
+        system = self.simulation.system
+        many = count if how == "drawn" else 1
+        generator = np.random.default_rng(seed)
+        uniforms = {key: np.zeros(many) if how == "rest" else generator.random(many) for key in system.streams}
+        found = system.positions(uniforms)
+        return {name: np.repeat(own, count // many, axis=0) for name, own in found.items()}
+
+    def values(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Values:
+        """Measures of builds.
+
+        Args:
+            deviations: (n, components) [mm, rad, K].
+            positions: of the system's streams, (n,) each; at rest if not given.
+        """
+        system, deviations = self.simulation.system, np.atleast_2d(np.asarray(deviations, dtype=np.float64))
+        if deviations.shape[1] != self.components:
+            raise InputError(f"expected deviations (n, {self.components}), got {deviations.shape}")
+        trials = stated(system, deviations) if positions is None else Trials(deviations, positions)
+        evaluation = Evaluation(system, self.road)
+        values = np.empty((len(trials), len(self.measures)))
+        codes = np.zeros(values.shape, dtype=np.int8)
+        first = 0
+        for asked in evaluation.asked(trials, self.measures):
+            rows = slice(first, first + len(asked.trials))
+            first = rows.stop
+            for k, own in enumerate(self.measures):
+                values[rows, k] = asked.values[own.name]
+                if self.road is not None and (status := asked.answers.status.get(own.name)) is not None:
+                    codes[rows, k] = status
+        kept = np.array([own.keeps_overlap for own in self.measures])
+        values[(codes != OK) & ~kept] = np.nan
+        self.count.evaluations += len(trials)
+        return Values(values, codes, system.statuses.texts)
+
+    def gradient(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Array:
+        """Change of each measure with each component (n, measures, components), in its unit a mm, rad or K.
+
+        By central differences, all in one batch: within their square of the step.
+
+        Args:
+            deviations, positions: as of `values`.
+        """
+        rows = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
+        steps, acting = self._steps, self._acting
+        shifts = np.zeros((2 * len(acting), self.components))
+        shifts[np.arange(len(acting)), acting] = steps[acting]
+        shifts[len(acting) + np.arange(len(acting)), acting] = -steps[acting]
+        builds = (rows[:, None] + shifts).reshape(-1, self.components)
+        places = None if positions is None else {k: np.repeat(own, len(shifts), axis=0) for k, own in positions.items()}
+        found = self.values(builds, places).values.reshape(len(rows), 2, len(acting), len(self.measures))
+        gradient = np.zeros((len(rows), len(self.measures), self.components))
+        gradient[:, :, acting] = np.moveaxis((found[:, 0] - found[:, 1]) / (2 * steps[acting][:, None]), 1, 2)
+        return gradient
+
+    @cached_property
+    def _steps(self) -> Array:
+        found = np.empty(self.components)
+        for own in self.contributors:
+            found[self.slices[own.name]] = NUDGE.get(own.unit, 1e-3)
+        return found
+
+    @cached_property
+    def _acting(self) -> NDArray[np.int64]:
+        """Columns of contributors that act on some of the measures."""
+        names = {own.name for measure in self.measures for own in self.simulation.system.acting(measure)}
+        return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
+
+    # what is drawn ----------------------------------------------------------------------------------
+
+    @cached_property
+    def normals(self) -> Mapping[str, slice]:
+        """Which standard normals are whose."""
+        found, first = {}, 0
+        for own in self.contributors:
+            count = normal_count(self.draws[own.name])
+            found[own.name] = slice(first, first + count)
+            first += count
+        return found
+
+    @property
+    def dimension(self) -> int:
+        """How many standard normals there are."""
+        return max((own.stop for own in self.normals.values()), default=0)
+
+    @property
+    def rough(self) -> tuple[str, ...]:
+        """Contributors without a smooth map from normals: methods that need one refuse them by name."""
+        return tuple(own.name for own in self.contributors if groups_of(self.draws[own.name]) is None)
+
+    def deviations(self, normals: Array) -> Array:
+        """Deviations (n, components) [mm, rad, K] of standard normals (n, dimension), by the laws of the draws."""
+        normals = np.atleast_2d(np.asarray(normals, dtype=np.float64))
+        found = np.empty((self.components, len(normals)))
+        for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
+            uniforms = uniforms_of(own.draw, list(normals[:, self.normals[own.name]].T))
+            found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
+        return np.ascontiguousarray(found.T)
+
+    def drawn(self, count: int, seed: int | None = None) -> tuple[Array, Mapping[str, Array]]:
+        """Deviations and positions as the study draws them, with its own seed or another one."""
+        study = self.simulation.study if seed is None else replace(self.simulation.study, seed=seed)
+        simulation = replace(self.simulation, study=study)
+        streams = streams_of(simulation.system)
+        sampler = sampler_of(simulation, len(streams))
+        positions = simulation.system.positions(
+            {key: sampler.uniforms(streams[key], 0, count) for key in simulation.system.streams}
+        )
+        found = np.empty((self.components, count))
+        for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
+            keys = [(own.name, str(k)) for k in range(own.draw.uniforms)]
+            uniforms = [sampler.uniforms(streams[key], 0, count) for key in keys]
+            found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
+        return np.ascontiguousarray(found.T), positions
+
+    def _drawn(self, draw: Draw, uniforms: list[Array], found: Array) -> Array:
+        if isinstance(draw, Dependent):
+            given = {name: found[self.slices[name]] for name in draw.reads}
+            return np.array([*draw.deviations_given(given, *uniforms)])
+        columns = draw.deviations(*uniforms)
+        return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(-1, found.shape[1])
+
+    def with_draws(self, draws: Mapping[str, Draw]) -> "Response":
+        """The same system with other tolerances, by contributor; what has been counted goes on.
+
+        Raises:
+            InputError: no such contributor, or a draw of other components.
+        """
+        for name, draw in draws.items():
+            if name not in self.draws:
+                raise InputError(f"expected a contributor, got {name!r}{hint(name, self.draws)}")
+            own, other = self.draws[name].components, draw.components
+            if len(own) != len(other):
+                raise InputError(f"{name}: expected a draw of {len(own)} components, got one of {len(other)}")
+        return replace(self, draws={**self.draws, **draws})
+
+
+@dataclass(frozen=True, eq=False)
+class _Redrawn:
+    """A contributor that is drawn otherwise; what `in_draw_order` reads of it."""
+
+    own: Contributor
+    draw: Draw
+
+    @property
+    def name(self) -> str:
+        return self.own.name
+
+
+def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
+    """The response of a simulation by its engine's road, or by the analytic one; of its measures that are no curves.
+
+    Raises:
+        InputError: all of its measures are curves.
+    """
+    measures = tuple(own for own in simulation.system.measures if own.take != "curve")
+    if not measures:
+        raise InputError("expected a measure of one number a trial, got curves alone; read one at a position")
+    exact = not analytic and simulation.study.engine != ANALYTIC_ROAD
+    road = road_of(simulation, materials_of(simulation)) if exact else None
+    return Response(simulation, measures, road, {own.name: own.draw for own in simulation.system.contributors})
