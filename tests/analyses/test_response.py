@@ -61,7 +61,7 @@ def _drawn(draw: Draw, count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.array(draw.deviations(*uniforms_of(draw, list(normals)))).T, np.array(draw.deviations(*uniforms)).T
 
 
-DRAWS = {
+DRAWS: dict[str, Draw] = {
     "scalar": Scalar(Uniform(-1.0, 3.0)),
     "planar": Planar(Normal(2.0, 0.5), None),
     "planar fixed": Planar(Normal(2.0, 0.5), 0.3),
