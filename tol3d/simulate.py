@@ -59,9 +59,18 @@ Machines are both in one world (`machine/`): shafts lie in bores of parts, and t
 Each road of the assembly hands the axes of the trial to the same road of the gears, and this one hands back how far its
 trains turn the joints, pose by pose: both as deviations that nobody draws.
 
-`analyses/` asks what takes several studies (shims, compensation), `report/` and `cli/` show what is there. The analytic
-road gets the same deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A
-trial is a pure function of (system, seed, trial index): `replay` makes any of them again.
+Linkages bring one move into an assembly, `close_loop`, which places several bodies at once (`linkage/`).
+
+    structure    a tree of joints, loops    linkage/structure.py        structured
+    kinematics   where it stands in a pose  linkage/kinematics.py       Kinematics
+    closing      deviations -> poses        linkage/closing.py          loops_closed
+    first order  the second road            linkage/first_order.py      Displaced
+    poses, paths an assembly in several     assembly/posed.py           PosedSystem
+
+`analyses/` asks what takes several studies (shims, compensation), of any scene by `analyses/response.py`; `report/` and
+`cli/` show what is there. The analytic road gets the same deviations and the same positions as the geometric one and
+never sees a mesh, a pose or an engine. A trial is a pure function of (system, seed, trial index): `replay` makes any of
+them again.
 """
 
 import platform
