@@ -29,9 +29,9 @@ SHIPPED: Final[Laws] = (
     UniformSpec,
     TriangularSpec,
     RayleighSpec,
+    ArcsineSpec,
     ConstantSpec,
     EmpiricalSpec,
-    ArcsineSpec,
 )
 
 _laws: ContextVar[Laws] = ContextVar("laws", default=SHIPPED)
