@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.part_features import PartFeatures
+from tol3d.assembly.placing.datum_seats import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 
 Array = NDArray[np.float64]

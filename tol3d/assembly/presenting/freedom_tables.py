@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from typing import Final
 
 from tol3d.assembly.model import Assembly, Fix, StatedMove, Weld
-from tol3d.assembly.placing.holding import held_by, held_by_datums
+from tol3d.assembly.placing.holding import Freedoms, Taken, held_by, held_by_datums, in_words
 from tol3d.assembly.placing.plan import planned
-from tol3d.assembly.placing.taken_freedoms import Freedoms, Taken, in_words
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 
 SIGNS: Final = "z: a shift along z; turns z: a turn about z; each holds of what those above it leave"

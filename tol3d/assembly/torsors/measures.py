@@ -12,10 +12,9 @@ from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.shape import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
-from tol3d.assembly.torsors.flatness import balances
 from tol3d.assembly.torsors.gauged_positions import position_on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
-from tol3d.assembly.torsors.terms import Clipped, Width
+from tol3d.assembly.torsors.terms import Clipped, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.import_path import named

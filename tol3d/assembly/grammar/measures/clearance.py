@@ -27,7 +27,7 @@ class ClearanceSpec(TimedSpec):
     reads: ClassVar[Reading] = Reading(
         "clearance",
         "tol3d.assembly.clearances.distances:SolidDistances",
-        "tol3d.assembly.torsors.clearance:clearance",
+        "tol3d.assembly.torsors.surfaces:clearance",
         by_solids=True,
     )
 

@@ -23,7 +23,7 @@ class InspectedPatternSpec(FeatureMeasureSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "pattern", "tol3d.assembly.placing.patterns:pattern", f"{TORSORS}:pattern", worse="high"
+        "pattern", "tol3d.assembly.placing.measuring:pattern", f"{TORSORS}:pattern", worse="high"
     )
 
     kind: Literal["inspected_pattern"]

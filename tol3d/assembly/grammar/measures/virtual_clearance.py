@@ -21,7 +21,7 @@ class VirtualClearanceSpec(FeatureMeasureSpec):
 
     reads: ClassVar[Reading] = Reading(
         "virtual_clearance",
-        "tol3d.assembly.placing.virtual_clearance:virtual_clearance",
+        "tol3d.assembly.placing.measuring:virtual_clearance",
         f"{TORSORS}:virtual_clearance",
     )
 
