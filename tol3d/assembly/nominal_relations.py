@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, Relation, RoundPlane
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing.road import features_placed
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.clearances.distances import SolidDistances
 from tol3d.assembly.clearances.pair import SolidPair
 from tol3d.assembly.model import Assembly, Feature, Measured
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.surfaces import PARALLEL, kind_of

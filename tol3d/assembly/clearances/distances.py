@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import Level, SolidPair, relative_pose
 from tol3d.assembly.model.statuses import OK, OVERLAP
 from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.distances import Asked, PairDistances, is_inside, surface_of, unit_normal
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
-from tol3d.assembly.model.facing import Facing
+from tol3d.assembly.model.measures import Facing
 from tol3d.numerics import frames
 from tol3d.solids.distance import Nearest, NearestPoints, put
 

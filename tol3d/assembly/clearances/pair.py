@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.faces import nearby, needed
-from tol3d.assembly.clearances.meshes import SolidMesh, solid_mesh
+from tol3d.assembly.clearances.faces import SolidMesh, nearby, needed, solid_mesh
 from tol3d.numerics import frames
 from tol3d.solids import BuiltShape
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, meshes_of, relative_pose, solid_pair
 from tol3d.assembly.model import Assembly, Measured
 from tol3d.errors import GeometryError, InputError

@@ -17,7 +17,7 @@ from tol3d.assembly.grammar.checks import read_at
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
-from tol3d.assembly.picking.shapes import shapes_of
+from tol3d.assembly.picking.kept_picks import shapes_of
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor, PlainMeasure
 

@@ -19,9 +19,9 @@ from tol3d.assembly.grammar.tolerances import (
     PlusMinusSpec,
     SizeSpec,
 )
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec
 from tol3d.assembly.model import Contribution
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution
 from tol3d.import_path import named

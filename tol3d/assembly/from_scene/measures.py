@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
-from tol3d.assembly.from_scene.projected import projected, projected_name
+from tol3d.assembly.from_scene.zones import projected, projected_name, sized_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
@@ -24,7 +23,7 @@ from tol3d.assembly.grammar.measures import (
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, TimedSpec
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
-from tol3d.assembly.model.bonus import MaterialBonus
+from tol3d.assembly.model.datum_frame import MaterialBonus
 from tol3d.scene import Scene
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
-from tol3d.assembly.from_scene.play import engaged_by
-from tol3d.assembly.from_scene.touches import touch
+from tol3d.assembly.from_scene.play import engaged_by, touch
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import (
     BestFitSpec,

@@ -16,7 +16,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Point
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar

@@ -22,7 +22,7 @@ from tol3d.assembly.grammar.tolerances import (
     PlusMinusSpec,
     SizeSpec,
 )
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec
 from tol3d.assembly.model.dimension import longer
 from tol3d.scene import Scene
 

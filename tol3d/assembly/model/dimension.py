@@ -6,7 +6,7 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.feature import Axis, Plane, Point, RoundPlane, Shape
 
 Array = NDArray[np.float64]
 

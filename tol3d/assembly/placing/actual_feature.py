@@ -7,8 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model.feature import Contribution, Feature
-from tol3d.assembly.model.shape import Axis, Plane, RoundPlane, nominal_size
+from tol3d.assembly.model.feature import Axis, Contribution, Feature, Plane, RoundPlane, nominal_size
 from tol3d.assembly.placing.poses import Pose, dot, least_rotation, product, rotated, unit
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Contact, Touch
+from tol3d.assembly.model.moves import unfit_for_contact
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.model.touch import unfit_for_contact
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.posed import PosedSystem
-from tol3d.assembly.presenting.labels import labels, unnamed
-from tol3d.assembly.presenting.part_symbols import joined_symbols, marks_on_solid
+from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
 from tol3d.report.body import Body, World

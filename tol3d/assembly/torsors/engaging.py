@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Bolt, Engage, Engagement, Floating, Mate
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.mating import freedoms_after
 from tol3d.assembly.torsors.room import Room

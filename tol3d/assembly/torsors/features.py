@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Contribution, Datum, DatumFrame, Feature, Part, Plane, Point, RoundPlane, Slot
-from tol3d.assembly.model.shape import Shape
+from tol3d.assembly.model.feature import Shape
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.gauges import GaugesRoom, gauges_room

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Feature, Floating, Slot
-from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.room import Room

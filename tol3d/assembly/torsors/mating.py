@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Locate, Mate, Pair, Plane, Point, Relation, Rest, RoundPlane
-from tol3d.assembly.model.shape import Shape
+from tol3d.assembly.model.feature import Shape
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, turn_about

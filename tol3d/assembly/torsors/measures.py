@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
-from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
 from tol3d.assembly.torsors.gauged_positions import position_on_gauges

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.touch import is_inner, unfit_surfaces
+from tol3d.assembly.model.moves import is_inner, unfit_surfaces
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.terms import Ends
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at, turn_about

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.special import ndtri
 
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
-from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+from tol3d.assembly.zones.zone import Array, Domain, Ratio, UnitLaw
 
 
 @dataclass(frozen=True)

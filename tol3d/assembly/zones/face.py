@@ -12,8 +12,8 @@ import numpy as np
 
 from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
-from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
+from tol3d.assembly.zones.zone import Array, Domain, Ratio, UnitLaw
 
 
 @dataclass(frozen=True)

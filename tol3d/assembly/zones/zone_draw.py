@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.balls import RingFlat
-from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
-from tol3d.assembly.zones.zone import Zone
+from tol3d.assembly.zones.zone import Array, Ratio, UnitLaw, Zone
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
 from tol3d.system.contributor import Contributor

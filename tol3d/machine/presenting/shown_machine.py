@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.presenting.labels import unnamed
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
+from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import RunError
 from tol3d.gearing.display import replayed_build, replayed_of, seated_build
 from tol3d.gearing.presenting.gear_display import GearDisplay

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from tol3d.assembly.grammar.features.face import FaceKind
-from tol3d.assembly.grammar.features.feature_spec import Found, OneFaceSpec, known, lengths
+from tol3d.assembly.grammar.features.feature_spec import FaceKind, Found, OneFaceSpec, known, lengths
 from tol3d.assembly.grammar.features.nominal_frame import frame
 from tol3d.assembly.model import Axis
 from tol3d.scene.part import Length

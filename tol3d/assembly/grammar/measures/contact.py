@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
-from tol3d.assembly.grammar.moves.touch import SURFACES
+from tol3d.assembly.grammar.moves.mate import SURFACES
 from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction

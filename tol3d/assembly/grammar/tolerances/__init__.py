@@ -1,24 +1,22 @@
 """Kinds of tolerance, by their names on drawings, one file each."""
 
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.form import FlatnessSpec, StraightnessSpec
 from tol3d.assembly.grammar.tolerances.location import (
-    CoaxialitySpec,
-    LocationSpec,
-    PositionSpec,
-    ProfileSpec,
-    SymmetrySpec,
-)
-from tol3d.assembly.grammar.tolerances.locator import LocatorSpec
-from tol3d.assembly.grammar.tolerances.orientation import (
     AngularitySpec,
+    CircularRunOutSpec,
+    CoaxialitySpec,
+    FlatnessSpec,
+    LocationSpec,
     OrientationSpec,
     ParallelismSpec,
     PerpendicularitySpec,
+    PositionSpec,
+    ProfileSpec,
+    StraightnessSpec,
+    SymmetrySpec,
+    TotalRunOutSpec,
 )
-from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec
-from tol3d.assembly.grammar.tolerances.run_out import CircularRunOutSpec, TotalRunOutSpec
-from tol3d.assembly.grammar.tolerances.size import SizeSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 
 __all__ = [
     "AngularitySpec",
