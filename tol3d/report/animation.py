@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from PIL import Image, ImageColor
 
 from tol3d.errors import InputError, unwritable
-from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     EDGE_COLOUR,
     add_body,
     add_dots,
     add_title,
+    look,
     set_background,
 )
 from tol3d.report.motion import Motion, Shot, motion_of

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tol3d.report.canvas import BLACK, new_figure, save_figure
 from tol3d.report.column import shares_of
+from tol3d.report.heading import WORST_FIRST, largest, shown_measures
 from tol3d.report.label import text_width, wrapped
-from tol3d.report.ranking import WORST_FIRST, largest, shown_measures
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 

@@ -17,7 +17,6 @@ from scipy.optimize import isotonic_regression, linear_sum_assignment
 from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
 
 from tol3d.report.body import World
-from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
@@ -25,6 +24,7 @@ from tol3d.report.drawn_solids import (
     add_body,
     add_label,
     arrow,
+    look,
     poly_data,
     set_background,
 )

@@ -77,7 +77,7 @@ NO_FILES: Final[Files] = {}
 
 
 def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Scene, Files]:
-    """See tol3d.scene.settling.Settle."""
+    """See tol3d.scene.load.Settle."""
     solids = {name: own for name, own in scene.of(SolidSpec).items() if own.builder is not None}
     if not solids:
         return scene, {}

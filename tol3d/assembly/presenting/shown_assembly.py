@@ -14,8 +14,7 @@ from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
-from tol3d.report.body import Body, World
-from tol3d.report.built_body import built_body
+from tol3d.report.body import Body, World, built_body
 from tol3d.report.motion import Frame, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.statistics.linear_fit import LinearFit
-from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.regressors import Regressed, regressor_set
-from tol3d.study.tally import MeasureTally
+from tol3d.study.tally import Disagreement, MeasureTally
 from tol3d.system.measure import Measure
 from tol3d.system.system import System, Theory
 
