@@ -29,6 +29,7 @@ from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import ZoneDraw, laws_told
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
@@ -41,7 +42,6 @@ from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 Words = NDArray[np.str_]
 

@@ -6,16 +6,14 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, legend_below, plain_axes
 from tol3d.report.column import Column, ranked_contributors, shares_of
 from tol3d.report.label import wrapped
 from tol3d.report.number import percent_text
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
-
-Array = NDArray[np.float64]
 
 FEWEST_BARS = 8
 

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.solids import BuiltShape, PosedPart, PosedShape, surface_of
 
-Array = NDArray[np.float64]
 Surface = tuple[Array, NDArray[np.int64]]
 
 

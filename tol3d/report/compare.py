@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.column import seated_text
 from tol3d.report.ends import is_bounded
@@ -18,8 +18,6 @@ from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
 from tol3d.system.outcome import ROADS, outcome_of, status_column, value_column
-
-Array = NDArray[np.float64]
 
 BARS = 40
 POINTS_SHOWN = 4000  # dots in a picture; more hide each other

@@ -8,10 +8,9 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body
 from tol3d.report.label import legible
-
-Array = NDArray[np.float64]
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened

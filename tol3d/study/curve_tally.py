@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.sample import SpectrumSample
 from tol3d.runs.summary.values import made
 from tol3d.statistics import Grid, LimitCounts, Moments
@@ -28,8 +29,6 @@ from tol3d.system.outcome import (
 )
 from tol3d.system.spectrum import Spectrum
 from tol3d.system.statuses import Statuses
-
-Array = NDArray[np.float64]
 
 BINS = 2**12  # 32 KB of counts; there may be some hundred orders, and of 24 sigma one bin is 0.006 sigma
 

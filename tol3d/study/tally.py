@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import Agreement, CountGrid, Grid
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
@@ -38,8 +39,6 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, o
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.system import Described, System
 from tol3d.units import FACTORS
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
+from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Planar, Values
-
-Array = NDArray[np.float64]
 
 
 class EachOwn:

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
+from tol3d.numerics.arrays import Array
 from tol3d.solids import BuiltShape, DisplayMesh, display_mesh
 
-Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 PAIRS_AT_ONCE = 2_000_000

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
@@ -18,10 +17,9 @@ from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauge
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
 from tol3d.assembly.zones.float_draw import FloatDraw, GaugeShift, Leaning
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor
-
-Array = NDArray[np.float64]
 
 ANY = 1e3
 """mm; the room of a gauge grows with the size, beyond the drawing's limits too."""

@@ -5,9 +5,9 @@ from typing import Final
 
 from tol3d.assembly.grammar.zone import LawSpec, ProcessLawSpec
 from tol3d.assembly.zones import Confined, Process, Zone, normal_in, ring_in, uniform_in
-from tol3d.assembly.zones.zone import Array
 from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
@@ -24,10 +23,9 @@ from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec,
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.datum_frame import MaterialBonus
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
-
-Array = NDArray[np.float64]
 
 
 def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects, is_pattern
 from tol3d.assembly.from_scene.features import poses_of
@@ -27,9 +26,8 @@ from tol3d.assembly.model import (
 )
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.model.moves import unfit_for_contact
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 FLAT = 1e-6
 """Sine of an angle that is none."""

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
@@ -28,9 +27,8 @@ from tol3d.assembly.zones import (
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.import_path import named
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 LEAST_SINE = 1e-9
 """Of an angle from the axis; a direction nearer to it has no direction across."""

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
@@ -13,11 +12,11 @@ from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
 from tol3d.assembly.model import Plane
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
-Array = NDArray[np.float64]
 
 SQUARE = 1e-6  # sine of the angle of the axis to the normal
 

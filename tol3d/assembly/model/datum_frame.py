@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.model.feature import Contribution
 from tol3d.assembly.model.moves import Floating
+from tol3d.numerics.arrays import Array
 
 Modifier = Literal["mmc", "lmc"]
 """Maximum or least material condition: the size without bonus."""
@@ -41,8 +39,6 @@ class GaugeRoom:
     virtual: float
     grows: bool
 
-
-Array = NDArray[np.float64]
 
 Simulator = Literal["contact", "fitted", "targets"]
 """How a later plane lies on what holds it in the orientation left to it: its outermost corner out of the material

@@ -4,14 +4,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.import_path import is_named
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Worse
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,13 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.model.feature import Axis, Contribution, Plane, Point, RoundPlane, Shape
 from tol3d.assembly.model.stated_move import StatedMove
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import BestFit
 from tol3d.assembly.model.statuses import OK, SINGULAR
@@ -14,6 +13,7 @@ from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
@@ -245,9 +245,6 @@ def least_largest(
         copy_matrix(pose, start)
         found = by_squares(pose, fits, i, basis, reach, rooms) and by_barriers(pose, fits, i, basis, reach, rooms)
         kept(pose, found, i, turns, shifts, met)
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

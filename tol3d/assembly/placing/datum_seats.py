@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, RoundPlane, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, total
@@ -13,8 +12,7 @@ from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, unit
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ABREAST = 1e-6
 """Spread [mm] of points across a line, under which they lie on it."""

@@ -14,6 +14,7 @@ from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, to
 from tol3d.assembly.placing.one_sided_gaps import wrench
 from tol3d.assembly.placing.poses import column, dot
 from tol3d.assembly.placing.world import World
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import copy_matrix
 
@@ -192,9 +193,6 @@ def rows_here(
                 if not nominal:
                     for r in range(6):
                         rows[k, c, f] += all_rows[k, c, r] * tangents[r, f]
-
-
-Array = NDArray[np.float64]
 
 
 def at_places(

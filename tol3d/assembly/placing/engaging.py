@@ -19,8 +19,7 @@ from tol3d.assembly.placing.mating import KeptRelations, Mating, kept_motions, k
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated, rotated_back
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 20
 """How often a pin is brought nearer to where it is drawn; each time leaves a turn's share of what it corrects."""

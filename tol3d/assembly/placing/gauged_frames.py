@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Floating, Gauges
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
@@ -21,8 +20,7 @@ from tol3d.assembly.placing.engaging import SEEN, moved_about
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, column, dot
 from tol3d.assembly.placing.rooms import room_found
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 12
 """How often a pose is corrected; each time leaves a turn's share, 1e-3 or less, of what it corrects."""

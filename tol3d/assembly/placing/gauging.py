@@ -9,13 +9,13 @@ from math import cos, sin, sqrt
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.common_opening import new_rooms, opened
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.world import World
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-12
@@ -165,7 +165,6 @@ def gauged_patterns(x: Any, y: Any, radii: Any, nominal: Any, worst: Any) -> Non
         worst[i] = gauged(pattern, i, 0.25 * off / reach + LEAST, rooms)
 
 
-Array = NDArray[np.float64]
 STEPS: Final = 100
 """In practice 1 to 6."""
 FREE: Final = 1e-12

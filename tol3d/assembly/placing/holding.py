@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import (
     Assembly,
@@ -31,8 +30,7 @@ from tol3d.assembly.placing.mating import asked_of
 from tol3d.assembly.placing.plan import Placing
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.touching import Touching
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 HELD: Final = 1e-6
 """Part of what is asked that must act on the motions left, else earlier ones hold it: directions have some digits."""

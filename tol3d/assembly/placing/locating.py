@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Locate, Pair, Rest
 from tol3d.assembly.model.statuses import OK, SINGULAR
@@ -15,6 +14,7 @@ from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy_matrix
 
@@ -121,9 +121,6 @@ def contacts_met(
             for c in range(3):
                 turns[r, c, i] = pose[r, c] if found else np.nan
             shifts[r, i] = pose[r, 3] if found else np.nan
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Feature, Mate, Point, Relation, Rest
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
@@ -14,8 +13,7 @@ from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
     ("coincident", "plane", "plane"): ("along", "direction"),

@@ -18,8 +18,7 @@ from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rot
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
 from tol3d.import_path import named
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def widths(points: Sequence[Array]) -> Array:

@@ -7,7 +7,6 @@ from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.assembly.model.statuses import OK
@@ -23,8 +22,7 @@ from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
 from tol3d.assembly.placing.touching import Touching, touching
 from tol3d.assembly.placing.world import SolidReader, World
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class Placer(Protocol):

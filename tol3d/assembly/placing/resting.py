@@ -20,8 +20,7 @@ from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, TIED, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SLIGHT = 1e-5
 """Of the force: what is added to it to see which contacts would carry if it pointed a little aside."""

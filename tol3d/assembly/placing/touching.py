@@ -19,8 +19,7 @@ from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, 
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 INDEPENDENT: Final = 1e-8
 """Least part of what a contact asks that no other contact asks too; less is rounding of directions."""

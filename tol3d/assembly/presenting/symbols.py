@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.measures import Measured
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Surface = tuple[Array, NDArray[np.int64]]
 
 SIDES = 48

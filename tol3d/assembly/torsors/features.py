@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Contribution, Datum, DatumFrame, Feature, Part, Plane, Point, RoundPlane, Slot
 from tol3d.assembly.model.feature import Shape
@@ -12,8 +11,7 @@ from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.gauges import GaugesRoom, gauges_room
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, seen_from, shift_at, torsor_of, turn_about
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 NEARER = 1e-6
 """Lever [mm] that is none: a slot whose end lies on the axis of the turn is held by its place."""

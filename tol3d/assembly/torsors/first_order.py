@@ -16,8 +16,7 @@ from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
 from tol3d.assembly.torsors.terms import Ends, Largest, Term
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""

@@ -1,7 +1,6 @@
 """Mates: relations of two features, in order, each taking what earlier ones left."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Locate, Mate, Pair, Plane, Point, Relation, Rest, RoundPlane
 from tol3d.assembly.model.feature import Shape
@@ -10,8 +9,7 @@ from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
 from tol3d.assembly.torsors.torsor import height_at, perpendicular, shift_at, turn_about
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def mated(move: Mate, world: World) -> Array:

@@ -5,7 +5,6 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
@@ -18,8 +17,7 @@ from tol3d.assembly.torsors.terms import Clipped, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.import_path import named
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 NEAR = 1.0
 """Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""

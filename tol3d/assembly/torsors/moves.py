@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import BestFit, Contact, Engage, Fit, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.assembly.torsors.engaging import engaged
@@ -17,8 +16,7 @@ from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import height_at, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def touched(move: Touch, world: World) -> Array:

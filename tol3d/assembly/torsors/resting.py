@@ -7,7 +7,6 @@ from itertools import combinations, islice
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Rest
 from tol3d.assembly.torsors.freedoms import INDEPENDENT, Freedoms, freedom_in_words
@@ -17,8 +16,7 @@ from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import height_at
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

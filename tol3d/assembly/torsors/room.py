@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Floating
 from tol3d.assembly.torsors.centring import DECIDES, Cones, centred, largest_slack, narrowed, refined
@@ -12,8 +11,7 @@ from tol3d.assembly.torsors.interior_points import climbed
 from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum
 from tol3d.assembly.torsors.quick_centring import quickly_centred
 from tol3d.assembly.torsors.terms import Form
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 HALVINGS: Final = 55
 """Of the height of a segment, 1 at first: rounding is reached."""

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane, Shape
 from tol3d.assembly.model.moves import is_inner, unfit_surfaces
@@ -12,8 +11,7 @@ from tol3d.assembly.torsors.terms import Ends
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at, turn_about
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 PARALLEL = 1e-6
 """Sine of the angle of axes that nominally lie along each other, not across."""

@@ -5,12 +5,10 @@ from itertools import combinations
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.ordered import ordered_product, squared_lengths
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 Form = Literal[
     "largest length",

@@ -8,7 +8,8 @@ from scipy.special import ndtri
 
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
-from tol3d.assembly.zones.zone import Array, Domain, Ratio, UnitLaw
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

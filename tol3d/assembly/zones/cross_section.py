@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf, ndtri
 
-from tol3d.assembly.zones.zone import Array
+from tol3d.numerics.arrays import Array
 
 SIGMAS = 3.0  # of a normal coordinate within its largest value
 

@@ -14,7 +14,8 @@ from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_normal, cut_ray
 from tol3d.assembly.zones.face import left_by_a_normal
 from tol3d.assembly.zones.half_difference import QUARTER_TURN, UNIFORM_DIFFERENCE, uniform_lens
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
-from tol3d.assembly.zones.zone import Array, Domain, Ratio, UnitLaw
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 
 ROUNDING = 1e-12
 

@@ -13,7 +13,8 @@ import numpy as np
 from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
-from tol3d.assembly.zones.zone import Array, Domain, Ratio, UnitLaw
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ import numpy as np
 from tol3d.assembly.zones.half_difference import QUARTER_TURN, uniform_lens
 from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
-from tol3d.assembly.zones.zone import Array
 from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.distributions import Distribution, Normal, Uniform
+from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, Given
 from tol3d.system.draw import Values
 

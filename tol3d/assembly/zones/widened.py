@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from tol3d.assembly.model.datum_frame import Modifier
-from tol3d.assembly.zones.zone import Array, Ratio, Zone
+from tol3d.assembly.zones.zone import Ratio, Zone
 from tol3d.assembly.zones.zone_draw import ComponentLaw, Confined, Process, ZoneDraw
 from tol3d.distributions import Distribution
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Given
 
 SIZES: Final = 512  # of equal probability, over which a covariance is averaged: 1e-5 of a normal's

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Ratio = float | Array
 """Width of the orientation zone over that of the zone, in (0, 1]: one number, or one a trial."""
 

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.balls import RingFlat
-from tol3d.assembly.zones.zone import Array, Ratio, UnitLaw, Zone
+from tol3d.assembly.zones.zone import Ratio, UnitLaw, Zone
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw, Values
 

@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import ALONG
 from tol3d.assembly.grammar.features.pattern import PatternSpec
 from tol3d.assembly.model import Shape
+from tol3d.numerics.arrays import Array
 from tol3d.scene.name import Name
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
@@ -39,7 +39,6 @@ class FaceSpec(Strict):
         return self
 
 
-Array = NDArray[np.float64]
 Known = TypeVar("Known")
 
 Found = Quantity | tuple[Quantity, ...] | tuple[float, float, float] | bool
