@@ -19,7 +19,7 @@ from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.gap import AngleSpec
 from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
-from tol3d.assembly.grammar.tolerances import PositionSpec
+from tol3d.assembly.grammar.tolerances.location import PositionSpec
 from tol3d.assembly.grammar.zone import LawSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.measures import Measured, Reading

@@ -16,7 +16,7 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.measures import DirectionErrorSpec, PoseErrorSpec
+from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely

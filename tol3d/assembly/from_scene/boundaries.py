@@ -12,7 +12,8 @@ from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shif
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in

@@ -11,14 +11,8 @@ from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, Sphe
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
-from tol3d.assembly.grammar.tolerances import (
-    LocationSpec,
-    LocatorSpec,
-    OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
-)
-from tol3d.assembly.grammar.tolerances.location import FormSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Contribution
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law

@@ -11,15 +11,9 @@ from tol3d.assembly.from_scene.zones import projected, projected_name, sized_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
-from tol3d.assembly.grammar.measures import (
-    AssemblyMeasureSpec,
-    DifferenceSpec,
-    DirectionErrorSpec,
-    InspectedPatternSpec,
-    InspectedPositionSpec,
-    PoseErrorSpec,
-)
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.datum_frame import MaterialBonus

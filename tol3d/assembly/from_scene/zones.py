@@ -8,8 +8,9 @@ import numpy as np
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
-from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec, SizeSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
+from tol3d.assembly.grammar.tolerances.location import CircularRunOutSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
 from tol3d.assembly.model import Axis, Contribution, Feature, Slot
 from tol3d.assembly.model.datum_frame import Modifier

@@ -7,10 +7,11 @@ import numpy as np
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.measures import InspectedPatternSpec, InspectedPositionSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
+from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
+from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Plane
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene

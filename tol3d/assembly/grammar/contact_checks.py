@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, PlaneSpec, SlotSpec, SphereSpec
-from tol3d.assembly.grammar.measures import AssemblyMeasureSpec, ContactAngleSpec, SurfaceGapSpec
-from tol3d.assembly.grammar.measures.assembly_measure import OverPlaySpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, OverPlaySpec
+from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
 from tol3d.assembly.grammar.moves import LocatingSpec, PinAndHoleSpec, PlaySpec, RestSpec
 from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec
-from tol3d.assembly.grammar.tolerances import SizeSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.model.moves import unfit_surfaces
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath

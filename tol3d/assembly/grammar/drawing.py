@@ -14,15 +14,9 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.parts import SolidSpec, likes
-from tol3d.assembly.grammar.tolerances import (
-    FeatureTolerance,
-    LocationSpec,
-    LocatorSpec,
-    OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
-)
-from tol3d.assembly.grammar.tolerances.location import FormSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene

@@ -6,18 +6,17 @@ from typing import Final
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.tolerances import (
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import (
     CircularRunOutSpec,
     CoaxialitySpec,
-    FeatureTolerance,
+    FormSpec,
     LocationSpec,
     OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
     SymmetrySpec,
     TotalRunOutSpec,
 )
-from tol3d.assembly.grammar.tolerances.location import FormSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files

@@ -1,4 +1,4 @@
-"""Kinds of tolerance, by their names on drawings, one file each."""
+"""Kinds of tolerance by their names on drawings: every class with a word is one, in whatever file it is."""
 
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.location import (
