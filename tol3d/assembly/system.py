@@ -79,7 +79,6 @@ class AssemblySystem(PlainSystem):
     statuses: ClassVar[Statuses] = STATUSES
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
 
     @property
@@ -227,7 +226,6 @@ class WitnessedSystem(AssemblySystem):
         return (solid_pairs(self.assembly), solid_pairs(self.assembly, FINER)) if road == WITNESS else None
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         return witness_of(self.assembly, *materials) if name == WITNESS else super().road(name, materials)
 
 
@@ -246,7 +244,6 @@ class ClearanceSystem(WitnessedSystem):
         return solid_pairs(self.assembly) if road == "exact" else super().materials(road)
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         if name != "exact":
             return super().road(name, materials)
         error = max(pair.chord_error for pair in materials.values())
@@ -254,7 +251,6 @@ class ClearanceSystem(WitnessedSystem):
 
     @property
     def solids(self) -> SolidReader | None:
-        """See AssemblySystem."""
         reader: SolidReader = reader_of(solid_pairs(self.assembly))
         return reader
 

@@ -58,31 +58,25 @@ class Chain(StatedMove):
 
     @property
     def name(self) -> str:
-        """See StatedMove."""
         return self.title
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """See StatedMove."""
         return tuple(joint.part for joint in self.joints)
 
     @property
     def carriers(self) -> tuple[str, ...]:
-        """See StatedMove."""
         return self.carried
 
     @property
     def pairs(self) -> Sequence[tuple[str, str]]:
-        """See StatedMove."""
         return [(joint.seat, joint.axis) for joint in self.joints]
 
     @property
     def frames(self) -> Sequence[str]:
-        """See StatedMove."""
         return [joint.frame for joint in self.joints if joint.frame]
 
     def placing(self, nominal: PlacedWorld) -> "Turning":
-        """See StatedMove."""
         return Turning(self)
 
     def displaced(self, world: TorsorWorld) -> TorsorWorld:

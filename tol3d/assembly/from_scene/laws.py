@@ -19,21 +19,17 @@ class Centred(Distribution):
     mean = 0.0
 
     def ppf(self, u: Array) -> Array:
-        """See Distribution."""
         return self.law.ppf(u) - self.law.mean
 
     def cdf(self, x: Array) -> Array:
-        """See Distribution."""
         return self.law.cdf(x + self.law.mean)
 
     @property
     def variance(self) -> float:
-        """See Distribution."""
         return self.law.variance
 
     @property
     def limits(self) -> tuple[float, float] | None:
-        """See Distribution."""
         found = self.law.limits
         return None if found is None else (found[0] - self.law.mean, found[1] - self.law.mean)
 

@@ -20,20 +20,16 @@ class Line(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformLine()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalLine()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         return np.copysign(half, gradient)
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return np.asarray(np.abs(coordinates[:, 0]) - half)
 
 
@@ -44,11 +40,9 @@ class UniformLine(UnitLaw):
     uniforms = 1
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return (2.0 * uniforms[0] - 1.0,)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return np.array([[1.0 / 3.0]])
 
 
@@ -59,7 +53,6 @@ class NormalLine(UnitLaw):
     uniforms = 1
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         value = ndtri(0.5 + (uniforms[0] - 0.5) * math.erf(SIGMAS * math.sqrt(0.5))) / SIGMAS
         return (np.clip(value, -1.0, 1.0),)
 
@@ -79,20 +72,16 @@ class Flat(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformFlat(self.section)
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalFlat(self.section)
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         return half * self.section.furthest(gradient)
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return self.section.length(coordinates) - half
 
 
@@ -105,11 +94,9 @@ class UniformFlat(UnitLaw):
     uniforms = 2
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return self.section.uniform(_ONE, *uniforms)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return self.section.uniform_variance * np.eye(2)
 
 
@@ -122,11 +109,9 @@ class NormalFlat(UnitLaw):
     uniforms = 2
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return self.section.normal(_ONE, *uniforms)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return float(self.section.normal_variance(_ONE)) * np.eye(2)
 
 
@@ -137,12 +122,10 @@ class RingFlat(UnitLaw):
     uniforms = 1
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         phase = (2.0 * math.pi) * uniforms[0]
         return np.cos(phase), np.sin(phase)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return 0.5 * np.eye(2)
 
 
@@ -154,21 +137,17 @@ class Sphere(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformSphere()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalSphere()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         size = math.hypot(*gradient)
         return half * (gradient / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return np.asarray(np.sqrt((coordinates * coordinates).sum(axis=1)) - half)
 
 
@@ -179,11 +158,9 @@ class UniformSphere(UnitLaw):
     uniforms = 3
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return _in_space(np.cbrt(uniforms[0]), *uniforms[1:])
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return np.eye(3) / 5.0
 
 
@@ -194,7 +171,6 @@ class NormalSphere(UnitLaw):
     uniforms = 3
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return _in_space(inverse(maxwell, 3)(np.cbrt(uniforms[0])), *uniforms[1:])
 
     def covariance(self, ratio: float) -> Array:

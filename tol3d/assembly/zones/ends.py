@@ -28,12 +28,10 @@ class Ends(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformEnds()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalEnds()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
@@ -55,7 +53,6 @@ class Ends(Domain):
         return half * max(points, key=lambda point: float(point @ gradient))
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         start, end = coordinates[:, :2], coordinates[:, 2:]
         lengths = [np.hypot(own[:, 0], own[:, 1]) for own in (start, end, 0.5 * (end - start))]
         return np.maximum(np.maximum(lengths[0], lengths[1]) - half, lengths[2] - orientation_half)
@@ -79,7 +76,6 @@ class UniformEnds(UnitLaw):
         return _ends(angle, np.copysign(inner, v - 0.5), np.sin(inner) * (2.0 * p - 1.0), q)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         if ratio >= 1.0:
             return 0.25 * np.eye(4)
         return _uniform_covariance(ratio)
@@ -176,12 +172,10 @@ class FlatEnds(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformFlatEnds()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalFlatEnds()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
@@ -192,7 +186,6 @@ class FlatEnds(Domain):
         return np.array([middle - difference, middle + difference])
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         start, end = coordinates.T
         outside = np.maximum(np.abs(start), np.abs(end)) - half
         return np.asarray(np.maximum(outside, 0.5 * np.abs(end - start) - orientation_half))
@@ -229,13 +222,11 @@ class NormalFlatEnds(UnitLaw):
     uniforms = 2
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         u, v = uniforms
         (middle,) = NormalLine().coordinates(ratio, u)
         difference = ratio * cut_normal(np.minimum((1.0 - np.abs(middle)) / ratio, 1.0), v)
         return middle - difference, middle + difference
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         middle, apart = NormalLine().covariance(ratio)[0, 0], ratio**2 * left_by_a_normal(cut_variance, ratio)
         return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])

@@ -30,12 +30,10 @@ class Face(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformFace(self.section)
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalFace(self.section)
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
@@ -47,7 +45,6 @@ class Face(Domain):
         return np.array([height * (half - rise), *(rise * rises)])
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         rises = self.section.length(coordinates[:, 1:])
         return np.maximum(np.abs(coordinates[:, 0]) + rises - half, rises - orientation_half)
 
@@ -94,14 +91,12 @@ class NormalFace(UnitLaw):
         return 3
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         of_height, u, v = uniforms
         (height,) = NormalLine().coordinates(ratio, of_height)
         radius = np.minimum((1.0 - np.abs(height)) / ratio, 1.0)
         return height, *(ratio * rise for rise in self.section.normal(radius, u, v))
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         rise = ratio**2 * left_by_a_normal(self.section.normal_variance, ratio)
         return np.diag([NormalLine().covariance(ratio)[0, 0], rise, rise])
 

@@ -169,7 +169,6 @@ class Widened(ZoneDraw):
 
     @property
     def uniforms(self) -> int:
-        """See ZoneDraw."""
         return self.confined.uniforms
 
     @property
@@ -200,7 +199,6 @@ class Widened(ZoneDraw):
         raise TypeError(f"{self.words}: expected the sizes of the trials")
 
     def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
-        """See ZoneDraw."""
         return self.confined.deviations_in(width, orientation, *uniforms)
 
     def deviations_given(self, given: Given, *uniforms: Array) -> tuple[Array, ...]:

@@ -152,25 +152,21 @@ class Confined(ZoneDraw):
 
     @cached_property
     def distribution(self) -> ComponentLaw:
-        """See ZoneDraw."""
         centre, half = self.zone.centre, self.zone.half
         return ComponentLaw(centre, float(self.covariance[0, 0]), centre - half, centre + half)
 
     @property
     def uniforms(self) -> int:
-        """See ZoneDraw."""
         return self.law.uniforms
 
     @cached_property
     def mean_vector(self) -> Array:
-        """See ZoneDraw."""
         mean = np.zeros(len(self.components))
         mean[0] = self.zone.centre
         return mean
 
     @cached_property
     def covariance(self) -> Array:
-        """See ZoneDraw."""
         return self.law.covariance(self.zone.ratio) * self.zone.half**2
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
@@ -178,7 +174,6 @@ class Confined(ZoneDraw):
         return self._drawn(self.zone.half, self.zone.ratio, uniforms)
 
     def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
-        """See ZoneDraw."""
         return self._drawn(*self.zone.halves(width, orientation), uniforms)
 
     def _drawn(self, half: Ratio, ratio: Ratio, uniforms: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -186,11 +181,9 @@ class Confined(ZoneDraw):
         return (first if self.zone.centre == 0.0 else first + self.zone.centre, *others)
 
     def furthest(self, gradient: Array) -> Array:
-        """See ZoneDraw."""
         return self.zone.furthest(gradient)
 
     def support(self, gradient: Array) -> float:
-        """See ZoneDraw."""
         return self.zone.support(gradient)
 
 
@@ -217,22 +210,18 @@ class Process(ZoneDraw):
 
     @property
     def distribution(self) -> Distribution:
-        """See ZoneDraw."""
         return self.laws[0]
 
     @property
     def uniforms(self) -> int:
-        """See ZoneDraw."""
         return len(self.laws)
 
     @cached_property
     def mean_vector(self) -> Array:
-        """See ZoneDraw."""
         return np.array([law.mean for law in self.laws])
 
     @cached_property
     def covariance(self) -> Array:
-        """See ZoneDraw."""
         return np.diag([law.variance for law in self.laws])
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:

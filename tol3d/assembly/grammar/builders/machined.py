@@ -43,7 +43,6 @@ class BlockSpec(BuilderSpec):
 
     @property
     def shape(self) -> Block:
-        """See BuilderSpec."""
         return Block(
             self.length.internal,
             self.width.internal,
@@ -69,7 +68,6 @@ class PlateSpec(BuilderSpec):
 
     @property
     def shape(self) -> Plate:
-        """See BuilderSpec."""
         return Plate(
             self.length.internal,
             self.width.internal,
@@ -103,7 +101,6 @@ class BracketSpec(BuilderSpec):
 
     @property
     def shape(self) -> Bracket:
-        """See BuilderSpec."""
         return Bracket(
             self.length.internal,
             self.height.internal,
@@ -144,7 +141,6 @@ class CoverSpec(BuilderSpec):
 
     @property
     def shape(self) -> Cover:
-        """See BuilderSpec."""
         return Cover(
             self.length.internal,
             self.width.internal,
@@ -203,7 +199,6 @@ class HousingSpec(BuilderSpec):
 
     @property
     def shape(self) -> Housing:
-        """See BuilderSpec."""
         (x, y, z), (length, height, width) = self.corner, self.size
         return Housing(
             (x.internal, y.internal, z.internal),

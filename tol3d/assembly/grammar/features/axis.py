@@ -30,16 +30,13 @@ class AxisSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Axis:
-        """See FeatureSpec."""
         return Axis(known(self.length, "length").internal)
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.axis, "axis"))
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """See FeatureSpec."""
         (face,) = faces
         return {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": lengths(face.extent[0])[0]}
 
@@ -59,17 +56,14 @@ class CylinderSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Axis:
-        """See FeatureSpec."""
         length, diameter = known(self.length, "length"), known(self.diameter, "diameter")
         return Axis(length.internal, diameter.internal, self.hole)
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.axis, "axis"))
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """See FeatureSpec."""
         (face,) = faces
         length, diameter = lengths(face.extent[0], 2 * face.radius)
         own: dict[str, Found] = {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": length}

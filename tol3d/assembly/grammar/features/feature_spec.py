@@ -140,7 +140,6 @@ class OneFaceSpec(FeatureSpec):
 
     @property
     def faces_picked(self) -> Mapping[str, FaceSpec]:
-        """See FeatureSpec."""
         return {} if self.face is None else {"face": self.face}
 
 

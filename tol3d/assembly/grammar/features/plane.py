@@ -45,7 +45,6 @@ class PlaneSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Plane | RoundPlane:
-        """See FeatureSpec."""
         if self.extent is not None:
             return Plane((self.extent[0].internal, self.extent[1].internal))
         if self.radius is None:
@@ -54,12 +53,10 @@ class PlaneSpec(OneFaceSpec):
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.normal, "normal"), self.along)
 
     @property
     def x_picked(self) -> Direction | None:
-        """See FeatureSpec."""
         return self.along
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
@@ -108,23 +105,19 @@ class SlotSpec(FeatureSpec):
 
     @property
     def shape(self) -> Slot:
-        """See FeatureSpec."""
         x, y = known(self.extent, "extent")
         return Slot((x.internal, y.internal), known(self.width, "width").internal, not self.tab)
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.normal, "normal"), self.along)
 
     @property
     def faces_picked(self) -> Mapping[str, FaceSpec]:
-        """See FeatureSpec."""
         return {} if self.faces is None else {f"faces.{k}": face for k, face in enumerate(self.faces)}
 
     @property
     def x_picked(self) -> Direction | None:
-        """See FeatureSpec."""
         return self.along
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:

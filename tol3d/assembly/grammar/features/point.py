@@ -29,7 +29,6 @@ class PointSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Point:
-        """See FeatureSpec."""
         return Point()
 
     @property
@@ -62,7 +61,6 @@ class SphereSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Point:
-        """See FeatureSpec."""
         return Point(known(self.diameter, "diameter").internal, self.hole)
 
     @property
@@ -71,6 +69,5 @@ class SphereSpec(OneFaceSpec):
         return frame(self.origin, (0.0, 0.0, 1.0))
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """See FeatureSpec."""
         (face,) = faces
         return {"at": lengths(*face.at), "diameter": lengths(2 * face.radius)[0], "hole": face.hole}

@@ -54,7 +54,6 @@ class AssemblyMeasureSpec(MeasureEntry):
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
-        """See Entry."""
         if hasattr(cls, "reads"):
             yield from cls.reads.lacking()
         else:
@@ -150,7 +149,6 @@ class FeatureMeasureSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return [part_of(name) for _, name, _ in self.named()]
 
     def uses(self) -> Iterator[Use]:
@@ -174,11 +172,9 @@ class BetweenSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, ()), (("to",), self.to, ()))
 
 

@@ -51,7 +51,6 @@ class ClearanceSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return (self.from_, self.to)
 
     @property
@@ -97,7 +96,6 @@ class VirtualClearanceSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     @model_validator(mode="after")
@@ -108,7 +106,6 @@ class VirtualClearanceSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return tuple((("holes", k), name, ("cylinder",)) for k, name in enumerate(self.holes))
 
 

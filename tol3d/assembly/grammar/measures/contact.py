@@ -23,7 +23,6 @@ class SurfaceGapSpec(BetweenSpec):
     kind: Literal["surface_gap"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
 
 
@@ -42,11 +41,9 @@ class ContactAngleSpec(BetweenSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.direction
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         sides = ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
         return sides if self.against is None else (*sides, (("against",), self.against, ("plane", "cylinder", "axis")))
 

@@ -30,7 +30,6 @@ class DirectedSpec(OverPlaySpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.direction
 
 
@@ -56,7 +55,6 @@ class PointPlaneSpec(OverPlaySpec):
     kind: Literal["point_plane"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, ()), (("to",), self.to, ("plane", "point")))
 
 
@@ -71,5 +69,4 @@ class AngleSpec(OverPlaySpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.about

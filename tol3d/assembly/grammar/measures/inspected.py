@@ -26,11 +26,9 @@ class InspectedSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("of",), self.of, ()),)
 
 
@@ -56,11 +54,9 @@ class InspectedPositionSpec(InspectedSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.across
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         kinds = ("cylinder", "slot") if self.modifier is not None else () if self.across is None else ("point",)
         if self.projected is not None:
             kinds = ("cylinder",) if self.modifier is not None else ("axis", "cylinder")
@@ -77,7 +73,6 @@ class InspectedOrientationSpec(InspectedSpec):
     kind: Literal["inspected_orientation"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("of",), self.of, ("plane", "slot", "cylinder", "axis")),)
 
 
@@ -94,7 +89,6 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.normal
 
     @model_validator(mode="after")
@@ -105,7 +99,6 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return tuple((("points", k), name, ("point",)) for k, name in enumerate(self.points))
 
 
@@ -131,7 +124,6 @@ class InspectedPatternSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     @model_validator(mode="after")
@@ -147,7 +139,6 @@ class InspectedPatternSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         kinds = ("cylinder",) if self.modifier is not None else ("cylinder", "axis")
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
 
@@ -161,5 +152,4 @@ class InspectedSizeSpec(FeatureMeasureSpec):
     of: FeatureName = Field(description="the feature")
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("of",), self.of, ("cylinder", "slot", "sphere")),)

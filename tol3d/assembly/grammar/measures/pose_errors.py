@@ -50,7 +50,6 @@ class PoseErrorSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return (self.from_, part_of(self.of))
 
     def references(self) -> tuple[Reference, ...]:

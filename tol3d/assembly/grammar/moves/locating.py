@@ -41,7 +41,6 @@ class LocatingSpec(PlacingSpec):
         """The contacts with their fields, by the names that locators have."""
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         return iter(self.pairs_by_name.values())
 
 
@@ -57,7 +56,6 @@ class ThreeTwoOneSpec(LocatingSpec):
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
-        """See LocatingSpec."""
         groups = {"primary": self.primary, "secondary": self.secondary, "tertiary": self.tertiary}
         return {
             f"{group} {k + 1}": ((group, k), pair) for group, pairs in groups.items() for k, pair in enumerate(pairs)
@@ -74,7 +72,6 @@ class SixPlaneSpec(LocatingSpec):
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
-        """See LocatingSpec."""
         return {str(k + 1): (("pairs", k), pair) for k, pair in enumerate(self.pairs)}
 
 
@@ -99,7 +96,6 @@ class RestSpec(LocatingSpec):
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
-        """See LocatingSpec."""
         return {str(k + 1): (("contacts", k), pair) for k, pair in enumerate(self.contacts)}
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:

@@ -40,7 +40,6 @@ class MateSpec(PlacingSpec):
     relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)]
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         return ((("relations", k), pair) for k, pair in enumerate(self.relations))
 
 
@@ -71,7 +70,6 @@ class BestFitSpec(PlacingSpec):
         return self
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         return ((("pairs", k), pair) for k, pair in enumerate(self.pairs))
 
 
@@ -91,7 +89,6 @@ class TouchSpec(PlacingSpec):
     )
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         return ((("contacts", k), pair) for k, pair in enumerate(self.contacts))
 
     def uses(self) -> Iterator[Use]:

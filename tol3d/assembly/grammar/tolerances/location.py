@@ -29,7 +29,6 @@ class LocationSpec(FeatureTolerance):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureTolerance."""
         return self.datums or ()
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
@@ -88,7 +87,6 @@ class OrientationSpec(Modified, FeatureTolerance):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureTolerance."""
         return self.datums
 
 

@@ -34,19 +34,15 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureTolerance."""
         return self.datums or ()
 
     def references(self) -> tuple[Reference, ...]:
-        """See FeatureTolerance."""
         return FeatureTolerance.references(self)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """See ToleranceSpec."""
         return ToleranceSpec.file_names(self)
 
     def uses(self) -> Iterator[Use]:
-        """See FeatureTolerance."""
         return FeatureTolerance.uses(self)
 
 
@@ -73,15 +69,12 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         return self
 
     def references(self) -> tuple[Reference, ...]:
-        """See FeatureTolerance."""
         return FeatureTolerance.references(self)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """See ToleranceSpec."""
         return ToleranceSpec.file_names(self)
 
     def uses(self) -> Iterator[Use]:
-        """See FeatureTolerance."""
         return FeatureTolerance.uses(self)
 
 
