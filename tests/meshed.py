@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 
 Array = NDArray[np.float64]
 

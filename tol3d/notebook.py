@@ -11,9 +11,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d import report, simulate
 from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
 from tol3d.analyses.shim import Rounding
@@ -23,6 +20,7 @@ from tol3d.errors import InputError, unwritable
 from tol3d.gearing.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
+from tol3d.numerics.arrays import Array
 from tol3d.report.page import Page
 from tol3d.report.presenter import Display, Which, presenter_at
 from tol3d.report.sheet import as_text
@@ -37,7 +35,6 @@ if TYPE_CHECKING:
 
     from tol3d.report.export import Exported
 
-Array = NDArray[np.float64]
 
 TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
 

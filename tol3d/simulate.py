@@ -88,20 +88,18 @@ from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.runs.fingerprint import Fingerprint
-from tol3d.runs.full_disk import refusals_explained
 from tol3d.runs.occupant import Place, free_folder, refuse_changed
 from tol3d.runs.run import Run
-from tol3d.runs.writer import RunWriter
+from tol3d.runs.writer import RunWriter, refusals_explained
 from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
 from tol3d.study import replaying
 from tol3d.study.blocks import plan_of
-from tol3d.study.findings import findings
+from tol3d.study.findings import findings, run_tables
 from tol3d.study.fingerprint import column_units, fingerprint_of, text_of
 from tol3d.study.overrides import AS_WRITTEN, Overrides, simulation_of
 from tol3d.study.replaying import Replay, replayed
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import enough
-from tol3d.study.tables import run_tables
 from tol3d.study.tally import Tally
 from tol3d.study.task import Task, task_of, workers_for
 from tol3d.study.versions import installed_versions

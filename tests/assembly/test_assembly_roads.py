@@ -5,8 +5,7 @@ import pytest
 from drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 
-from tol3d.assembly.grammar.measures.angle import AngleSpec
-from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.gap import AngleSpec, DistanceSpec, GapSpec, PointPlaneSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedFlatnessSpec,
     InspectedOrientationSpec,

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 
 from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Floating, Gauges, Measured, Plane, Shape, Slot
-from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.torsors import road as torsors

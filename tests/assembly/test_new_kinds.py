@@ -16,10 +16,10 @@ from toys.registered import known
 
 from tol3d import Overrides, load_scene, open_run, run_scene
 from tol3d.assembly.grammar.feature_name import FeatureName
-from tol3d.assembly.grammar.measures.angle import AngleSpec
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec
-from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
-from tol3d.assembly.grammar.tolerances import PositionSpec
+from tol3d.assembly.grammar.measures.gap import AngleSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
+from tol3d.assembly.grammar.tolerances.location import PositionSpec
 from tol3d.assembly.grammar.zone import LawSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.measures import Measured, Reading
@@ -28,7 +28,7 @@ from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors import measures as torsors
 from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.assembly.zones import Confined, Zone, catalogue
-from tol3d.assembly.zones.domain import Ratio, UnitLaw
+from tol3d.assembly.zones.zone import Ratio, UnitLaw
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.scene.entry import kind_of

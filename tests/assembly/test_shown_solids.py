@@ -14,9 +14,8 @@ from rendering import renders
 
 from tol3d.assembly.model import Axis, Plane, RoundPlane, Slot
 from tol3d.assembly.presenting import PRESENTER
-from tol3d.assembly.presenting.labels import MOST_NAMED
 from tol3d.assembly.presenting.shown_assembly import OPACITY, RIGID
-from tol3d.assembly.presenting.symbols import SIDES, WALL, mark
+from tol3d.assembly.presenting.symbols import MOST_NAMED, SIDES, WALL, mark
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError

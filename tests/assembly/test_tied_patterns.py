@@ -17,7 +17,7 @@ from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.torsors import road as torsors
 from tol3d.assembly.torsors.centring import Cones, centred
-from tol3d.assembly.torsors.floating import pushed
+from tol3d.assembly.torsors.room import pushed
 
 Array = NDArray[np.float64]
 

@@ -115,3 +115,29 @@ def test_every_package_is_shipped() -> None:
 def test_no_lint() -> None:
     done = subprocess.run([sys.executable, "-m", "ruff", "check", "."], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_public_method_says_what_it_does_or_overrides_one_that_does() -> None:
+    """By the names of classes and of their bases."""
+    classes: dict[str, list[ast.ClassDef]] = {}
+    for path in python_files():
+        for node in ast.walk(parsed(path)):
+            if isinstance(node, ast.ClassDef):
+                classes.setdefault(node.name, []).append(node)
+
+    def says(own: ast.ClassDef, name: str, seen: frozenset[str] = frozenset()) -> bool:
+        found = [each for each in own.body if isinstance(each, ast.FunctionDef) and each.name == name]
+        if any(ast.get_docstring(each) for each in found):
+            return True
+        bases = {base for each in own.bases for base in re.findall(r"\w+", ast.unparse(each))} - seen - {own.name}
+        return any(says(base, name, seen | bases | {own.name}) for word in bases for base in classes.get(word, ()))
+
+    silent = [
+        f"{own.name}.{method.name}"
+        for every in classes.values()
+        for own in every
+        for method in own.body
+        if isinstance(method, ast.FunctionDef) and not method.name.startswith("_") and not own.name.startswith("_")
+        if not says(own, method.name)
+    ]
+    assert silent == []

@@ -16,8 +16,8 @@ from printing import printed, row_of
 from tol3d import Run, load_scene, run_scene
 from tol3d.cli.studies import pictured
 from tol3d.report import check_report, run_report
+from tol3d.report.heading import MOST_CONTRIBUTORS, MOST_MEASURES, WORST_FIRST
 from tol3d.report.page import Line, Page, Table, some
-from tol3d.report.ranking import MOST_CONTRIBUTORS, MOST_MEASURES, WORST_FIRST
 from tol3d.report.table import Detail
 from tol3d.simulate import simulation_of
 from tol3d.study.summary import _named

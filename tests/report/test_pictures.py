@@ -21,11 +21,10 @@ from of_kind import known, of_kind
 from thinned import thinned
 
 from tol3d.report import picture
-from tol3d.report.bars import bars_of
+from tol3d.report.bars import bars_of, draw_contributors
 from tol3d.report.canvas import OUTSIDE, new_figure, plain_axes, save_figure
 from tol3d.report.column import columns_of
 from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.contributor_bars import draw_contributors
 from tol3d.report.curve import draw_curve
 from tol3d.report.distribution import column_colours, draw_distribution, draw_ranges
 from tol3d.report.ends import is_bounded

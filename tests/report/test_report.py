@@ -42,14 +42,12 @@ from tol3d.report import (
     run_report,
     view_run,
 )
-from tol3d.report.bars import bars_of
+from tol3d.report.bars import bars_of, draw_contributors
 from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
 from tol3d.report.column import shares_of
-from tol3d.report.compare import measures_of
+from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.contributor_bars import draw_contributors
 from tol3d.report.curve import draw_curve
-from tol3d.report.difference import difference_of
 from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.export import Exported, file_words
 from tol3d.report.page import Heading, Row, Table

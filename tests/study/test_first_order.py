@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tol3d.distributions import Constant, Normal, Rayleigh, Uniform
+from tol3d.numerics.arrays import Array
 from tol3d.report.check import check_report
 from tol3d.report.sheet import as_text
 from tol3d.study.first_order import FirstOrder, first_orders
@@ -15,7 +16,7 @@ from tol3d.study.study import Study
 from tol3d.study.task import materials_of, road_of
 from tol3d.system.draw import Ball, Each, Planar, Scalar
 from tol3d.system.measure import Measure
-from tol3d.system.plain import Array, PlainContributor, PlainMeasure, PlainSystem
+from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
 from tol3d.system.trials import Trials
 
 UM = 1e-3  # mm

@@ -21,7 +21,7 @@ from schemas import validate
 from tol3d import Run, load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.analyses.compensation_table import highs_table
-from tol3d.report import published_whole
+from tol3d.report import published as shown
 from tol3d.report.distribution import draw_distribution
 from tol3d.report.measure_table import curve_table
 from tol3d.report.published import published_notes
@@ -255,7 +255,7 @@ def test_each_stands_beside_ours_in_print(whole: Run) -> None:
 def test_a_correlation_is_that_of_its_road() -> None:
     found = {"analytic": {"r": [[1.0, 0.25], [0.25, 1.0]]}, "geometric": {"r": [[1.0, 0.5], [0.5, 1.0]]}}
     joint: Any = SimpleNamespace(correlated=["a", "b"], correlations=found)
-    of_roads = [published_whole._correlation(joint, ("a", "b"), road) for road in ("analytic", "geometric")]
+    of_roads = [shown._correlation(joint, ("a", "b"), road) for road in ("analytic", "geometric")]
     assert of_roads == [0.25, 0.5]
 
 

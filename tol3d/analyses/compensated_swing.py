@@ -17,14 +17,13 @@ from tol3d.gearing.stack_up import first_order
 from tol3d.gearing.system import gear_model
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
+from tol3d.numerics.arrays import Array
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 from tol3d.system.outcome import value_column
 from tol3d.system.road import Road
 from tol3d.units import ARCMIN
-
-Array = NDArray[np.float64]
 
 USUAL_REACH: Final = math.pi / 3
 USUAL_POSITIONS: Final = 25

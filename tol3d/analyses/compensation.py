@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_error
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
@@ -28,6 +27,7 @@ from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.machine.system import MachineSystem
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, simulation_of
@@ -37,7 +37,6 @@ from tol3d.study.task import materials_of, road_of
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.units import ARCMIN
 
-Array = NDArray[np.float64]
 Unit = Literal["mm", "arcmin"]
 
 MOST_ROBOTS: Final = 2000  # where nobody says how many

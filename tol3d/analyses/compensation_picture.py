@@ -7,13 +7,13 @@ from typing import Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from tol3d.analyses.compensated_swing import Swing
 from tol3d.analyses.compensation import Compensation, Unit
 from tol3d.analyses.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS
 from tol3d.analyses.robots import STATES, State
 from tol3d.analyses.spread import Spread
+from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.canvas import (
     BLACK,
@@ -32,8 +32,6 @@ from tol3d.report.drawn_sample import DrawnSample, draw_samples
 from tol3d.report.ends import Ends
 from tol3d.report.label import legible
 from tol3d.report.number import given_text, short_text, tip_mm
-
-Array = NDArray[np.float64]
 
 LINE_WIDTHS: Final[Mapping[State, float]] = {"before": 2.0, "batch": 4.5, "robot": 1.6}  # the last lies on the second
 MARKERS: Final[Mapping[str, str]] = {"mean": "D", "low_3sigma": "<", "high_3sigma": ">"}

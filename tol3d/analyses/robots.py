@@ -17,6 +17,7 @@ from tol3d.gearing.model import Measure
 from tol3d.gearing.model.drive import Drive
 from tol3d.gearing.model.measure import AnyStage
 from tol3d.gearing.system import gear_model
+from tol3d.numerics.arrays import Array
 from tol3d.samplers import MonteCarlo, Stream
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
@@ -27,7 +28,6 @@ from tol3d.system.road import Road
 from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 State = Literal["before", "batch", "robot"]
 
 STATES: Final[tuple[State, ...]] = ("before", "batch", "robot")

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import Moments
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,11 +3,16 @@
 from typing import Final
 
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
-from tol3d.assembly.grammar.boundary_checks import unfit_boundaries
+from tol3d.assembly.grammar.boundary_checks import unfit_boundaries, unfit_modifiers
 from tol3d.assembly.grammar.checks import differences_of_two_poses, unknown_features, unknown_poses, unplaced_bodies
-from tol3d.assembly.grammar.contact_checks import round_contacts
-from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances
-from tol3d.assembly.grammar.implausible_sizes import implausible_sizes
+from tol3d.assembly.grammar.contact_checks import (
+    idle_over_play,
+    idle_rocking,
+    round_contacts,
+    unfit_engagements,
+    unfit_pairs,
+)
+from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances, implausible_sizes
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
     mixed_dimensions,
@@ -16,11 +21,7 @@ from tol3d.assembly.grammar.measure_checks import (
     unfit_patterns,
     unfit_points,
 )
-from tol3d.assembly.grammar.modifier_checks import unfit_modifiers
 from tol3d.assembly.grammar.orientation_checks import unfit_orientations
-from tol3d.assembly.grammar.play_checks import idle_over_play, unfit_engagements
-from tol3d.assembly.grammar.rest_checks import idle_rocking
-from tol3d.assembly.grammar.surface_checks import unfit_pairs
 from tol3d.scene.grammar import specs_in
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.mechanism import Mechanism

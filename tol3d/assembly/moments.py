@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.zones import ZoneDraw
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw
-
-Array = NDArray[np.float64]
 
 MOTIONS: Final = 384
 """Deviations at which it is asked where parts may be nearest; half of them twice as wide as trials are."""

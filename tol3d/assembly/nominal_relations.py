@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, Relation, RoundPlane
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing.road import features_placed
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 MEETS: Final = 2e-3
 """mm, by which features meet nominally: numbers that are rounded to a thousandth miss by as much."""

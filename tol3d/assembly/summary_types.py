@@ -63,7 +63,6 @@ class AssemblyMeasureSummary(MeasureSummary):
 
     @property
     def identity(self) -> tuple[str | None, ...]:
-        """See MeasureSummary."""
         return (self.kind, *self.of, *(own for own in (self.pose, self.path, self.component) if own))
 
 

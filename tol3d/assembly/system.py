@@ -16,7 +16,7 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.measures import DirectionErrorSpec, PoseErrorSpec
+from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely
@@ -29,6 +29,7 @@ from tol3d.assembly.torsors.slopes import Slopes
 from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import ZoneDraw, laws_told
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
@@ -41,7 +42,6 @@ from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 Words = NDArray[np.str_]
 
@@ -79,7 +79,6 @@ class AssemblySystem(PlainSystem):
     statuses: ClassVar[Statuses] = STATUSES
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
 
     @property
@@ -227,7 +226,6 @@ class WitnessedSystem(AssemblySystem):
         return (solid_pairs(self.assembly), solid_pairs(self.assembly, FINER)) if road == WITNESS else None
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         return witness_of(self.assembly, *materials) if name == WITNESS else super().road(name, materials)
 
 
@@ -246,7 +244,6 @@ class ClearanceSystem(WitnessedSystem):
         return solid_pairs(self.assembly) if road == "exact" else super().materials(road)
 
     def road(self, name: str, materials: Any) -> Road:
-        """See System."""
         if name != "exact":
             return super().road(name, materials)
         error = max(pair.chord_error for pair in materials.values())
@@ -254,7 +251,6 @@ class ClearanceSystem(WitnessedSystem):
 
     @property
     def solids(self) -> SolidReader | None:
-        """See AssemblySystem."""
         reader: SolidReader = reader_of(solid_pairs(self.assembly))
         return reader
 

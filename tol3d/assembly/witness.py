@@ -10,22 +10,20 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.distances import SolidDistances
 from tol3d.assembly.clearances.pair import SolidPair
 from tol3d.assembly.model import Assembly, Feature, Measured
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.surfaces import PARALLEL, kind_of
 from tol3d.assembly.witnessed import reads
+from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 from tol3d.system.measure import Measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 CORE: Final = 0.5
 """Of its nominal radius that a surface is made of; so much may overlap."""

@@ -1,7 +1,7 @@
 """Which measures of an assembly FCL can read too. Loads neither FCL nor solids."""
 
 from tol3d.assembly.model import Assembly
-from tol3d.assembly.model.touch import is_inner
+from tol3d.assembly.model.moves import is_inner
 
 
 def reads(assembly: Assembly, name: str) -> bool:

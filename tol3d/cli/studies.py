@@ -12,16 +12,9 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from tol3d.cli.arguments import (
-    EngineOption,
-    RunBuilders,
-    SceneArgument,
-    TrustParts,
-    scene_path,
-)
-from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, seconds, tell, warn
-from tol3d.cli.run_options import (
     PICTURE,
     AcceptOption,
+    EngineOption,
     FailOnLimits,
     ForceOption,
     NoPicture,
@@ -30,14 +23,19 @@ from tol3d.cli.run_options import (
     PicturesOption,
     QuietOption,
     ResumeOption,
+    RunBuilders,
     SamplerOption,
+    SceneArgument,
     SchedulerOption,
     SeedOption,
     TrialsOption,
+    TrustParts,
     VerboseOption,
     WitnessOption,
     WorkersOption,
+    scene_path,
 )
+from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, seconds, tell, warn
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -164,8 +162,8 @@ def _pictures_text(run: "Run") -> str:
 
 def pictured(run: "Run", wanted: str | None) -> str:
     """Which measures are in the picture of a run of many, and how the others are drawn; "" where all of them are."""
+    from tol3d.report.heading import WORST_FIRST, shown_measures
     from tol3d.report.picture import MOST_TOGETHER
-    from tol3d.report.ranking import WORST_FIRST, shown_measures
 
     count = len(run.found.measures)
     if wanted != "worst" or count <= MOST_TOGETHER or not (run.path / PICTURE).exists():

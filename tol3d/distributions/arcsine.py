@@ -7,8 +7,9 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
 
 

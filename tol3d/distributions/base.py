@@ -6,14 +6,12 @@ from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import model_validator
 
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
-
-Array = NDArray[np.float64]
 
 LOW_PROBABILITY = 0.00135  # the 0.135 % percentile, where a normal has mean - 3 sigma; ISO 22514-2
 HIGH_PROBABILITY = 1 - LOW_PROBABILITY

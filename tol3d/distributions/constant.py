@@ -5,8 +5,9 @@ from typing import Literal
 
 import numpy as np
 
-from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
 
 

@@ -8,10 +8,11 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import LARGEST_DEVIATION, Array, Distribution, DistributionSpec
+from tol3d.distributions.base import LARGEST_DEVIATION, Distribution, DistributionSpec
 from tol3d.distributions.csv_table import csv_table
 from tol3d.errors import SceneError
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 from tol3d.strict import refused
 from tol3d.units import ABSOLUTE_ZERO, MICRO_SIGNS, UNITS, Quantity
 

@@ -6,11 +6,9 @@ reading and checking a scene does without it.
 
 import math
 
-import numpy as np
 import scipy
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def density(z: float) -> float:

@@ -9,8 +9,9 @@ import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
-from tol3d.distributions.base import Array, Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec
 from tol3d.files import Files
+from tol3d.numerics.arrays import Array
 from tol3d.strict import refused
 from tol3d.units import Quantity
 

@@ -97,7 +97,6 @@ class Ready(Pending[T]):
     value: T
 
     def result(self) -> T:
-        """See Pending."""
         return self.value
 
     def cancel(self) -> None:

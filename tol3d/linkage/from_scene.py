@@ -11,7 +11,7 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import UsesFeatures, part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.errors import InputError
 from tol3d.linkage.grammar.close_loop import STEP

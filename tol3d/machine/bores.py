@@ -11,13 +11,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Axis, Contribution, Feature, Measured, Point
 from tol3d.machine.nominal import HousedShaft
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 COMPONENTS: Final = ("x", "y")
 """Across the axis at each of its two points, in the frame of the shaft at rest."""

@@ -6,16 +6,12 @@ A part of which no move says in which bores it lies is taken to lie on the axis 
 from collections.abc import Iterator
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.gearing.links import Moved, StatedLink
 from tol3d.gearing.model import Model
 from tol3d.gearing.model.brought import shaft_of
 from tol3d.machine.nominal import Housed, HousedShaft
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 
 def displacement_name(shaft: HousedShaft, k: int) -> str:

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import StatedMove
 from tol3d.assembly.model.statuses import OK
@@ -18,8 +17,7 @@ from tol3d.assembly.placing.poses import Codes, Pose, about
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.torsor import cross_matrix
 from tol3d.assembly.torsors.world import World as TorsorWorld
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -60,31 +58,25 @@ class Chain(StatedMove):
 
     @property
     def name(self) -> str:
-        """See StatedMove."""
         return self.title
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """See StatedMove."""
         return tuple(joint.part for joint in self.joints)
 
     @property
     def carriers(self) -> tuple[str, ...]:
-        """See StatedMove."""
         return self.carried
 
     @property
     def pairs(self) -> Sequence[tuple[str, str]]:
-        """See StatedMove."""
         return [(joint.seat, joint.axis) for joint in self.joints]
 
     @property
     def frames(self) -> Sequence[str]:
-        """See StatedMove."""
         return [joint.frame for joint in self.joints if joint.frame]
 
     def placing(self, nominal: PlacedWorld) -> "Turning":
-        """See StatedMove."""
         return Turning(self)
 
     def displaced(self, world: TorsorWorld) -> TorsorWorld:

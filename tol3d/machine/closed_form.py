@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.moments import moments_of
 from tol3d.gearing.model import Contributor as GearContributor
@@ -22,12 +21,11 @@ from tol3d.gearing.stack_up import reference_form, stack_of
 from tol3d.gearing.stack_up.closed_form import factored_stacks
 from tol3d.gearing.stack_up.leaning import change_of, shares_by_net
 from tol3d.machine.joined import Joined
+from tol3d.numerics.arrays import Array
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
 from tol3d.system.stated import component_slices
-
-Array = NDArray[np.float64]
 
 LEVEL: Final = 1e-12
 """Difference of the displacements of both ends of an axis per mm, rad or K that is rounding."""

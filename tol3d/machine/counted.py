@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.parts import SolidSpec, likes
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, SizeSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.gearing.grammar.parts import BearingSpec
 from tol3d.gearing.grammar.tolerances import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.distributions.base import Array, Distribution
+from tol3d.distributions.base import Distribution
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tol3d.assembly.grammar.checks import pose_names
-from tol3d.assembly.grammar.measures import PositionErrorSpec
+from tol3d.assembly.grammar.measures.pose_errors import PositionErrorSpec
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.placing import road as placing

@@ -20,12 +20,12 @@ from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.bores import Bores
 from tol3d.machine.drives import JointDrive
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 HIDDEN: Final = "."

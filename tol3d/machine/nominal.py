@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis
 from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
@@ -15,11 +14,10 @@ from tol3d.gearing.model.from_scene import meshes_of_scene
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.mesh import Mesh
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity
-
-Array = NDArray[np.float64]
 
 SAME_PLACE: Final = 1e-6
 """mm; what a scene says twice agrees to within this."""

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.drawing import Drawing
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
     from tol3d.machine.grammar.open_chain import OpenChainSpec
 
-Array = NDArray[np.float64]
 
 SAME_LINE: Final = 1e-6
 """mm, and sine of an angle; both axes of a joint are one to within this where parts are placed."""

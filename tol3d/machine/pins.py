@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.model import Assembly, Axis
@@ -18,9 +17,8 @@ from tol3d.gearing.model import Model
 from tol3d.machine.centrals import displacement_name
 from tol3d.machine.grammar.carrier_pins import CarrierPinsSpec
 from tol3d.machine.nominal import AZIMUTH_AS_WRITTEN, SAME_DIRECTION, SAME_PLACE, Bore, HousedShaft
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

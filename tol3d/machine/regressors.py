@@ -14,12 +14,11 @@ from tol3d.gearing.model.measure import Measure
 from tol3d.gearing.regressors import slopes_by_bores
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.joined import Joined, is_hidden
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import component_slices
 from tol3d.system.system import Columns
-
-Array = NDArray[np.float64]
 
 
 def with_displacements(system: Joined, measure: Measure, columns: Columns) -> Columns:

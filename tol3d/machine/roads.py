@@ -22,13 +22,13 @@ from tol3d.machine.joined import Joined
 from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.statuses import FROM_ASSEMBLIES
 from tol3d.machine.turned import Turned, Turning
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import reason_column
 from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Details = dict[str, NDArray[np.generic]]
 
 ROWS: Final = 16384

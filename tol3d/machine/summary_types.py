@@ -33,7 +33,6 @@ class WorstErrorSummary(MeasureSummary):
 
     @property
     def identity(self) -> tuple[str | None, ...]:
-        """See MeasureSummary."""
         return (self.kind, *self.of, *self.poses)
 
 

@@ -21,6 +21,7 @@ from tol3d.machine.measure import WorstMeasure
 from tol3d.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.machine.roads import MachineRoad
 from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
+from tol3d.numerics.arrays import Array
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -32,8 +33,6 @@ from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def _joined(every: Sequence[Mapping[str, Array]]) -> Sequence[str]:

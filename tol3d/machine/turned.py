@@ -16,11 +16,10 @@ from numpy.typing import NDArray
 from tol3d.gearing.linked import DEAR
 from tol3d.gearing.model.measure import Measure
 from tol3d.machine.joined import Joined
+from tol3d.numerics.arrays import Array
 from tol3d.system.road import Road
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 MOST_KEPT: Final = 200_000
 """Builds of all joints that are remembered; then none is, and it begins anew."""

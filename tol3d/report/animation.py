@@ -7,16 +7,15 @@ from typing import Any, Final
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 from PIL import Image, ImageColor
 
 from tol3d.errors import InputError, unwritable
-from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     EDGE_COLOUR,
     add_body,
     add_dots,
     add_title,
+    look,
     set_background,
 )
 from tol3d.report.motion import Motion, Shot, motion_of
@@ -25,7 +24,6 @@ from tol3d.report.view import choose_window
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.run import Run
 
-Array = NDArray[np.float64]
 Pictures = Sequence[Image.Image]
 
 ANIMATIONS: Final = (".gif", ".png", ".webp")

@@ -1,14 +1,19 @@
 """Histograms ready to be drawn: fewer bars for few trials, densities in % a unit."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
+from matplotlib.axes import Axes
 
+from tol3d.numerics.arrays import Array
+from tol3d.report.canvas import BLACK, legend_below, plain_axes
+from tol3d.report.column import Column, ranked_contributors, shares_of
+from tol3d.report.label import wrapped
+from tol3d.report.number import percent_text
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Road
-
-Array = NDArray[np.float64]
 
 FEWEST_BARS = 8
 
@@ -82,3 +87,80 @@ def _joined(counts: Array, merged: int) -> Array:
     """Counts of bars that are so many neighbours each."""
     padded = np.pad(counts, (0, -len(counts) % merged))
     return np.asarray(padded.reshape(-1, merged).sum(axis=1))
+
+
+MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
+NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest names there may be fit
+LINE: Final = 0.155  # inch, of a name
+BAR: Final = 0.115  # inch; least thickness of a bar that bears its number
+BETWEEN: Final = 0.06  # inch, between two contributors
+HEAD_AND_FOOT: Final = 1.0  # inch; title, axis and its label
+LEGEND_LINE, LEGEND_WIDTH = 0.2, 3.0  # inch
+FEWEST_ROWS: Final = 4  # fewer bars are no thicker than these
+ROAD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
+
+
+def shown_names(measure: MeasureSummary) -> tuple[list[str], list[str]]:
+    """The contributors with a bar of their own, and those that share one."""
+    names = ranked_contributors(measure)
+    return names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
+
+
+def labels_of(measure: MeasureSummary) -> list[str]:
+    """What stands beside each bar, whole."""
+    shown, rest = shown_names(measure)
+    others = [f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else []
+    return [wrapped(name, NAME_WIDTH, NAME_SIZE, NAME_LINES) for name in shown] + others
+
+
+def height_of_contributors(measure: MeasureSummary) -> float:
+    """Height that the bars of a measure need with their names and legend [inch]; 0 without shares."""
+    columns = shares_of(measure)
+    if not columns:
+        return 0.0
+    labels = labels_of(measure)
+    most_lines = max((label.count("\n") + 1 for label in labels), default=1)
+    each = max(LINE * most_lines, BAR * len(columns)) + BETWEEN
+    legend = sum(legend_text(column).count("\n") + 1 for column in columns)
+    return HEAD_AND_FOOT + LEGEND_LINE * legend + each * len(labels)
+
+
+def legend_text(column: Column) -> str:
+    """What the legend calls a column."""
+    return ROAD_WORDS.get(column.road) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
+
+
+def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
+    """Shares of the variance, the largest first."""
+    plain_axes(axes).grid(axis="y", visible=False)
+    columns, labels = shares_of(measure), labels_of(measure)
+    shown, rest = shown_names(measure)
+    height = 0.8 / len(columns)
+    for k, column in enumerate(columns):
+        percents = _percents(column, shown, rest)
+        values = [max(percent or 0.0, 0.0) for percent in percents]
+        places = np.arange(len(values)) - 0.4 + (k + 0.5) * height
+        drawn = axes.barh(
+            places,
+            values,
+            height=0.9 * height,
+            color=colours[column.heading],
+            alpha=0.8,
+            label=legend_text(column),
+        )
+        texts = ["" if percent is None else percent_text(percent) for percent in percents]
+        axes.bar_label(drawn, labels=texts, fontsize=7, padding=2, color=BLACK)
+    axes.set_yticks(range(len(labels)), labels, fontsize=NAME_SIZE)
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(max(len(labels), FEWEST_ROWS) - 0.5, -0.5)
+    axes.margins(x=0.12)
+    axes.set_xlim(left=0)
+    axes.set_xlabel("share of the variance [%]", fontsize=10)
+    axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
+    legend_below(axes)
+
+
+def _percents(column: Column, shown: list[str], rest: list[str]) -> list[float | None]:
+    """A column's share of each bar [%]; None where it has none."""
+    others = [share for name in rest if (share := column.percents.get(name)) is not None]
+    return [column.percents.get(name) for name in shown] + ([sum(others) if others else None] if rest else [])

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.solids import PosedPart
+from tol3d.numerics.arrays import Array
+from tol3d.solids import BuiltShape, PosedPart, PosedShape, surface_of
 
-Array = NDArray[np.float64]
 Surface = tuple[Array, NDArray[np.int64]]
 
 
@@ -83,3 +83,19 @@ class World:
     points: Mapping[str, Array] = field(default_factory=dict)
     arrows: Mapping[str, Arrow] = field(default_factory=dict)
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+
+def built_body(
+    name: str, shape: BuiltShape, world_from_part: NDArray[np.float64], colour: str, *, deflection: float
+) -> Body:
+    """A shape as it is shown, and exported to any format, where it stands.
+
+    Args:
+        name: the part's.
+        shape: what is built.
+        world_from_part: its pose (4, 4), rotation and translation [mm].
+        colour: "#RRGGBB".
+        deflection: how far its triangles may lie off its faces [mm].
+    """
+    posed = PosedShape(name, shape, world_from_part)
+    return Body(name, world_from_part, lambda: surface_of(shape, deflection), lambda: posed, colour)

@@ -25,9 +25,8 @@ from tol3d.report.canvas import (
     title_axes,
 )
 from tol3d.report.column import seated_text
-from tol3d.report.compare import Compared, labelled, measures_of
+from tol3d.report.compare import Compared, Difference, difference_of, labelled, measures_of
 from tol3d.report.curve import Stepped, position_label
-from tol3d.report.difference import Difference, difference_of
 from tol3d.report.distribution import density_label, values_label
 from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, Line, draw_samples
 from tol3d.report.heading import heading

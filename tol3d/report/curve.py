@@ -5,16 +5,14 @@ from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import GREY, ORANGE, OUTSIDE, PUBLISHED_COLOURS, ROAD_COLOURS, label_angles, say_instead
 from tol3d.report.distribution import NO_VALUES, values_label
 from tol3d.report.heading import position_of
 from tol3d.report.label import legible
 from tol3d.report.number import limit_text
 from tol3d.runs.summary.measure import MeasureSummary
-
-Array = NDArray[np.float64]
 
 TURN: Final = 360.0  # deg; from two turns on the axis counts turns
 BAND: Final = 0.28  # opacity

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE
 from tol3d.report.ends import Ends
 from tol3d.report.number import measured_text, short_text
 
-Array = NDArray[np.float64]
 Limits = tuple[float | None, float | None]
 Line = Literal["filled", "solid", "dashed"]
 

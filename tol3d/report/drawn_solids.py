@@ -8,10 +8,9 @@ import pyvista as pv
 from numpy.typing import NDArray
 from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body
 from tol3d.report.label import legible
-
-Array = NDArray[np.float64]
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
@@ -116,3 +115,37 @@ def add_title(plotter: pv.Plotter, text: str, size: int) -> None:
     actor = plotter.add_text(f" {legible(text, len(text))} ", position="upper_left", font_size=size, color=EDGE_COLOUR)
     actor.prop.background_color = "white"
     actor.prop.background_opacity = 0.75
+
+
+FRONT: Final = np.array([0.0, 0.0, 1.0])
+UP: Final = np.array([0.0, 1.0, 0.0])
+VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show depth, little enough to look through a gap
+FAR: Final = 4.0  # diagonals of all that is drawn, from what is seen to the eye; along parallels any distance does
+
+
+def look(plotter: pv.Plotter, middle: Array, high: float, towards: Array, up: Array = UP) -> None:
+    """Look along parallels.
+
+    Args:
+        plotter: at its current renderer.
+        middle: the point (3,) in the middle of the picture [mm].
+        high: from there to the picture's upper edge [mm].
+        towards: unit vector (3,) to the eye.
+        up: unit vector (3,) to the upper edge.
+    """
+    plotter.camera.focal_point = tuple(middle)
+    plotter.camera.position = tuple(middle + FAR * plotter.renderer.length * towards)
+    plotter.camera.up = tuple(up)
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = high
+    plotter.reset_camera_clipping_range()
+
+
+def look_from_near(plotter: pv.Plotter, middle: Array, high: float) -> None:
+    """Look from the front, from so near that what lies further away looks smaller; see `look`."""
+    look(plotter, middle, high, FRONT)
+    plotter.camera.parallel_projection = False
+    distance = high / np.tan(np.radians(VIEW_ANGLE / 2))
+    plotter.camera.view_angle = VIEW_ANGLE
+    plotter.camera.position = tuple(middle + distance * FRONT)
+    plotter.reset_camera_clipping_range()

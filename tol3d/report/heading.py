@@ -1,6 +1,7 @@
-"""What makes a trial the worst, and the limits of a measure, in words."""
+"""Headings of reports, and which measures and contributors they show."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final, TypeVar
 
 from tol3d.report.number import limit_text
 from tol3d.runs.summary.measure import MeasureSummary, Worse
@@ -41,3 +42,36 @@ def heading(measure: MeasureSummary) -> str:
 def position_of(measure: MeasureSummary) -> str:
     """Whose positions a curve is over."""
     return measure.position_word
+
+
+T = TypeVar("T")
+
+MOST_MEASURES: Final = 20  # rows and tables of measures that are shown
+MOST_CONTRIBUTORS: Final = 15  # rows of contributors in the table of a measure
+WORST_FIRST: Final = "by the share out of limits, then by Ppk"
+
+
+def badness(out_ppm: float | None, ppk: float | None) -> tuple[float, float]:
+    """A key that sorts the worst measure first: the largest share out of limits [ppm], of equal ones the least Ppk.
+
+    >>> sorted([(0.0, 1.2), (None, None), (0.0, 1.1), (12.0, 1.4)], key=lambda own: badness(*own))
+    [(12.0, 1.4), (0.0, 1.1), (0.0, 1.2), (None, None)]
+    """
+    return -(out_ppm or 0.0), float("inf") if ppk is None else ppk
+
+
+def worst_first(measures: Mapping[str, MeasureSummary]) -> list[str]:
+    """Names of measures, the worst first; those without limits come last, in the scene's order."""
+    shares = {name: own.shares for name, own in measures.items()}
+    return sorted(measures, key=lambda name: badness(shares[name].out_ppm, shares[name].ppk))
+
+
+def shown_measures(measures: Mapping[str, MeasureSummary], most: int = MOST_MEASURES) -> Sequence[str]:
+    """Names of the measures that are shown: all in their order, or of more than `most` the worst, the worst first."""
+    return list(measures) if len(measures) <= most else worst_first(measures)[:most]
+
+
+def largest(items: Iterable[T], sizes: Mapping[T, float], most: int = MOST_CONTRIBUTORS) -> list[T]:
+    """Items that are shown: all in their order, or of more than `most` the largest, the largest first."""
+    every = list(items)
+    return every if len(every) <= most else sorted(every, key=lambda item: -sizes.get(item, 0.0))[:most]

@@ -6,16 +6,14 @@ from typing import Final
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, new_figure, save_figure
 from tol3d.report.column import shares_of
+from tol3d.report.heading import WORST_FIRST, largest, shown_measures
 from tol3d.report.label import text_width, wrapped
-from tol3d.report.ranking import WORST_FIRST, largest, shown_measures
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-
-Array = NDArray[np.float64]
 
 MOST_COLUMNS: Final = 40  # measures
 MOST_ROWS: Final = 50  # contributors; the others share a row

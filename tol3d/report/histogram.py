@@ -11,6 +11,7 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from tol3d.report.bars import NAME_SIZE, ROAD_WORDS, draw_contributors, height_of_contributors, labels_of
 from tol3d.report.canvas import (
     BLACK,
     OUTSIDE,
@@ -22,7 +23,6 @@ from tol3d.report.canvas import (
     title_axes,
 )
 from tol3d.report.column import columns_of, seated_text, shares_of
-from tol3d.report.contributor_bars import NAME_SIZE, ROAD_WORDS, draw_contributors, height_of_contributors, labels_of
 from tol3d.report.curve import Stepped, draw_curve, position_label
 from tol3d.report.distribution import (
     AXIS_UNITS,
@@ -41,11 +41,10 @@ from tol3d.report.distribution import (
 )
 from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, draw_ends, draw_samples
 from tol3d.report.ends import QUANTILES_MEAN, is_bounded
-from tol3d.report.heading import heading
+from tol3d.report.heading import heading, shown_measures
 from tol3d.report.label import widest, wrapped
 from tol3d.report.number import UNIT_SIGNS, share_text, short_text
 from tol3d.report.picture import MOST_TOGETHER, Pictures
-from tol3d.report.ranking import shown_measures
 from tol3d.report.shown_unit import shown_run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary

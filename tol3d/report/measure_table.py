@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from tol3d.report.column import Column, Road, columns_of, contributor_columns, ranked_contributors, seated_text
+from tol3d.report.heading import MOST_CONTRIBUTORS
 from tol3d.report.number import (
     NOTHING,
     limit_text,
@@ -16,7 +17,6 @@ from tol3d.report.number import (
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
 from tol3d.report.published import curve_columns, published_cell, published_counts, published_rows
-from tol3d.report.ranking import MOST_CONTRIBUTORS
 from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary

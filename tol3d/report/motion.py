@@ -6,15 +6,13 @@ from dataclasses import dataclass, field
 from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
 from tol3d.report.presenter import Display
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import hint
-
-Array = NDArray[np.float64]
 
 FRONT: Final = np.array([0.0, 0.0, 1.0])
 ISOMETRIC: Final = math.asin(1 / math.sqrt(3))  # rad above the horizon

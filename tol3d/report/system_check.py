@@ -5,9 +5,9 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from tol3d.distributions import DeviationLaw
+from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
-from tol3d.report.ranking import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.shown_unit import shown_unit
 from tol3d.statistics.limits import normal_share
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders

@@ -7,10 +7,10 @@ from typing import Final, Literal, get_args
 
 from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
 from tol3d.report.ends import Ends, is_bounded
+from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, given_text, limit_text, share_text, short_text, unsigned_zero
 from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
-from tol3d.report.ranking import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy

@@ -16,8 +16,8 @@ from scipy import ndimage
 from scipy.optimize import isotonic_regression, linear_sum_assignment
 from vtkmodules.vtkRenderingCore import vtkWorldPointPicker
 
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
-from tol3d.report.camera import look
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     EDGE_COLOUR,
@@ -25,12 +25,11 @@ from tol3d.report.drawn_solids import (
     add_body,
     add_label,
     arrow,
+    look,
     poly_data,
     set_background,
 )
 from tol3d.report.label import legible
-
-Array = NDArray[np.float64]
 
 ISOMETRIC: Final = math.asin(1 / math.sqrt(3))  # rad above the horizon: three edges of a cube look alike
 PARTS_WIDE, PARTS_HIGH = 0.56, 0.84  # of the picture; the labels stand on either side

@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import RunError
+from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.system.outcome import SEATED, outcome_of, status_column, value_column
-
-Array = NDArray[np.float64]
 
 LACKS_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
 

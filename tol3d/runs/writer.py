@@ -1,7 +1,7 @@
 """Writes a run into `<name>.partial`, block by block, and puts it in its place at the end."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,24 +10,13 @@ from filelock import FileLock, Timeout
 
 from tol3d.errors import DiskError, RunError, refused_by_disk
 from tol3d.files import FileContent, Files, kept_name
-from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.atomic_write import lacks_space, write_whole
 from tol3d.runs.block_files import BlockFiles, block_name
 from tol3d.runs.checkpoint import Checkpoint
 from tol3d.runs.fingerprint import FINGERPRINT, Fingerprint
 from tol3d.runs.manifest import TRIALS, Manifest, own_paths_of_trials
 from tol3d.runs.occupant import Place
-from tol3d.runs.run import (
-    CHECKPOINT,
-    FILES,
-    LOCK,
-    PIECES,
-    SCENE,
-    SUMMARY,
-    Columns,
-    Run,
-    warn_of_damage,
-    whole_file,
-)
+from tol3d.runs.run import CHECKPOINT, FILES, LOCK, PIECES, SCENE, SUMMARY, Columns, Run, warn_of_damage, whole_file
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.text import written
 
@@ -227,3 +216,29 @@ def _read(files: BlockFiles, name: str) -> Columns | None:
     except RunError as error:
         warn_of_damage(error)
         return None
+
+
+@contextmanager
+def refusals_explained(writer: RunWriter, kept: Callable[[], str]) -> Iterator[None]:
+    """Within it, a write that fails raises a RunError that says what is kept.
+
+    Args:
+        writer: writes the run.
+        kept: what is kept of it, such as "300 of 2000 trials are".
+    """
+    try:
+        yield
+    except OSError as error:
+        if refused_by_disk(error):
+            why, way = _why(error, writer)
+            raise DiskError(f"{why}: {kept()} kept in {writer.partial}; {way}, then the same command goes on") from None
+        if str(error.filename or "").startswith(str(writer.partial)):
+            raise RunError(f"{error.filename}: cannot be written ({error.strerror})") from None
+        raise
+
+
+def _why(error: OSError, writer: RunWriter) -> tuple[str, str]:
+    """What the disk refused, and what helps."""
+    if lacks_space(error):
+        return f"{writer.path}: no space left on the disk", "make room"
+    return f"{error.filename or writer.partial}: cannot be written ({error.strerror})", "mend the disk or its limits"

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tol3d.numerics.arrays import Array
 from tol3d.samplers.monte_carlo import Words, random_words, uniforms
 from tol3d.samplers.replicates import Piece, pieces
-from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
+from tol3d.samplers.stream import Counts, Stream, one_by_one
 
 ROUNDS = 8  # of the Feistel network; four are enough for large domains (Luby and Rackoff 1988), small ones need more
 PLACE_BITS = 48  # stratum and place inside it together; five bits fewer than a double's, so that rounding keeps both

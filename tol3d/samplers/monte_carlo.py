@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
+from tol3d.numerics.arrays import Array
+from tol3d.samplers.stream import Counts, Stream, one_by_one
 
 Words = NDArray[np.uint64]
 

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import FULL, high_product, kernel, part
 from tol3d.samplers.monte_carlo import DRAW_BITS, stream_key
 from tol3d.samplers.stream import Counts, Stream
-
-Array = NDArray[np.float64]
 
 MULTIPLIERS = np.uint64(0xD2E7470EE14C6C93), np.uint64(0xCA5A826395121157)
 WEYL = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBB67AE8584CAA73B)

@@ -12,9 +12,10 @@ from functools import lru_cache
 import numpy as np
 import scipy
 
+from tol3d.numerics.arrays import Array
 from tol3d.samplers.monte_carlo import DRAW_BITS, Words, inside_unit, random_words
 from tol3d.samplers.replicates import Piece, pieces
-from tol3d.samplers.stream import Array, Counts, Stream, one_by_one
+from tol3d.samplers.stream import Counts, Stream, one_by_one
 
 SCIPY_BITS = 32  # of scipy's points: exact for the first 2^32; its fast_forward fails with more (seen in 1.17)
 TABLE_BITS = 12  # a table of 2^12 points, 32 kB, serves the low bits of the index

@@ -13,18 +13,17 @@ from pydantic import Field, ValidationError, create_model
 from tol3d.distributions import DistributionSpec
 from tol3d.distributions.stated import SHIPPED, Laws, word_of
 from tol3d.errors import InputError
-from tol3d.scene.engines import Engines
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.implausible import warned
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
-from tol3d.scene.options import Option, StudyOptions, options_of
+from tol3d.scene.options import Engines, Option, StudyOptions, options_of
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin
 from tol3d.scene.problems import messages
 from tol3d.scene.published import PublishedFigures
-from tol3d.scene.published.column import published_column_class
+from tol3d.scene.published.measure import published_column_class
 from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, study_spec_class
 from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict
@@ -59,7 +58,7 @@ class Vocabulary:
         engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
         witness: the one of them that can check the others, if there is one.
         settle: import path `package.module:name` of what finds out the numbers that a scene leaves to its solids, see
-            tol3d.scene.settling; "" where scenes say all themselves.
+            tol3d.scene.load; "" where scenes say all themselves.
         other_kinds: words of the field that are no kind here, each with what to write instead.
         other_keys: the same of keys and choices.
 

@@ -1,6 +1,8 @@
 """What a vocabulary adds to a scene's study."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
 
 from tol3d.strict import Strict
 
@@ -14,3 +16,32 @@ class StudyOptions(Strict):
 def options_of(stated: StudyOptions, kind: type[StudyOptions]) -> Mapping[str, Option]:
     """The values of a kind's options."""
     return {name: getattr(stated, name) for name in kind.model_fields}
+
+
+THEORY: Final = "analytic"
+"""The engine of every system: its theory alone, no 3D simulation."""
+
+
+@dataclass(frozen=True)
+class Engines:
+    """What scenes of some kinds may be measured with.
+
+    Args:
+        names: words of study.engine, besides "analytic"; the first is taken where nothing is said.
+        witnesses: those of them that check the others.
+    """
+
+    names: tuple[str, ...]
+    witnesses: tuple[str, ...]
+
+    @property
+    def unwitnessed(self) -> frozenset[str]:
+        """Those that have no witness."""
+        return frozenset((THEORY, *self.witnesses))
+
+    def without_witness(self, engine: str) -> str:
+        """What is expected of the witness of an engine that has none; nothing for the others."""
+        if engine == THEORY:
+            return f"none for {engine}, which has no 3D simulation to check; an {self.names[0]} study may have one"
+        itself = f"none for {engine}, which is the witness itself; an {self.names[0]} study may have one"
+        return itself if engine in self.witnesses else ""

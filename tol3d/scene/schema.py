@@ -26,14 +26,13 @@ from tol3d.distributions.stated import SHIPPED, Laws, stating
 from tol3d.errors import SceneError
 from tol3d.files import Files
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
-from tol3d.scene.engines import THEORY, Engines
 from tol3d.scene.entry import Entry
 from tol3d.scene.including import with_include
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.nearest import nearest
-from tol3d.scene.options import StudyOptions
+from tol3d.scene.options import THEORY, Engines, StudyOptions
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedColumn

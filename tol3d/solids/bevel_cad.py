@@ -10,8 +10,6 @@ from tol3d.parts.tooth_edges import SIDES
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import Curve, Triangulation, edge_sagittas, largest_sagitta, triangulated
 
-Array = NDArray[np.float64]
-
 
 def sample_flanks(gear: BevelGear, steps: int) -> Arrays:
     """Rays of the flanks, cut to spheres at inner and outer cone distance; a step's sagitta is that at the heel."""

@@ -2,16 +2,14 @@
 
 import cadquery as cq
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from OCP.gp import gp_Pnt
 
+from tol3d.numerics.arrays import Array
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import SAGITTA_MARGIN, edge_sagittas, triangulated
-
-Array = NDArray[np.float64]
 
 LOOKED_AT = np.array([(1, 1, 0), (0, 1, 1), (1, 0, 1), (1, 1, 1)])
 """Weights of a triangle's corners where its distance to the face is taken: middles of edges, and its own."""

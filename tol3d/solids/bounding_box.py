@@ -1,13 +1,11 @@
 """The box around a solid, along the axes of its part; cached, as meshes are."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import Arrays, cad
-
-Array = NDArray[np.float64]
 
 
 def bounding_box(shape: BuiltShape) -> tuple[Array, Array]:

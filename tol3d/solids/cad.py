@@ -10,13 +10,12 @@ from functools import singledispatch
 from pathlib import Path
 
 import cadquery as cq
-import numpy as np
-from numpy.typing import NDArray
 from OCP.gp import gp_Trsf
 
 from tol3d.errors import unwritable
 from tol3d.gears import BevelGear, Gear, InternalGear, SpurGear
 from tol3d.import_path import named
+from tol3d.numerics.arrays import Array
 from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, picking, spur_cad, swept_cad
@@ -25,8 +24,6 @@ from tol3d.solids.built_shape import BuiltShape, SweptShape
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.pick import Pick, PickedFace
 from tol3d.solids.posed_gear import PosedPart
-
-Array = NDArray[np.float64]
 
 
 @singledispatch

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
+from tol3d.numerics.arrays import Array
 from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import cad
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

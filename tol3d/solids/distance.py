@@ -10,7 +10,8 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Integers = NDArray[np.int64]
 
 Surface: TypeAlias = fcl.CollisionObject

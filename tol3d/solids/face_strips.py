@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.solids.built_shape import SweptShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import cad
 
-Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
 

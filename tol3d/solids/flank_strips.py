@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import LEFT, RIGHT, Flank, Gear
+from tol3d.numerics.arrays import Array
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import cad
 
-Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 Span = tuple[float, float]
 

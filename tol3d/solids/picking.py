@@ -5,7 +5,6 @@ from typing import Any, Final
 
 import cadquery as cq
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
@@ -13,11 +12,10 @@ from OCP.BRepTools import BRepTools
 from OCP.gp import gp_Ax1, gp_Pnt
 from scipy.optimize import minimize_scalar
 
+from tol3d.numerics.arrays import Array
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.scene.nearest import nearest
 from tol3d.solids.pick import FaceKind, Pick, PickedFace, PickError, Triple
-
-Array = NDArray[np.float64]
 
 KINDS: Final[dict[str, FaceKind]] = {"PLANE": "plane", "CYLINDER": "cylinder", "CONE": "cone", "SPHERE": "sphere"}
 SAME_DISTANCE: Final = 1e-6

@@ -2,14 +2,10 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.gears import Gear
+from tol3d.numerics.arrays import Array
 from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import PosedShape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

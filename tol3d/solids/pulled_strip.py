@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Flank
-from tol3d.solids.flank_strips import WHOLE_FACE, Array, FlankStrips, Span, Triangles, strip_mesh
+from tol3d.numerics.arrays import Array
+from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, Triangles, strip_mesh
 
 AT_END = 1e-5  # of the slack; FCL's nearest point is an edge to its rounding, or else lies off it by any length
 

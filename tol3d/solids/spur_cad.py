@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
+from tol3d.numerics.arrays import Array
 from tol3d.parts import internal_gear, spur_gear
 from tol3d.parts.named_solid import NamedSolid
 from tol3d.parts.tooth_edges import SIDES, flank_name, roll_span
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.swept_cad import Rim, RuledFace, swept_mesh
 from tol3d.solids.triangulation import largest_sagitta
-
-Array = NDArray[np.float64]
 
 MOST_TEETH = 500  # of a gear that is built whole for its strips: 15 s; each further one 0.03 s and 0.2 MB
 

@@ -12,11 +12,10 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_REVERSED
 
+from tol3d.numerics.arrays import Array
 from tol3d.parts.named_solid import BACK, NamedSolid
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.triangulation import DISPLAY_ANGLE, corners_of, edge_curve, largest_sagitta, mesh_of, nodes_of
-
-Array = NDArray[np.float64]
 
 VANISHING = 1e-6  # rad, |dS/du| over |d2S/du2|: the roll; nearer to the base circle the direction is the second's
 LOOKED_AT = 2048  # steps along a face where its bend is looked at

@@ -14,9 +14,9 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 
 from tol3d.errors import GeometryError
+from tol3d.numerics.arrays import Array
 from tol3d.parts.named_solid import NamedSolid
 
-Array = NDArray[np.float64]
 Curve = Callable[[Array], Array]
 
 DISPLAY_ANGLE = 0.5  # rad; coarsest turn between neighbouring facets, so that small bores still look round

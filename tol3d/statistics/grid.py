@@ -7,7 +7,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Counts = NDArray[np.integer[Any]]
 
 BINS = 2**17  # 1 MB of counts; over 40 sigma one bin is 0.0003 sigma, far under the sampling error of a percentile

@@ -12,10 +12,9 @@ from typing import Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.clusters import Clusters, Pattern, Picked
 from tol3d.statistics.variance_shares import CONSTANT_RTOL, RANK_RTOL
-
-Array = NDArray[np.float64]
 
 
 class Products(Protocol):

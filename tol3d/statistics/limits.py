@@ -7,7 +7,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Mask = NDArray[np.bool_]
 
 CONFIDENCE = 0.95  # of the interval beside a ppm; what engineers expect when nothing is said

@@ -8,10 +8,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.independent_sums import ClusterFit, IndependentSums
 from tol3d.statistics.variance_shares import RegressorSums, column_sigmas, factorised
 
-Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 LEAST_FREEDOM = 30  # rows beyond the fit's unknowns; Student's 5 sigma there is as rare as a normal's 4.2

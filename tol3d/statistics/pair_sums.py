@@ -8,10 +8,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.limits import CONFIDENCE
 from tol3d.statistics.variance_shares import CONSTANT_RTOL, Products, TargetSums, add_products, plain_products
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 LOST_RTOL = 1e-6  # of the squares about a column's own mean; less is left with fewer than ten digits

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import FULL, kernel
 
-Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 TILE = 512  # trials; forty rows of them stay in the nearest cache

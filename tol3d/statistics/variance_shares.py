@@ -9,7 +9,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Places = NDArray[np.intp]
 
 CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only

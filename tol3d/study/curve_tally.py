@@ -7,18 +7,121 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.sample import SpectrumSample
+from tol3d.runs.summary.values import made
 from tol3d.statistics import Grid, LimitCounts, Moments
 from tol3d.study.performance import Judged, Performance, Side
 from tol3d.study.replicated import Rows, interval_of_replicates, limits_by_replicate, merged_by_replicate
-from tol3d.study.sample import Sample, in_unit, lacking_of
-from tol3d.study.spectrum_tally import OrderTally, spectrum_tally
-from tol3d.study.status_counts import added, status_counts
+from tol3d.study.sample import QUANTILES, Sample, finite, in_unit, lacking_of, quantile
 from tol3d.study.study import PpkBy
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
+from tol3d.system.outcome import (
+    ANALYTIC,
+    GEOMETRIC,
+    ROADS,
+    Columns,
+    Outcome,
+    outcome_of,
+    reason_column,
+    status_column,
+    value_column,
+)
+from tol3d.system.spectrum import Spectrum
 from tol3d.system.statuses import Statuses
 
-Array = NDArray[np.float64]
+BINS = 2**12  # 32 KB of counts; there may be some hundred orders, and of 24 sigma one bin is 0.006 sigma
+
+
+def grid_name(measure: str, index: int) -> str:
+    """Name of the grid of an order of a measure, by the order's place."""
+    return f"{measure}:order {index}"
+
+
+def amplitudes_of(measure: Measure, spectrum: Spectrum, curves: Array) -> Array:
+    """Amplitudes (trials that seated, orders) of curves (trials, positions), both in the measure's unit."""
+    return spectrum.amplitudes(measure.positions, curves[~np.isnan(curves).any(axis=1)])
+
+
+@dataclass(frozen=True)
+class OrderTally:
+    """One road's amplitudes of one order."""
+
+    moments: Moments
+    grid: Grid
+
+    def merge(self, other: "OrderTally") -> "OrderTally":
+        """Both as one."""
+        return OrderTally(self.moments.merge(other.moments), self.grid.merge(other.grid))
+
+    def quantile(self, p: float) -> float | None:
+        """Amplitude below which a share p of the trials lies."""
+        return finite(quantile(self.moments, self.grid, p))
+
+
+def spectrum_tally(measure: Measure, curves: Array, grids: Mapping[str, Grid]) -> tuple[OrderTally, ...]:
+    """A block's amplitudes of each order that a measure asks for; none where it asks for none."""
+    if measure.spectrum is None:
+        return ()
+    found = amplitudes_of(measure, measure.spectrum, curves)
+    return tuple(
+        OrderTally(Moments.of(own), grids[grid_name(measure.name, k)].add(own))
+        for k, own in enumerate(np.ascontiguousarray(found.T))
+    )
+
+
+def spectrum_sample(measure: Measure, tallies: tuple[OrderTally, ...]) -> SpectrumSample | None:
+    """What summary.json says of them, in the measure's unit; None where the measure asks for none."""
+    if measure.spectrum is None:
+        return None
+    low, middle, high = ([own.quantile(p) for own in tallies] for p in QUANTILES)
+    return made(
+        SpectrumSample,
+        order=[float(order) for order in measure.spectrum.orders],
+        mean=[own.moments.mean if own.moments.count else None for own in tallies],
+        sigma=[finite(own.moments.sigma) for own in tallies],
+        p0_135=low,
+        p50=middle,
+        p99_865=high,
+        max=[finite(own.moments.maximum) for own in tallies],
+    )
+
+
+Counts = Mapping[str, int]
+
+
+def status_counts(statuses: Statuses, columns: Columns, measure: Measure) -> dict[str, int]:
+    """Trials of a block by status, for one measure; those of the analytic road all seat."""
+    trials = len(columns[value_column(ANALYTIC, measure.name)])
+    return counted(statuses, columns.get(status_column(measure.name)), trials)
+
+
+def counted(statuses: Statuses, status: NDArray[np.generic] | None, trials: int) -> dict[str, int]:
+    """How many of the trials have each status (trials,); None where all of them seat."""
+    seated = trials if status is None else int(np.count_nonzero(status == statuses.seated))
+    if seated == trials:
+        return {statuses.seated: trials, **dict.fromkeys(statuses.failed, 0)}
+    return {statuses.seated: seated, **{text: int(np.count_nonzero(status == text)) for text in statuses.failed}}
+
+
+def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
+    """Trials of a block that failed, by what decided it; none where the road does not say."""
+    reasons = columns.get(reason_column(measure.name))
+    if reasons is None or not (said := reasons != "").any():
+        return {}
+    words, counts = np.unique(np.asarray(reasons[said], dtype=np.str_), return_counts=True)
+    return dict(zip(words.tolist(), counts.tolist(), strict=True))
+
+
+def gathered(mine: Counts, its: Counts) -> dict[str, int]:
+    """Both counts as one, of whatever names."""
+    return {name: mine.get(name, 0) + its.get(name, 0) for name in sorted(mine.keys() | its.keys())}
+
+
+def added(mine: Counts, its: Counts) -> dict[str, int]:
+    """Both counts as one."""
+    return {name: count + its[name] for name, count in mine.items()}
+
 
 LOWEST: Final = "lowest"
 HIGHEST: Final = "highest"

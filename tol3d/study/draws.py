@@ -8,8 +8,8 @@ that read others are drawn after them, from streams of their own.
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.samplers import LatinHypercube, MonteCarlo, Sampler, Sobol, Stream
 from tol3d.samplers.lazy import quick_monte_carlo
 from tol3d.study.simulation import Simulation
@@ -17,8 +17,6 @@ from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.stated import component_count, component_slices
 from tol3d.system.system import StreamKey, System
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 MANY_STREAMS = 256  # from here on compiling what draws them pays
 

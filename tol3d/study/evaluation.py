@@ -11,6 +11,7 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure
@@ -23,7 +24,6 @@ from tol3d.system.system import System
 from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 BATCH: Final = 2**22
 """Numbers that are built at once: rows times components, 32 MB."""

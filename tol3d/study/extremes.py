@@ -10,13 +10,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import Dependent, in_draw_order, reads_of
 from tol3d.system.draw import Each
-
-Array = NDArray[np.float64]
 
 PLACES: Final = 65
 """Of what is read, at first: what it does is smooth but for a few bends."""

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.study.evaluation import Values, batches, evaluations, of_alike
 from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
@@ -20,8 +20,6 @@ from tol3d.system.measure import Measure
 from tol3d.system.road import Road
 from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import Described, System
-
-Array = NDArray[np.float64]
 
 ALIKE = 1e-6  # of the greatest; slopes of features that are alike differ by rounding and by where they stand
 AS_LARGE = 0.99  # of the size of another one: of slopes of both signs the positive one is shown, by either road

@@ -16,15 +16,13 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.study.evaluation import Values, batches, measures_alike, of_alike
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import System
-
-Array = NDArray[np.float64]
 
 Percents = Mapping[str, float | None]
 

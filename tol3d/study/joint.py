@@ -7,6 +7,7 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.runs.summary import joint as summary
 from tol3d.runs.summary.values import Road, made
 from tol3d.statistics import PairSums, Proportion
@@ -18,7 +19,6 @@ from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Mask, Outcome
 
-Array = NDArray[np.float64]
 Outcomes = Mapping[tuple[str, str], Outcome]
 Key = TypeVar("Key")
 

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene
-from tol3d.scene.engines import THEORY, Engines
+from tol3d.scene.options import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.simulation import Simulation, study_of
 from tol3d.system.dependent import in_draw_order

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import quick_products, sparse_products
 from tol3d.statistics.variance_shares import Products, TargetSums
@@ -13,7 +14,6 @@ from tol3d.system.measure import Measure
 from tol3d.system.outcome import ROADS
 from tol3d.system.system import Columns, System
 
-Array = NDArray[np.float64]
 Sums = RegressorSums | IndependentSums
 Key = tuple[str, str]
 """Road, or DIFFERENCE, and name of a measure."""

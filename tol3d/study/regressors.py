@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.clusters import Clusters, Picked
 from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import reads_of
@@ -17,7 +18,6 @@ from tol3d.system.measure import Measure
 from tol3d.system.regressors import regressor_count
 from tol3d.system.system import Columns, System, Theory
 
-Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 MOST_REGRESSED = 128

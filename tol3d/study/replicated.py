@@ -8,12 +8,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.samplers.replicates import pieces
 from tol3d.statistics import LimitCounts, Moments, Proportion
 from tol3d.statistics.limits import CONFIDENCE
 from tol3d.study.study import Study
 
-Array = NDArray[np.float64]
 Rows = Mapping[int, slice]
 Mask = NDArray[np.bool_]
 

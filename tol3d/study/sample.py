@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.runs.summary import sample as summary
 from tol3d.runs.summary.values import made
@@ -17,8 +16,6 @@ from tol3d.study.study import PpkBy
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import Mask, Outcome
 from tol3d.system.pooled_statistic import Pool
-
-Array = NDArray[np.float64]
 
 QUANTILES = (OUTER, 0.5, 1 - OUTER)
 

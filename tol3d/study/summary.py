@@ -13,19 +13,18 @@ from tol3d.runs.summary.run import Findings, MechanismSummary, StudySummary
 from tol3d.runs.summary.sample import CurveRoads, CurveSample, Normal, Roads
 from tol3d.runs.summary.values import Unit, made
 from tol3d.statistics import Agreement as Comparison
-from tol3d.statistics import LimitCounts, Moments
+from tol3d.statistics import IndependentSums, LimitCounts, Moments, independent_shares, shares
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
-from tol3d.study.curve_tally import CurveTally
+from tol3d.study.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percents, to_first_order
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
-from tol3d.study.regressors import MOST_REGRESSED
+from tol3d.study.regression import Sums
+from tol3d.study.regressors import MOST_REGRESSED, regressor_groups
 from tol3d.study.sample import finite, in_unit, listed, sample_summary
-from tol3d.study.shares import share_percents
 from tol3d.study.simulation import Simulation
-from tol3d.study.spectrum_tally import spectrum_sample
 from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
@@ -37,7 +36,25 @@ from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.road import Road
 from tol3d.system.stated import mean_deviations, stated
+from tol3d.system.system import System
 from tol3d.units import FACTORS
+
+Percent = tuple[float | None, float | None]
+"""A share of the variance [%] and its standard error; None where unknown."""
+
+
+def share_percents(system: System, measure: Measure, sums: Sums | None) -> dict[str, Percent]:
+    """Share of the variance of each acting contributor by regression."""
+    groups = regressor_groups(system, measure)
+    if sums is None:
+        return dict.fromkeys(groups, (None, None))
+    if isinstance(sums, IndependentSums):
+        share, error, _ = independent_shares(sums)
+        found = zip(groups, share.tolist(), error.tolist(), strict=True)
+        return {name: (finite(100 * own), finite(100 * its)) for name, own, its in found}
+    known = shares(sums, groups)
+    return {name: (finite(100 * known.share[name]), finite(100 * known.standard_error[name])) for name in groups}
+
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
 NAMED_AT_ONCE = 6  # measures in one warning

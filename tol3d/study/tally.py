@@ -6,21 +6,31 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import Agreement, CountGrid, Grid
 from tol3d.statistics.grid import BINS
 from tol3d.statistics.lazy import quick_products
 from tol3d.statistics.variance_shares import Products, plain_products
-from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.breakdowns import merged_terms, pooled_terms
-from tol3d.study.curve_tally import ENDS, CurveTally, end_name, judged_ends
+from tol3d.study.curve_tally import BINS as ORDER_BINS
+from tol3d.study.curve_tally import (
+    ENDS,
+    CurveTally,
+    added,
+    amplitudes_of,
+    counted,
+    end_name,
+    gathered,
+    grid_name,
+    judged_ends,
+    reason_counts,
+    status_counts,
+)
 from tol3d.study.joint import JointTally, limited
 from tol3d.study.regression import DIFFERENCE, Among, Sums, merged, target_sums
 from tol3d.study.replicated import rows_of_replicates
 from tol3d.study.sample import Sample
 from tol3d.study.simulation import Simulation
-from tol3d.study.spectrum_tally import BINS as ORDER_BINS
-from tol3d.study.spectrum_tally import amplitudes_of, grid_name
-from tol3d.study.status_counts import added, counted, gathered, reason_counts, status_counts
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import Each, JudgedDraw
@@ -30,7 +40,33 @@ from tol3d.system.pooled import PooledTerms
 from tol3d.system.system import Described, System
 from tol3d.units import FACTORS
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True)
+class Disagreement:
+    """Differences (geometric - analytic) of the trials in which a scalar measure has both, in its unit.
+
+    Args:
+        sums: what they have in common with the measure's features.
+        largest: the largest |difference|, 0 without trials.
+        trial: the first trial that has it; -1 without trials.
+    """
+
+    sums: Sums
+    largest: float
+    trial: int
+
+    @classmethod
+    def of(cls, first: int, difference: Array, sums: Sums) -> "Disagreement":
+        """Of a block that begins at trial `first`; difference (trials,), nan where a road has no value."""
+        size = np.where(np.isnan(difference), -1.0, np.abs(difference))
+        at = int(np.argmax(size))
+        return cls(sums, float(size[at]), first + at) if size[at] >= 0.0 else cls(sums, 0.0, -1)
+
+    def merge(self, other: "Disagreement") -> "Disagreement":
+        """Both blocks as one."""
+        further = other if other.trial >= 0 and (self.trial < 0 or other.largest > self.largest) else self
+        return Disagreement(merged(self.sums, other.sums), further.largest, further.trial)
+
 
 PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spread that the stack-up does not see
 GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm

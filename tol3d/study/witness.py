@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.agreement import Witnessed, WitnessSummary
 from tol3d.runs.summary.values import made
 from tol3d.samplers.monte_carlo import uniforms
@@ -19,8 +20,6 @@ from tol3d.system.outcome import GEOMETRIC, Columns, status_column, value_column
 from tol3d.system.road import Road, WitnessRoad
 from tol3d.system.system import Roads
 from tol3d.system.trials import joined
-
-Array = NDArray[np.float64]
 
 STREAM = ("witness", "trial")
 

@@ -9,11 +9,11 @@ from typing import Protocol, TypeVar, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import Remembered
 from tol3d.system.faults import UnfitError
 
-Array = NDArray[np.float64]
 Given = Mapping[str, Array]
 """Components (components, trials) [mm, rad or K] of the contributors that a draw reads, by their names."""
 

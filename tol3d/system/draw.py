@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import DeviationLaw, Distribution
+from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 
-Array = NDArray[np.float64]
 Values = Callable[[Array], Array]
 """A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
 

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
+from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Planar, Values
 from tol3d.system.normals import Group, groups_of, shifted
-
-Array = NDArray[np.float64]
 
 
 class EachOwn:

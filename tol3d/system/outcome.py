@@ -12,7 +12,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Mask = NDArray[np.bool_]
 Columns = Mapping[str, NDArray[Any]]
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from tol3d.distributions import DeviationLaw, Distribution
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.measure import LengthLimit, MeasureEntry, MeasureSpec
@@ -36,7 +37,6 @@ from tol3d.system.system import Columns, KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
 from tol3d.units import Dimension
 
-Array = NDArray[np.float64]
 Drawn = Callable[[Distribution, Any], Draw]
 """How components are drawn, from a tolerance's law and the tolerance itself."""
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import Moments, RegressorSums
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.outcome import Outcome
 
-Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
 
 

@@ -4,11 +4,9 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
-
-Array = NDArray[np.float64]
 
 MOST_COMPONENTS: Final = 8
 """Components of a contributor that each have a row; a larger group has one of its own first-order term, and its

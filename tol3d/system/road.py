@@ -7,10 +7,10 @@ from typing import Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
 
 ANALYTIC_ROAD: Final = "analytic"

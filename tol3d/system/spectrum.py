@@ -6,12 +6,10 @@ from fractions import Fraction
 from typing import Final, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.system.positions import Positions
-
-Array = NDArray[np.float64]
 
 WHOLE_TURNS: Final = ("turn", "long_period")
 AT_ONCE: Final = 2**20  # trials x positions; their transforms take 8 MB

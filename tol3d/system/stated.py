@@ -5,15 +5,13 @@ from functools import lru_cache
 from typing import Final, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
 from tol3d.system.positions import Positions
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 NO_UNIT: Final = "1"
 """Unit of columns that are shares of what other deviations leave."""

@@ -6,6 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.scene.published import PublishedColumn
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
@@ -17,7 +18,6 @@ from tol3d.system.road import Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
 Published = Mapping[str, PublishedColumn]
 """Columns of others: what they found of each measure, and of the whole."""

@@ -1,11 +1,9 @@
 """What a measure takes of its values at several positions."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
-
-Array = NDArray[np.float64]
 
 ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
 

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from thinned import thinned
 
 from tol3d.assembly.clearances.distances import PairDistances, turns_about
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, solid_pair
 from tol3d.assembly.model.statuses import OK, OVERLAP
 

@@ -5,9 +5,9 @@ import pytest
 from meshed import ball, block, tube
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.nearest import Displaced, facing, nominal_distance
-from tol3d.assembly.model.facing import Facing
+from tol3d.assembly.model.measures import Facing
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Point
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import OK, SINGULAR
-from tol3d.assembly.placing.contacts import contacts_met
+from tol3d.assembly.placing.locating import contacts_met
 from tol3d.assembly.placing.road import placed, values
 from tol3d.errors import InputError
 

@@ -10,14 +10,13 @@ from of_kind import of_kind
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from tol3d.assembly.grammar.measures.angle import AngleSpec
-from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.gap import AngleSpec, DistanceSpec, GapSpec, PointPlaneSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedFlatnessSpec,
     InspectedOrientationSpec,
     InspectedPositionSpec,
+    InspectedSizeSpec,
 )
-from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.model import (
     Assembly,
     Axis,

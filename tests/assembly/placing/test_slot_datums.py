@@ -15,8 +15,7 @@ from scipy.spatial.transform import Rotation
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Plane, Shape, Slot
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import road as placing
-from tol3d.assembly.placing.holding import held_by_datums
-from tol3d.assembly.placing.taken_freedoms import in_words
+from tol3d.assembly.placing.holding import held_by_datums, in_words
 from tol3d.assembly.torsors import road as torsors
 from tol3d.errors import InputError
 

@@ -8,7 +8,7 @@ from drafts import Draft, Vector, displacement, frame, turned
 from numpy.typing import NDArray
 from rigid_parts import Poses, RigidParts, directional
 
-from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Mate, Measured, Plane, Relation
 from tol3d.assembly.torsors.road import slopes, values
 from tol3d.errors import InputError

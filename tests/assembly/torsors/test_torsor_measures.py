@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 from rigid_parts import Poses, RigidParts, directional
 from scipy.optimize import linprog
 
-from tol3d.assembly.grammar.measures.angle import AngleSpec
-from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec, PointPlaneSpec
+from tol3d.assembly.grammar.measures.gap import AngleSpec, DistanceSpec, GapSpec, PointPlaneSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedFlatnessSpec,
     InspectedOrientationSpec,
     InspectedPositionSpec,
+    InspectedSizeSpec,
 )
-from tol3d.assembly.grammar.measures.inspected_size import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Locate, Measured, Move, Pair, Plane, RoundPlane
 from tol3d.assembly.torsors.first_order import first_order
 from tol3d.assembly.torsors.road import slopes, values

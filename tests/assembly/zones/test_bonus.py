@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from thinned import thinned
 
-from tol3d.assembly.model.bonus import Modifier
+from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import Bonus, Confined, Zone, catalogue, normal_in, uniform_in
 from tol3d.distributions import Distribution
 from tol3d.distributions.normal import Normal

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tol3d.errors import InputError
-from tol3d.report.body import Body, World
-from tol3d.report.built_body import built_body
+from tol3d.report.body import Body, World, built_body
 from tol3d.report.page import Heading, PageItem, Row, Table, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
 from tol3d.report.system_check import system_blocks

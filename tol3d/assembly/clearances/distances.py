@@ -6,12 +6,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import Level, SolidPair, relative_pose
 from tol3d.assembly.model.statuses import OK, OVERLAP
+from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mesh_surface, overlapping, put
 
-Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
 
 INSIDE = 0.5

@@ -9,16 +9,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.distances import Asked, PairDistances, is_inside, surface_of, unit_normal
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, inverse, solid_pair
-from tol3d.assembly.model.facing import Facing
+from tol3d.assembly.model.measures import Facing
 from tol3d.numerics import frames
+from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import Nearest, NearestPoints, put
-
-Array = NDArray[np.float64]
 
 NEARER: Final = 0.1
 """Of the chord error: by how much a pair must be nearer than the known ones to be kept."""

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.clearances.faces import nearby, needed
-from tol3d.assembly.clearances.meshes import SolidMesh, solid_mesh
+from tol3d.assembly.clearances.faces import SolidMesh, nearby, needed, solid_mesh
 from tol3d.numerics import frames
+from tol3d.numerics.arrays import Array
 from tol3d.solids import BuiltShape
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SHARES = (0.25, 0.5, 1.0)

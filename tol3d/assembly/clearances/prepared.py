@@ -6,15 +6,12 @@ from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tol3d.assembly.clearances.meshes import SolidMesh
+from tol3d.assembly.clearances.faces import SolidMesh
 from tol3d.assembly.clearances.pair import SolidPair, meshes_of, relative_pose, solid_pair
 from tol3d.assembly.model import Assembly, Measured
 from tol3d.errors import GeometryError, InputError
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Torsors = Callable[[str, int], Array]
 """Small displacements (motions, 6) of a part after a move, seen at the world's origin [mm, rad]."""
 

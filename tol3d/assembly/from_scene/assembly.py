@@ -3,9 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.from_scene.boundaries import shift_frames
 from tol3d.assembly.from_scene.contributors import Effects, effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
@@ -17,11 +14,10 @@ from tol3d.assembly.grammar.checks import read_at
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Assembly, DatumFrame, Feature, Measured, Part
-from tol3d.assembly.picking.shapes import shapes_of
+from tol3d.assembly.picking.kept_picks import shapes_of
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor, PlainMeasure
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

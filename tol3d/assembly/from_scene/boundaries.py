@@ -4,25 +4,23 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.zones import sized_by
 from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shifts_alone
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
-from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
-from tol3d.assembly.zones.float_draw import FloatDraw
-from tol3d.assembly.zones.gauge_shift import GaugeShift, Leaning
+from tol3d.assembly.zones.float_draw import FloatDraw, GaugeShift, Leaning
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor
-
-Array = NDArray[np.float64]
 
 ANY = 1e3
 """mm; the room of a gauge grows with the size, beyond the drawing's limits too."""

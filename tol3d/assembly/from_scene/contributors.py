@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
@@ -12,24 +11,18 @@ from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, Sphe
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
-from tol3d.assembly.grammar.tolerances import (
-    LocationSpec,
-    LocatorSpec,
-    OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
-)
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Contribution
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution
 from tol3d.import_path import named
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.system.plain import PlainContributor
 
-Array = NDArray[np.float64]
 Touch = tuple[str, str]
 """A move, and one of its pairs by the name that locators have."""
 

@@ -10,7 +10,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.grammar.tolerances import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.model import Datum, DatumFrame
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
@@ -13,9 +12,8 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Axis, Contribution, Feature, Plane, Point, RoundPlane
 from tol3d.assembly.picking.kept_picks import face_names
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 
 def poses_of(scene: Scene) -> Mapping[str, Array]:

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.tolerances import LocationSpec
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec
 
 
 def idle_forms(drawing: Drawing) -> Iterator[str]:

@@ -4,31 +4,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene.bonus import sized_by
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
-from tol3d.assembly.from_scene.projected import projected, projected_name
+from tol3d.assembly.from_scene.zones import projected, projected_name, sized_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
-from tol3d.assembly.grammar.measures import (
-    AssemblyMeasureSpec,
-    DifferenceSpec,
-    DirectionErrorSpec,
-    InspectedPatternSpec,
-    InspectedPositionSpec,
-    PoseErrorSpec,
-)
-from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
-from tol3d.assembly.model.bonus import MaterialBonus
+from tol3d.assembly.model.datum_frame import MaterialBonus
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
-
-Array = NDArray[np.float64]
 
 
 def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:

@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
-from tol3d.assembly.from_scene.play import engaged_by
-from tol3d.assembly.from_scene.touches import touch
+from tol3d.assembly.from_scene.play import engaged_by, touch
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import (
     BestFitSpec,
@@ -26,12 +24,12 @@ from tol3d.assembly.grammar.moves import (
 from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
 
-Array = NDArray[np.float64]
 
 FLAT = 1e-6
 """Sine of the angle between directions that are the same."""

@@ -3,19 +3,31 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects, is_pattern
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves import PlaySpec
+from tol3d.assembly.grammar.moves import PlaySpec, TouchSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec, RandomSpec, TowardSpec
-from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating, Plane, Relation, Slot
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model import (
+    Axis,
+    Bolt,
+    Contact,
+    Contribution,
+    Engage,
+    Engagement,
+    Feature,
+    Floating,
+    Plane,
+    Relation,
+    Slot,
+    Touch,
+)
+from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.model.moves import unfit_for_contact
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 FLAT = 1e-6
 """Sine of an angle that is none."""
@@ -186,3 +198,16 @@ def _within(start: float, slope: float, reach: float) -> tuple[float, float]:
         return (-np.inf, np.inf) if abs(start) <= reach else (np.inf, -np.inf)
     low, high = sorted(((-reach - start) / slope, (reach - start) / slope))
     return low, high
+
+
+def touch(scene: Scene, name: str, spec: TouchSpec, features: Mapping[str, Feature]) -> Touch:
+    """A touch of a scene.
+
+    Raises:
+        SceneError: surfaces that do not touch as contacts ask.
+    """
+    for path, pair in spec.paired():
+        if words := unfit_for_contact(features[pair.from_].shape, features[pair.to].shape):
+            raise scene.refuse(("moves", name, *path), words)
+    contacts = tuple(Contact(pair.from_, pair.to) for pair in spec.contacts)
+    return Touch(name, spec.part, contacts, None if spec.pressed is None else unit(spec.pressed))

@@ -7,7 +7,6 @@ frame in which the feature lies has its share already, a shift: a part that grow
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
@@ -16,13 +15,12 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Point
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar
 from tol3d.system.plain import UNITS, PlainContributor
-
-Array = NDArray[np.float64]
 
 HELD = 1e-9
 """Length of what earlier datums leave of a direction that they hold already."""

@@ -4,18 +4,18 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene.bonus import sized_by
-from tol3d.assembly.from_scene.projected import seen_from_projected
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
-from tol3d.assembly.grammar.tolerances import CircularRunOutSpec, LocationSpec, OrientationSpec
-from tol3d.assembly.grammar.tolerances.modified import Modified
+from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
+from tol3d.assembly.grammar.tolerances.location import CircularRunOutSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
-from tol3d.assembly.model import Axis
+from tol3d.assembly.model import Axis, Contribution, Feature, Slot
+from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
+    Bonus,
     Confined,
     JudgedProcess,
     Process,
@@ -28,9 +28,8 @@ from tol3d.assembly.zones import (
 from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.import_path import named
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-Array = NDArray[np.float64]
 
 LEAST_SINE = 1e-9
 """Of an angle from the axis; a direction nearer to it has no direction across."""
@@ -110,6 +109,25 @@ def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
     return replace(found, bonus=bonus)
 
 
+def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:
+    """The size of a feature that has a tolerance of it, and its bonus.
+
+    Raises:
+        SceneError: its distribution has no limits and none are stated, so that there is no material condition.
+    """
+    (own,) = drawing.of(feature, SizeSpec)
+    spec, shape = own.spec, drawing.kind(feature).shape
+    assert isinstance(spec, SizeSpec)
+    assert isinstance(shape, Axis | Slot)
+    law = spec.distribution.resolve(scene.files)
+    limits = law.limits if spec.limits is None else tuple(own.internal for own in spec.limits)
+    if limits is None:
+        words = "expected the drawing's limits of size, such as [0 um, 15 um], from which the bonus counts; got none"
+        raise scene.refuse(("tolerances", own.entry), f"{words}, and its distribution has none")
+    low, high = limits
+    return SizedBy(own.name, law, Bonus.at(modifier, low, high, inner=shape.inner))
+
+
 def drawn_by(law: LawSpec, zone: Zone, files: Files) -> Confined | Process:
     """The draw that a law of a scene makes of a zone.
 
@@ -161,3 +179,31 @@ def _across(along: Triple, feature: FeatureUnion) -> tuple[float, float]:
     if math.hypot(x, y) < LEAST_SINE:
         raise InputError("expected a direction `along` across the axis, got one along it")
     return x, y
+
+
+def projected_name(feature: str, length: float) -> str:
+    """The name of the projected part of an axis; scenes cannot name one so."""
+    return f"{feature}..{length:.9g} mm beyond"
+
+
+def projected(feature: Feature, length: float) -> Feature:
+    """The part of an axis beyond its end along +z, of some length [mm], as a feature. ISO 10578, ASME Y14.5."""
+    assert isinstance(feature.shape, Axis)
+    frame = feature.frame.copy()
+    frame[:3, 3] += (feature.shape.length + length) / 2 * frame[:3, 2]
+    share = length / feature.shape.length
+    ends = _at_ends(0.0, 1.0, -share, 1.0 + share)
+    moved_by = tuple(Contribution(own.contributor, own.columns, ends @ own.matrix) for own in feature.moved_by)
+    name, shape = projected_name(feature.name, length), replace(feature.shape, length=length)
+    return replace(feature, name=name, shape=shape, frame=frame, moved_by=moved_by, is_named=False)
+
+
+def seen_from_projected(own_length: float, length: float) -> Array:
+    """(4, 4): components of the projected part of an axis -> those of the axis itself, both lengths in mm."""
+    share = own_length / length
+    return _at_ends(1.0 + share, -share, 1.0, 0.0)
+
+
+def _at_ends(start_by_start: float, start_by_end: float, end_by_start: float, end_by_end: float) -> Array:
+    """Ends of one piece of a straight line by those of another, x and y alike."""
+    return np.kron(np.array([[start_by_start, start_by_end], [end_by_start, end_by_end]]), np.eye(2))

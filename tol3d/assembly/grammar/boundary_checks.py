@@ -3,20 +3,21 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.datums import DatumSpec
-from tol3d.assembly.grammar.drawing import Drawing
+from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.measures import InspectedPositionSpec
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.grammar.tolerances import FeatureTolerance, LocationSpec, OrientationSpec, PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
+from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Plane
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
-Array = NDArray[np.float64]
 
 SQUARE = 1e-6  # sine of the angle of the axis to the normal
 
@@ -122,3 +123,41 @@ def _unfit(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...], k: int, p
     elif k > 0 and earlier_zone(drawing, own, datums[:k]) is None:
         words = f"expected a zone of {own!r} to {to}, which makes its virtual condition there"
         yield place, f"{words}; add a position to these datums, or an orientation"
+
+
+SIZED = ("cylinder", "slot")
+"""Kinds of feature whose size widens their zones."""
+
+
+def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
+    """Modifiers of features without a size or a tolerance of it, and two that differ on one feature."""
+    drawing = Drawing(scene)
+    for own in drawing.stated:
+        if isinstance(own, Stated) and own.is_own and isinstance(own.spec, Modified):
+            yield from _of_tolerance(drawing, own, own.spec)
+    sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are said already
+    for name, spec in scene.measures.items():
+        if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) and spec.modifier is not None:
+            for own in (feature for _, feature, _ in spec.named() if feature in sized):
+                yield from _unsized(drawing, own, ("measures", name, "modifier"), spec.modifier)
+
+
+def _of_tolerance(drawing: Drawing, own: Stated, spec: Modified) -> Iterator[Problem]:
+    place: KeyPath = ("tolerances", own.entry, "modifier")
+    if spec.modifier is None or own.feature not in drawing.names:
+        return
+    yield from _unsized(drawing, own.feature, place, spec.modifier)
+    if isinstance(own.spec, OrientationSpec):
+        for located in drawing.of(own.feature, LocationSpec):
+            other = located.spec.modifier if isinstance(located.spec, Modified) else None
+            if other is not None and other != spec.modifier:
+                yield place, f"expected that of {located.entry!r}, {other}, or none, got {spec.modifier}"
+
+
+def _unsized(drawing: Drawing, feature: str, place: KeyPath, modifier: str) -> Iterator[Problem]:
+    if drawing.kind(feature).kind not in SIZED:
+        words = drawing.kind(feature).words
+        yield place, f"expected none, for {feature!r} is {words}, whose zone no size widens, got {modifier}"
+    elif not drawing.of(feature, SizeSpec):
+        words = f"expected a tolerance of the size of {feature!r}, from which the bonus counts, got none"
+        yield place, f"{words}; add one of kind size"

@@ -7,11 +7,11 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
-from tol3d.assembly.grammar.measures.difference import DifferenceSpec
+from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec, WeldSpec
 from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.grammar.tolerances import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.scene import Scene
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath

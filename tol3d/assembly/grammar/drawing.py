@@ -12,18 +12,13 @@ from typing import Final
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
-from tol3d.assembly.grammar.features.nominal_frame import Array, unit
+from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.parts import SolidSpec, likes
-from tol3d.assembly.grammar.tolerances import (
-    FeatureTolerance,
-    LocationSpec,
-    LocatorSpec,
-    OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
-)
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model.dimension import longer
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 MOST_FEATURES: Final = 100_000  # of a scene, patterns written out: fifty a part of the most parts; 10 kB each

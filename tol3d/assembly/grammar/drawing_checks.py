@@ -1,23 +1,27 @@
 """What must hold across the tolerances of each feature."""
 
 from collections.abc import Iterator
+from typing import Final
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.tolerances import (
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.assembly.grammar.tolerances.location import (
     CircularRunOutSpec,
     CoaxialitySpec,
-    FeatureTolerance,
+    FormSpec,
     LocationSpec,
     OrientationSpec,
-    PlusMinusSpec,
-    SizeSpec,
     SymmetrySpec,
     TotalRunOutSpec,
 )
-from tol3d.assembly.grammar.tolerances.form import FormSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.zone import ProcessLawSpec
+from tol3d.assembly.model.feature import nominal_size
+from tol3d.files import Files
 from tol3d.scene import Scene
+from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
@@ -181,3 +185,33 @@ def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
             words = f"expected datums that do not depend on {name!r} themselves, got a ring of {ring}"
             yield ("tolerances", own[0].entry, "datums"), words
             return
+
+
+HALF: Final = Implausible(0.5)
+SIZE: Final = Implausible(0.5, "write how much larger than nominal the feature is, not its size, and look at the unit")
+
+
+def implausible_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Deviations of sizes, zones and displacements beyond half of a diameter or width; other features have no size."""
+    drawing = Drawing(scene)
+    for name, spec in scene.of(FeatureTolerance).items():
+        feature = drawing.kind(spec.of)
+        if (nominal := nominal_size(feature.shape)) is None:
+            continue
+        of = f"the {'width' if feature.kind == 'slot' else 'diameter'} of {spec.of!r}"
+        for field, deviation in _deviations(spec, scene.files):
+            rule = SIZE if isinstance(spec, SizeSpec) else HALF
+            if sentence := rule.sentence(of, nominal, deviation):
+                yield ("tolerances", name, *field), sentence
+
+
+def _deviations(spec: FeatureTolerance, files: Files) -> Iterator[tuple[KeyPath, float]]:
+    """Each length that a tolerance states of its feature [mm], with its field."""
+    if isinstance(spec, SizeSpec | PlusMinusSpec):
+        yield ("distribution",), farthest(spec.distribution.resolve(files))
+    if isinstance(spec, SizeSpec) and spec.limits is not None:
+        yield ("limits",), max((limit.internal for limit in spec.limits), key=abs)
+    if isinstance(spec, LocationSpec | OrientationSpec | FormSpec):
+        yield ("zone",), spec.zone.size
+        if isinstance(spec.law, ProcessLawSpec):
+            yield ("law", "distribution"), farthest(spec.law.distribution.resolve(files))

@@ -8,15 +8,10 @@ from numpy.typing import NDArray
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.measures import (
-    AssemblyMeasureSpec,
-    ClearanceSpec,
-    DifferenceSpec,
-    DirectionErrorSpec,
-    InspectedFlatnessSpec,
-    InspectedPatternSpec,
-    VirtualClearanceSpec,
-)
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
+from tol3d.assembly.grammar.measures.clearance import ClearanceSpec, VirtualClearanceSpec
+from tol3d.assembly.grammar.measures.inspected import InspectedFlatnessSpec, InspectedPatternSpec
+from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene

@@ -8,16 +8,16 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import is_across
-from tol3d.assembly.grammar.tolerances import (
+from tol3d.assembly.grammar.tolerances.location import (
     AngularitySpec,
     CircularRunOutSpec,
     CoaxialitySpec,
     LocationSpec,
     OrientationSpec,
     PerpendicularitySpec,
-    PlusMinusSpec,
     TotalRunOutSpec,
 )
+from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath

@@ -112,7 +112,6 @@ class ProcessLawSpec(LawSpec):
     distribution: StatedDistribution = Field(description="of each coordinate, a length at the end of the feature")
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """See LawSpec."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
 

@@ -5,11 +5,12 @@ Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of part
 
 from tol3d.assembly.model.assembly import Assembly, Part
 from tol3d.assembly.model.datum_frame import Datum, DatumFrame, Gauges
-from tol3d.assembly.model.feature import Contribution, Feature
+from tol3d.assembly.model.feature import Axis, Contribution, Feature, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import (
     BestFit,
     Bolt,
+    Contact,
     Engage,
     Engagement,
     Fit,
@@ -21,11 +22,10 @@ from tol3d.assembly.model.moves import (
     Pair,
     Relation,
     Rest,
+    Touch,
     Weld,
 )
-from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.stated_move import StatedMove
-from tol3d.assembly.model.touch import Contact, Touch
 
 __all__ = [
     "Assembly",

@@ -5,18 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.model.datum_frame import DatumFrame
 from tol3d.assembly.model.feature import Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import Move
+from tol3d.numerics.arrays import Array
 
 if TYPE_CHECKING:
     from tol3d.solids.built_shape import BuiltShape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,11 +4,9 @@ from collections.abc import Iterable, Sequence
 from typing import Final, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.model.shape import Axis, Plane, Point, RoundPlane, Shape
-
-Array = NDArray[np.float64]
+from tol3d.assembly.model.feature import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.numerics.arrays import Array
 
 LEAST: Final = 1e-6
 """Of a distance, as a share of that to the datum or [mm], whichever is more: less is the rounding of a direction."""

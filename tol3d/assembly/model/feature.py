@@ -1,13 +1,125 @@
 """A feature of a part: what a drawing names, where it is nominally, and what moves it."""
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.model.shape import Shape
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True)
+class Point:
+    """A point; z of its frame is the direction in which it touches, if it has one.
+
+    Args:
+        diameter: nominal size of the sphere of which it is the centre [mm]; None for a point alone.
+        inner: whether that is a socket, not a ball.
+    """
+
+    diameter: float | None = None
+    inner: bool = False
+
+    components: ClassVar[tuple[str, ...]] = ("x", "y", "z")
+
+    @cached_property
+    def ends(self) -> Array:
+        """Where its position is judged (1, 3), in its frame [mm]."""
+        return np.zeros((1, 3))
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A flat rectangle.
+
+    Args:
+        extent: along x and along y of its frame [mm].
+    """
+
+    extent: tuple[float, float]
+
+    components: ClassVar[tuple[str, ...]] = ("offset", "rise x", "rise y")
+    """Height at the middle along z; heights at the ends of +x and of +y less that at the middle [mm]."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """From the middle to where the rises are, along x and y [mm]."""
+        return self.extent[0] / 2, self.extent[1] / 2
+
+    @cached_property
+    def ends(self) -> Array:
+        """Its corners (4, 3), in its frame [mm]."""
+        a, b = self.reach
+        return np.array([[a, b, 0.0], [-a, b, 0.0], [-a, -b, 0.0], [a, -b, 0.0]])
+
+
+@dataclass(frozen=True)
+class Slot(Plane):
+    """A slot or a tab: the plane in the middle between its faces, z across its width.
+
+    Args:
+        extent: of that plane [mm].
+        width: nominal size [mm].
+        inner: whether it is a slot, not a tab.
+    """
+
+    width: float
+    inner: bool = True
+
+
+@dataclass(frozen=True)
+class RoundPlane:
+    """A flat disc.
+
+    Args:
+        radius: [mm].
+    """
+
+    radius: float
+
+    components: ClassVar[tuple[str, ...]] = Plane.components
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """From the middle to where the rises are, along x and y [mm]."""
+        return self.radius, self.radius
+
+
+@dataclass(frozen=True)
+class Axis:
+    """The axis of a cylinder, or of a pattern.
+
+    Args:
+        length: from end to end along z [mm].
+        diameter: nominal size [mm]; None for an axis without one.
+        inner: whether it is a hole.
+    """
+
+    length: float
+    diameter: float | None = None
+    inner: bool = False
+
+    components: ClassVar[tuple[str, ...]] = ("start x", "start y", "end x", "end y")
+    """How far its ends at z = -length/2 and at z = +length/2 lie aside [mm]; the axis passes through both."""
+
+    @cached_property
+    def ends(self) -> Array:
+        """Its ends (2, 3), in its frame [mm]."""
+        return np.array([[0.0, 0.0, -self.length / 2], [0.0, 0.0, self.length / 2]])
+
+
+Shape = Point | Plane | RoundPlane | Axis
+
+
+def nominal_size(shape: Shape) -> float | None:
+    """Diameter or width [mm]; None of a shape without one."""
+    match shape:
+        case Axis() | Point():
+            return shape.diameter
+        case Slot():
+            return shape.width
+    return None
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,15 +4,32 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
-from tol3d.assembly.model.facing import Facing
+from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.import_path import is_named
+from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Worse
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True, eq=False)
+class Facing:
+    """Pairs of points of two parts; the distance of the parts is the least of theirs, to first order.
+
+    Args:
+        starts: in the frame of the first part (pairs, 3) [mm].
+        ends: in the frame of the second (pairs, 3) [mm].
+        normals: directions along which they come nearer, from the first part to the second, nominally in the frame of
+            the first (pairs, 3).
+        lengths: distances along these, nominally (pairs,) [mm].
+        reach: how far points move, about: of the second part along x, y and z of the first, of the first along those of
+            the second (2, 3) [mm]. What moves no farther is read of fewer triangles.
+    """
+
+    starts: Array
+    ends: Array
+    normals: Array
+    lengths: Array
+    reach: Array
+
 
 PLACING: Final = "tol3d.assembly.placing.measuring"
 TORSORS: Final = "tol3d.assembly.torsors.measures"

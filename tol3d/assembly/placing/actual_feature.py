@@ -5,13 +5,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.model.feature import Contribution, Feature
-from tol3d.assembly.model.shape import Axis, Plane, RoundPlane, nominal_size
+from tol3d.assembly.model.feature import Axis, Contribution, Feature, Plane, RoundPlane, nominal_size
 from tol3d.assembly.placing.poses import Pose, dot, least_rotation, product, rotated, unit
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
 

@@ -13,7 +13,6 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
@@ -31,8 +30,7 @@ from tol3d.assembly.placing.poses import (
     rotated_back,
     unit,
 )
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 Held = Literal["along", "across", "all"]
 """Of a point what is held: its height along the target's direction, its place across it, or its place."""

@@ -11,8 +11,7 @@ import numpy as np
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at
 from tol3d.assembly.placing.pose_steps import solved
 from tol3d.assembly.placing.rests import LOST, RESTS, begin
-from tol3d.assembly.placing.tilted_motions import motion_rows, shifted
-from tol3d.assembly.placing.tilted_rests import PIERCED
+from tol3d.assembly.placing.tilted_rests import PIERCED, motion_rows, shifted
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy_matrix, fill_matrix
 

@@ -2,19 +2,249 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import BestFit
 from tol3d.assembly.model.statuses import OK, SINGULAR
-from tol3d.assembly.placing.fits import least_largest, least_squares
 from tol3d.assembly.placing.free_motion import free_motions, seen_steps
+from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
-Array = NDArray[np.float64]
+STEPS: Final = 80
+MET: Final = 1e-13
+"""Step [rad, and mm a mm of reach] after which a trial is done."""
+LEAST_SHARE: Final = 1e-11
+"""mm; times twice the number of residuals, by how much the least largest residual is exceeded."""
+FALL: Final = 0.2
+"""Of the share from one barrier to the next."""
+CENTRED: Final = 1e-3
+"""Newton's decrement, squared, at which a barrier's centre is found."""
+
+
+@nested
+def residual_of(pose: Any, fits: Any, f: int, i: int, arm: Any, residual: Any) -> Any:
+    """A residual (3,), the arm R p of its point, and its length squared."""
+    points, targets, directions, _ = fits
+    p, q, d = min(i, points.shape[2] - 1), min(i, targets.shape[2] - 1), min(i, directions.shape[3] - 1)
+    x, y, z = points[f, 0, p], points[f, 1, p], points[f, 2, p]
+    for r in range(3):
+        arm[r] = pose[r, 0] * x + pose[r, 1] * y + pose[r, 2] * z
+    a = arm[0] + pose[0, 3] - targets[f, 0, q]
+    b = arm[1] + pose[1, 3] - targets[f, 1, q]
+    c = arm[2] + pose[2, 3] - targets[f, 2, q]
+    square = 0.0
+    for k in range(3):
+        residual[k] = directions[f, k, 0, d] * a + directions[f, k, 1, d] * b + directions[f, k, 2, d] * c
+        square += residual[k] * residual[k]
+    return square
+
+
+@nested
+def rows_of(fits: Any, f: int, i: int, arm: Any, basis: Any, reach: float, rows: Any) -> None:
+    """How a residual changes with the steps of the basis (3, steps)."""
+    directions = fits[2]
+    d = min(i, directions.shape[3] - 1)
+    for s in range(basis.shape[1]):
+        a, b, c = basis[0, s] / reach, basis[1, s] / reach, basis[2, s] / reach
+        u = basis[3, s] + b * arm[2] - c * arm[1]
+        v = basis[4, s] + c * arm[0] - a * arm[2]
+        w = basis[5, s] + a * arm[1] - b * arm[0]
+        for k in range(3):
+            rows[k, s] = directions[f, k, 0, d] * u + directions[f, k, 1, d] * v + directions[f, k, 2, d] * w
+
+
+@nested
+def moved(pose: Any, basis: Any, direction: Any, share: float, reach: float, step: Any) -> Any:
+    """Move a pose by a share of a search direction, which is given in the basis; the step's length."""
+    for r in range(6):
+        step[r] = 0.0
+        for s in range(basis.shape[1]):
+            step[r] += share * basis[r, s] * direction[s]
+    return stepped(pose, step, reach)
+
+
+@nested
+def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
+    """Whether the pose of least squares is found."""
+    matrix, right, arm, residual, rows, step, _ = rooms
+    weights, count = fits[3], basis.shape[1]
+    for _ in range(STEPS):
+        fill_matrix(matrix, 0.0)
+        fill(right, 0.0)
+        for f in range(weights.shape[0]):
+            residual_of(pose, fits, f, i, arm, residual)
+            rows_of(fits, f, i, arm, basis, reach, rows)
+            for k in range(3):
+                for s in range(count):
+                    right[s] -= weights[f] * rows[k, s] * residual[k]
+                    for t in range(count):
+                        matrix[s, t] += weights[f] * rows[k, s] * rows[k, t]
+        if not solved(matrix, right, count):
+            return False
+        if moved(pose, basis, right, 1.0, reach, step) <= MET:
+            return True
+    return False
+
+
+@nested
+def largest(pose: Any, fits: Any, i: int, arm: Any, residual: Any) -> Any:
+    """The largest residual, squared."""
+    square = 0.0
+    for f in range(fits[3].shape[0]):
+        square = max(square, residual_of(pose, fits, f, i, arm, residual))
+    return square
+
+
+@nested
+def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> Any:
+    """Newton's step to a barrier's centre, that of T last; its decrement squared, negative where there is none."""
+    matrix, right, arm, residual, rows, _, pull = rooms
+    count = basis.shape[1]
+    fill_matrix(matrix, 0.0)
+    fill(right, 0.0)
+    right[count] = -1.0 / share
+    for f in range(fits[3].shape[0]):
+        room = top * top - residual_of(pose, fits, f, i, arm, residual)
+        rows_of(fits, f, i, arm, basis, reach, rows)
+        for s in range(count):
+            pull[s] = 2.0 * (rows[0, s] * residual[0] + rows[1, s] * residual[1] + rows[2, s] * residual[2]) / room
+        pull[count] = -2.0 * top / room
+        for s in range(count + 1):
+            right[s] -= pull[s]
+            for t in range(count + 1):
+                matrix[s, t] += pull[s] * pull[t]
+        for s in range(count):
+            for t in range(count):
+                for k in range(3):
+                    matrix[s, t] += 2.0 * rows[k, s] * rows[k, t] / room
+        matrix[count, count] -= 2.0 / room
+    for s in range(count + 1):
+        pull[s] = right[s]
+    if not solved(matrix, right, count + 1):
+        return -1.0
+    decrement = 0.0
+    for s in range(count + 1):
+        decrement += pull[s] * right[s]
+    return decrement
+
+
+@nested
+def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
+    """Whether the pose of the least largest residual is found, from that of least squares."""
+    _, right, arm, residual, _, step, _ = rooms
+    count = basis.shape[1]
+    trial, top = pose.copy(), np.sqrt(largest(pose, fits, i, arm, residual))
+    share = max(top, 10 * LEAST_SHARE)
+    top = top + share
+    while share > LEAST_SHARE:
+        share = max(FALL * share, LEAST_SHARE)
+        for _ in range(STEPS):
+            decrement = barrier_step(pose, top, share, fits, i, basis, reach, rooms)
+            if not decrement >= 0.0:
+                return False
+            length = 1.0 / (1.0 + np.sqrt(decrement))
+            for _ in range(STEPS):  # inside, for the barrier is of finite turns
+                copy_matrix(trial, pose)
+                moved(trial, basis, right, length, reach, step)
+                its_top = top + length * right[count]
+                if its_top > 0.0 and its_top * its_top > largest(trial, fits, i, arm, residual):
+                    break
+                length = length / 2
+            copy_matrix(pose, trial)
+            top = its_top
+            if decrement < CENTRED:
+                break
+    return bool(np.isfinite(top))
+
+
+@nested
+def kept(pose: Any, found: bool, i: int, turns: Any, shifts: Any, met: Any) -> None:
+    """Keep a trial's pose, not a number where none is found."""
+    met[i] = found
+    for r in range(3):
+        for c in range(3):
+            turns[r, c, i] = pose[r, c] if found else np.nan
+        shifts[r, i] = pose[r, 3] if found else np.nan
+
+
+@nested
+def new_rooms(count: int) -> Any:
+    """What steps work with."""
+    size = count + 1
+    return (
+        np.empty((size, size)),
+        np.empty(size),
+        np.empty(3),
+        np.empty(3),
+        np.empty((3, size)),
+        np.empty(6),
+        np.empty(size),
+    )
+
+
+FITS: Final = (
+    "float64[:,:,::1], float64[:,:,::1], float64[:,:,:,::1], float64[::1], float64[:,::1], float64[:,::1], float64, "
+    "float64[:,:,::1], float64[:,::1], boolean[::1]"
+)
+
+
+@kernel(arrays=FITS)
+def least_squares(
+    points: Any,
+    targets: Any,
+    directions: Any,
+    weights: Any,
+    basis: Any,
+    start: Any,
+    reach: float,
+    turns: Any,
+    shifts: Any,
+    met: Any,
+) -> None:
+    """Poses of least squares.
+
+    Args:
+        points, targets: p, q (fits, 3, n) [mm]; (..., 1) of what does not vary.
+        directions: D (fits, 3, 3, n) or (..., 1), with rows of 0 for what does not count.
+        weights: of the squares (fits,).
+        basis: steps that residuals see: turn times reach, and shift (6, steps).
+        start: the nominal pose (3, 4).
+        reach: of the points [mm].
+        turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where they are not.
+        met: whether they are (n,).
+    """
+    fits, rooms, pose = (points, targets, directions, weights), new_rooms(basis.shape[1]), np.empty((3, 4))
+    for i in range(met.shape[0]):
+        copy_matrix(pose, start)
+        kept(pose, by_squares(pose, fits, i, basis, reach, rooms), i, turns, shifts, met)
+
+
+@kernel(arrays=FITS)
+def least_largest(
+    points: Any,
+    targets: Any,
+    directions: Any,
+    weights: Any,
+    basis: Any,
+    start: Any,
+    reach: float,
+    turns: Any,
+    shifts: Any,
+    met: Any,
+) -> None:
+    """Poses of the least largest residual; see `least_squares`, whose weights count for where it starts only."""
+    fits, rooms, pose = (points, targets, directions, weights), new_rooms(basis.shape[1]), np.empty((3, 4))
+    for i in range(met.shape[0]):
+        copy_matrix(pose, start)
+        found = by_squares(pose, fits, i, basis, reach, rooms) and by_barriers(pose, fits, i, basis, reach, rooms)
+        kept(pose, found, i, turns, shifts, met)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Engage, Measured
-from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing.causes import Cause
 from tol3d.assembly.placing.poses import Codes

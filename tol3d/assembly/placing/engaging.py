@@ -12,16 +12,14 @@ from tol3d.assembly.model import Axis, Engage, Engagement, Mate
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
-from tol3d.assembly.placing.engaged_arrays import at_places, engaged_arrays
+from tol3d.assembly.placing.engaged_places import at_places, engaged_arrays
 from tol3d.assembly.placing.engaged_poses import engaged_poses_found
 from tol3d.assembly.placing.floats import Floats, floats_of
-from tol3d.assembly.placing.kept_relations import KeptRelations, kept_motions, kept_of
-from tol3d.assembly.placing.mating import Mating, mating
+from tol3d.assembly.placing.mating import KeptRelations, Mating, kept_motions, kept_of, mating
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated, rotated_back
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 20
 """How often a pin is brought nearer to where it is drawn; each time leaves a turn's share of what it corrects."""

@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Engage
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.poses import Pose, column
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 NEWTONS: Final = 12
 """Steps to the angle of a segment, from that of its third root: 5 reach rounding, more where it is small."""

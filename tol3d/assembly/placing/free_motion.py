@@ -1,9 +1,8 @@
 """Motions that contacts leave free, in words."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 FREE = 1e-9
 """Largest change of a contact, as a share of how far a motion moves what the contacts are about, that is none."""

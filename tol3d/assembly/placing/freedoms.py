@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.placing.alignment import Alignment, Seat, Shift, Step, Tie, drift
 from tol3d.assembly.placing.poses import Pose, column, cross
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 HELD = 1e-6
 """Sine of an angle, or lever [mm], under which a freedom counts as held."""

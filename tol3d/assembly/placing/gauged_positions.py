@@ -9,17 +9,14 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.gauge_floats import MET, ROUNDS
-from tol3d.assembly.placing.gauged_frames import GaugedFrame, full, point_row
+from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame, full, point_row
 from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.world import World
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 STEPS: Final = 60
 """Of Newton; in practice 2 to 8."""

@@ -1,21 +1,19 @@
 """Mated parts: what relations ask of their two features, trial by trial."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Feature, Mate, Point, Relation
+from tol3d.assembly.model import Axis, Feature, Mate, Point, Relation, Rest
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
-from tol3d.assembly.placing.poses import Codes, Pose, dot, rotated
+from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
     ("coincident", "plane", "plane"): ("along", "direction"),
@@ -123,3 +121,146 @@ def _seat(move: Mate, relation: Relation, sign: float, world: World) -> Seat:
 
 def _is_point(actual: ActualFeature) -> bool:
     return isinstance(actual.feature.shape, Point)
+
+
+INDEPENDENT = 1e-6
+"""Least part of what is kept that acts on the freedoms left, else earlier relations keep it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """What relations keep, n . (R p + s t), t the place of the part's origin or of what it is `about`.
+
+    Args:
+        vectors, normals: p and n (kept, 3, n), directions times a length [mm].
+        shifts: s, 1 of points and 0 of directions (kept,).
+        groups: how many there are of each relation.
+    """
+
+    vectors: Array
+    normals: Array
+    shifts: Array
+    groups: tuple[int, ...]
+
+    def about(self, middle: Array) -> "Kept":
+        """The same of poses that say where a middle of the part (3, 1) [mm] is, not its origin."""
+        return replace(self, vectors=np.ascontiguousarray(self.vectors - self.shifts[:, None, None] * middle))
+
+
+NOTHING = Kept(np.zeros((0, 3, 1)), np.zeros((0, 3, 1)), np.zeros(0), ())
+
+
+@dataclass(frozen=True, eq=False)
+class KeptRelations:
+    """Relations that a part keeps.
+
+    Args:
+        mating: that meets them.
+        length: by which directions count [mm].
+        toward: the nominal directions of their targets (3,), of unit length; 0 of points.
+    """
+
+    mating: Mating
+    length: float
+    toward: tuple[Array, ...]
+
+    def met(self, world: World) -> tuple[Pose, Codes, Kept]:
+        """Poses that meet them, what became of it, and what they keep."""
+        seats = self.mating.seats(world)
+        pose, codes = self.mating.poses(world, seats)
+        return pose, codes, self.kept_by(seats)
+
+    def kept_by(self, seats: Sequence[Seat]) -> Kept:
+        """What they keep in their trials."""
+        rows: list[tuple[Array, Array, float]] = []
+        groups = []
+        for tie, seat, toward in zip(self.mating.alignment.ties, seats, self.toward, strict=True):
+            before = len(rows)
+            if tie.held == "all":
+                rows += [(seat.point, column(axis), 1.0) for axis in np.eye(3)]
+            elif tie.held == "along":
+                rows.append((seat.point, seat.its_toward, 1.0))
+            else:
+                rows += [(seat.point, across, 1.0) for across in _across(toward, seat.its_toward)]
+            if tie.turning == "level":
+                rows.append((seat.its_direction, self.length * seat.its_toward, 0.0))
+            elif tie.turning == "direction":
+                rows += [(seat.its_direction, self.length * across, 0.0) for across in _across(toward, seat.its_toward)]
+            groups.append(len(rows) - before)
+        if not rows:
+            return NOTHING
+        return Kept(
+            _stacked([vector for vector, _, _ in rows]),
+            _stacked([normal for _, normal, _ in rows]),
+            np.array([shift for _, _, shift in rows]),
+            tuple(groups),
+        )
+
+
+def kept_relations(move: Rest, nominal: World, length: float) -> KeptRelations | None:
+    """The relations of a rest, if it has any.
+
+    Raises:
+        InputError: see mating.
+    """
+    if not move.relations:
+        return None
+    return kept_of(mating(Mate(move.name, move.part, move.relations), nominal), nominal, length)
+
+
+def kept_of(found: Mating, nominal: World, length: float) -> KeptRelations:
+    """Relations that are met, as what they keep.
+
+    Args:
+        found: that meets them.
+        nominal: the world before, without deviations.
+        length: by which directions count [mm].
+    """
+    toward = tuple(np.zeros(3) if own.toward is None else own.toward[:, 0] for own in found.seats(nominal))
+    return KeptRelations(found, length, toward)
+
+
+def _across(middle: Array, direction: Array) -> list[Array]:
+    """Two directions square to others (3, n) near one (3,), nearly of unit length."""
+    first = np.cross(middle, np.eye(3)[int(np.argmin(np.abs(middle)))])
+    first /= np.linalg.norm(first)
+    found = []
+    for own in (first, np.cross(middle, first)):
+        found.append(column(own) - dot(column(own), direction) * direction)
+    return found
+
+
+def _stacked(arrays: Sequence[Array]) -> Array:
+    return np.ascontiguousarray(np.stack(np.broadcast_arrays(*arrays)))
+
+
+def kept_rows(kept: Kept, turn: Array, reach: float) -> Array:
+    """How what is kept changes nominally with turn by reach and shift (kept, 6)."""
+    arms, normals = kept.vectors[:, :, 0] @ turn.T, kept.normals[:, :, 0]
+    return np.hstack([np.cross(arms, normals) / reach, kept.shifts[:, None] * normals])
+
+
+def kept_motions(kept: Kept, turn: Array, reach: float, steps: Array) -> tuple[Array, Array]:
+    """Which of some steps change nothing that is kept nominally, and which undo a change of each.
+
+    Args:
+        kept: nominally.
+        turn: nominal rotation of the part (3, 3).
+        reach: [mm].
+        steps: turn by reach and shift (6, steps).
+
+    Returns:
+        Steps that are free (6, free), and those that undo (6, kept).
+    """
+    rows = kept_rows(kept, turn, reach)
+    free, chosen = steps, np.zeros((0, len(rows)))
+    start = 0
+    for count in kept.groups:
+        group = slice(start, start + count)
+        left, sizes, right = np.linalg.svd(rows[group] @ free)
+        rank = int(np.sum(sizes > INDEPENDENT * max(float(np.linalg.norm(rows[group], axis=1).max()), 1e-300)))
+        weights = np.zeros((rank, len(rows)))
+        weights[:, group] = left[:, :rank].T
+        chosen, free, start = np.vstack([chosen, weights]), free @ right[rank:].T, start + count
+    undo = steps @ np.linalg.pinv(chosen @ rows @ steps) @ chosen if len(rows) else np.zeros((6, 0))
+    return free, np.ascontiguousarray(undo)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -9,17 +10,77 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
-from tol3d.assembly.placing.datum_rooms import position_in_room
-from tol3d.assembly.placing.flatness import widths
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
+from tol3d.assembly.placing.common_opening import common_openings
 from tol3d.assembly.placing.gauged_positions import position_on_gauges
-from tol3d.assembly.placing.patterns import bonuses
+from tol3d.assembly.placing.gauging import gauged_patterns, position_in_room
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
 from tol3d.import_path import named
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
+
+def widths(points: Sequence[Array]) -> Array:
+    """Widths of points, each (3, n) or (3, 1), in their trials (n,) [mm].
+
+    At the least width one plane touches three points, or each of them two: all such directions are tried.
+    """
+    least = np.full(1, np.inf)
+    for normal in _normals(points):
+        square = dot(normal, normal)
+        some = square > 0
+        heights = [dot(normal, point - points[0]) for point in points]
+        spread = np.maximum.reduce(np.broadcast_arrays(*heights)) - np.minimum.reduce(np.broadcast_arrays(*heights))
+        least = np.minimum(least, np.where(some, spread / np.sqrt(np.where(some, square, 1.0)), np.inf))
+    return np.where(least == np.inf, 0.0, least)
+
+
+def _normals(points: Sequence[Array]) -> list[Array]:
+    faces = [cross(b - a, c - a) for a, b, c in combinations(points, 3)]
+    for a, b, c, d in combinations(points, 4):
+        faces += [cross(b - a, d - c), cross(c - a, d - b), cross(d - a, c - b)]
+    return faces
+
+
+def bonuses(measured: Measured, world: World) -> list[Array]:
+    """What the size of each measured feature adds to its zone, each (n,) or (1,) [mm]."""
+    found = []
+    for name, own in zip(measured.features, measured.bonuses, strict=True):
+        size = total(world.assembly.features[name].size_by, 1, world.columns)[0]
+        found.append(np.clip(size - own.low if own.grows else own.high - size, 0.0, own.high - own.low))
+    return found
+
+
+def pattern(measured: Measured, world: World) -> Array:
+    """The largest of 2 distance - bonus at the best pose of the nominal places (n,) or (1,) [mm].
+
+    Each feature counts at both its ends; the places turn about their middle.
+    """
+    part = world.part_of(measured.features[0])
+    into = world.own[part].displacement(measured.frame).inverse
+    frames = [world.assembly.features[name].frame for name in measured.features]
+    across = frames[0][:3, :2]
+    middle = np.mean([frame[:3, 3] for frame in frames], axis=0)
+    ends = [[end - column(middle) for end in world.on_part(name).moved(into).ends] for name in measured.features]
+    x, y = ([dot(column(own), end) for each in ends for end in each] for own in across.T)
+    own_bonuses = bonuses(measured, world) if measured.bonuses else [np.zeros(1)] * len(ends)
+    radii = [0.5 * own for own, each in zip(own_bonuses, ends, strict=True) for _ in each]
+    nominal = np.array(
+        [(frame[:3, 3] - middle) @ across for frame, each in zip(frames, ends, strict=True) for _ in each]
+    )
+    rows = np.stack(np.broadcast_arrays(*x, *y, *radii))
+    x_rows, y_rows, radius_rows = (np.ascontiguousarray(own) for own in np.split(rows, 3))
+    worst = np.empty(rows.shape[1])
+    if measured.gauge == "shift":
+        centres = np.empty((2, len(worst)))
+        x_rows -= nominal[:, :1]
+        y_rows -= nominal[:, 1:]
+        common_openings(x_rows, y_rows, radius_rows, worst, centres)
+        return -worst
+    gauged_patterns(x_rows, y_rows, radius_rows, nominal, worst)
+    return 2.0 * worst
+
 
 TURN: Final = 2 * math.pi
 LEANS: Final = 1e-6
@@ -275,3 +336,26 @@ def _nominal_axis(assembly: Assembly, name: str) -> Array:
 def slack(measured: Measured, world: World) -> Array:
     """The slack of the move `of_move`, an Engage; no features."""
     return np.asarray(world.slacks[world.assembly.moves[measured.of_move].name])
+
+
+def virtual_clearance(measured: Measured, world: World) -> Array:
+    """Diameters (n,) [mm]; below 0 where the holes have no line in common.
+
+    The bolt stands along the nominal axis of the first hole, as its part or a datum frame carries it. Each hole leaves
+    the circles of its diameter about both its ends; that they are ellipses where it leans is of second order.
+    """
+    first = measured.features[0]
+    part = world.part_of(first)
+    turn = world.poses[part].turn
+    carried = world.own[part].displacement(measured.frame).turn
+    across = [rotated(turn, rotated(carried, column(own))) for own in world.assembly.features[first].frame[:3, :2].T]
+    ends = [end for name in measured.features for end in world.placed(name).ends]
+    sizes = [actual_size(world.assembly.features[name], world.columns) for name in measured.features]
+    middle = ends[0]  # about it, numbers are small
+    x, y = ([dot(own, end - middle) for end in ends] for own in across)
+    radii = [0.5 * size for size in sizes for _ in range(2)]
+    rows = np.stack(np.broadcast_arrays(*x, *y, *radii))
+    openings, centres = np.empty(rows.shape[1]), np.empty((2, rows.shape[1]))
+    discs = (np.ascontiguousarray(own) for own in np.split(rows, 3))
+    common_openings(*discs, openings, centres)
+    return openings

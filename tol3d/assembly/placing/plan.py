@@ -7,25 +7,22 @@ from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of
-from tol3d.assembly.placing.datum_seats import DatumSeats, datum_seats
+from tol3d.assembly.placing.datum_seats import DatumSeats, PartFeatures, datum_seats
 from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.gauged_frames import with_gauges
 from tol3d.assembly.placing.locating import Locating, locating
 from tol3d.assembly.placing.mating import Mating, mating
-from tol3d.assembly.placing.part_features import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.resting import Resting, resting
 from tol3d.assembly.placing.touching import Touching, touching
 from tol3d.assembly.placing.world import SolidReader, World
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class Placer(Protocol):

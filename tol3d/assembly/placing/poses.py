@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Codes = NDArray[np.int8]
 
 NO_LENGTH = 1e-150  # under it a squared length is 0 and has no direction

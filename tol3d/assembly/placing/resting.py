@@ -12,17 +12,15 @@ from tol3d.assembly.model import Pair, Rest
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
 from tol3d.assembly.placing.balances import balances_found
-from tol3d.assembly.placing.farthest_motion import TIED
 from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
-from tol3d.assembly.placing.kept_relations import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.locating import side_of
+from tol3d.assembly.placing.mating import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
-from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, rests_found
+from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, TIED, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SLIGHT = 1e-5
 """Of the force: what is added to it to see which contacts would carry if it pointed a little aside."""

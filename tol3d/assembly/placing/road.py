@@ -18,8 +18,7 @@ from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.rocking import over_poses, slope_of, varying
 from tol3d.assembly.placing.world import SolidReader, World
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 BLOCK = 8192
 """Trials at a time: their arrays stay in a core's cache."""

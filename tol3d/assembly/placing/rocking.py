@@ -15,8 +15,7 @@ from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.resting import Resting, generic
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 NUDGE: Final = 1e-3
 """mm; by which parts are moved for the slopes of measures."""

@@ -3,14 +3,12 @@
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.touch import is_inner
+from tol3d.assembly.model.moves import is_inner
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.poses import cross, dot, unit
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 Kind = Literal["point", "line", "plane"]
 

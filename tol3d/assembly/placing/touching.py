@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Contact, Touch
+from tol3d.assembly.model.moves import unfit_for_contact
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.model.touch import unfit_for_contact
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
@@ -19,8 +19,7 @@ from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, 
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 INDEPENDENT: Final = 1e-8
 """Least part of what a contact asks that no other contact asks too; less is rounding of directions."""

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.part_features import PartFeatures
+from tol3d.assembly.placing.datum_seats import PartFeatures
 from tol3d.assembly.placing.poses import Codes, Pose
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class SolidReader(Protocol):

@@ -51,9 +51,7 @@ class AssemblyPresenter:
         """Each part below the one that its move lays it on."""
         return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
 
-    def workspace(
-        self, simulation: "Simulation", measure: str | None, activity: "Callable[[str], None]"
-    ) -> "Map":
+    def workspace(self, simulation: "Simulation", measure: str | None, activity: "Callable[[str], None]") -> "Map":
         """That of the first move that has one; see `tol3d.report.presenter.Mapped`."""
         return _lazily("tables").workspace(simulation, measure, activity)  # type: ignore[no-any-return]
 

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Final, assert_never
 
-from tol3d.assembly.model import Assembly, Engage, Fix, Locate, Move, StatedMove, Touch
-from tol3d.assembly.model.moves import BestFit, Mate, Rest, Weld
+from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
 from tol3d.report.page import Branch
 
 DEEPEST: Final = 8  # levels that are set in

@@ -6,25 +6,21 @@ from functools import cached_property, partial
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly, Feature
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.posed import PosedSystem
-from tol3d.assembly.presenting.labels import labels, unnamed
-from tol3d.assembly.presenting.part_symbols import joined_symbols, marks_on_solid
+from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError, RunError
-from tol3d.report.body import Body, World
-from tol3d.report.built_body import built_body
+from tol3d.numerics.arrays import Array
+from tol3d.report.body import Body, World, built_body
 from tol3d.report.motion import Frame, Motion, Shot, around, corner
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
 from tol3d.system.stated import magnified, mean_build, nominal_build
-
-Array = NDArray[np.float64]
 
 COLOURS: Final = ("#4682B4", "#CD853F", "#6B8E23", "#B22222", "#8470FF", "#2F8F8F", "#C71585", "#708090")
 THIN: Final = 1 / 120

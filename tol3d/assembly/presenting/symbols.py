@@ -1,13 +1,15 @@
 """Closed surfaces that stand for features which are stated by numbers: slabs, rods, rings, octahedra."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model.measures import Measured
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Surface = tuple[Array, NDArray[np.int64]]
 
 SIDES = 48
@@ -174,3 +176,74 @@ def _outward(corners: Array, face: tuple[int, int, int]) -> tuple[int, int, int]
     """A triangle of a solid about the origin, turned so that it looks outward."""
     a, b, c = (corners[k] for k in face)
     return face if float(np.cross(b - a, c - a) @ a) > 0.0 else (face[0], face[2], face[1])
+
+
+MOST_NAMED: Final = 16
+"""Features that a picture names."""
+MOST_LISTED: Final = 4
+"""Features that a note lists of those that it does not name."""
+PLACES: Final = ("1st datum", "2nd datum", "3rd datum")
+
+
+def labels(assembly: Assembly) -> Mapping[str, str]:
+    """What pictures call features that they name, by these: of datums also their place in their frames."""
+    places = _datum_places(assembly)
+    named = _by_importance(assembly)[:MOST_NAMED]
+    return {name: f"{name}, {places[name]}" if name in places else name for name in named}
+
+
+def unnamed(assembly: Assembly) -> tuple[str, ...]:
+    """A note of the features that pictures do not name, if there are any."""
+    others = _by_importance(assembly)[MOST_NAMED:]
+    if not others:
+        return ()
+    more = f" and {len(others) - MOST_LISTED} more" if others[MOST_LISTED:] else ""
+    words = f"{', '.join(others[:MOST_LISTED])}{more}"
+    return (f"named are {MOST_NAMED} features, those that measures read and datums before others; not {words}",)
+
+
+def _by_importance(assembly: Assembly) -> list[str]:
+    """Named features: what measures read, datums, what deviates, all others; each in the scene's order."""
+    ranks = {name: 3 for name, own in assembly.features.items() if own.is_named}
+    ranks |= {name: 2 for name in ranks if assembly.features[name].moved_by}
+    ranks |= {name: 1 for name in _datum_places(assembly) if name in ranks}
+    ranks |= {name: 0 for own in assembly.measures.values() for name in _read(own) if name in ranks}
+    return sorted(ranks, key=lambda name: ranks[name])
+
+
+def _read(measured: Measured) -> Iterator[str]:
+    yield from measured.features
+    if measured.minus is not None:
+        yield from _read(measured.minus)
+
+
+def _datum_places(assembly: Assembly) -> Mapping[str, str]:
+    """The place of each datum in its frames; "datum" where these differ."""
+    found: dict[str, str] = {}
+    for frame in assembly.datum_frames.values():
+        for place, datum in zip(PLACES, frame.datums, strict=False):
+            for name in datum.features:
+                found[name] = place if found.get(name, place) == place else "datum"
+    return found
+
+
+Framed = Sequence[tuple[Feature, Array]]
+"""Features, and their frames (4, 4)."""
+
+
+def joined_symbols(features: Framed, thickness: float) -> Surface:
+    """Symbols of several features, and rods from their middle to each."""
+    places = np.array([frame[:3, 3] for _, frame in features])
+    middle = places.mean(axis=0)
+    rods = [rod(middle, place, thickness / 6) for place in places if np.linalg.norm(place - middle) > thickness]
+    return together([*rods, *(_moved(symbol(own.shape, thickness), frame) for own, frame in features)])
+
+
+def marks_on_solid(features: Framed, thickness: float) -> Surface:
+    """What stands for several features on the solid of their part."""
+    return together([_moved(mark(own.shape, thickness), frame) for own, frame in features])
+
+
+def _moved(surface: Surface, frame: Array) -> Surface:
+    vertices, triangles = surface
+    return vertices @ frame[:3, :3].T + frame[:3, 3], triangles

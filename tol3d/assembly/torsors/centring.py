@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from tol3d.assembly.torsors.interior_points import climbed
 from tol3d.assembly.torsors.ordered import ordered_sum
 from tol3d.assembly.torsors.quick_centring import quickly_centred
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 DECIDES: Final = 1e-6

@@ -1,11 +1,9 @@
 """What a trial's torsors are linear in: its deviations, a constant, and terms that are not linear, in order."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.terms import Largest, Term
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ROUNDING = 1e-12
 """Coefficients of lengths below this are rounding: of a length [mm] that does not vary, and of one that does."""

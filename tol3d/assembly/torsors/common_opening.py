@@ -5,11 +5,10 @@ from itertools import combinations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.terms import Form
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Disc = tuple[Array, Array, Array]
 """x, y, radius (trials,) [mm]."""
 

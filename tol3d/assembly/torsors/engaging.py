@@ -3,18 +3,16 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Bolt, Engage, Engagement, Floating, Mate
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.mating import freedoms_after
 from tol3d.assembly.torsors.room import Room
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SEEN = 1e-6
 """Change of all offsets by a freedom of length 1 [mm] that is none."""

@@ -10,15 +10,13 @@ from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
-from tol3d.assembly.torsors.one_sided import OneSided
 from tol3d.assembly.torsors.ordered import ordered_product
-from tol3d.assembly.torsors.resting import along_nothing
+from tol3d.assembly.torsors.resting import OneSided, along_nothing
 from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
 from tol3d.assembly.torsors.terms import Ends, Largest, Term
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""

@@ -4,11 +4,9 @@ from collections.abc import Iterable
 from copy import copy
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.torsor import cross_matrix, shift_at, torsor_of, turn_about
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 INDEPENDENT = 1e-6
 """Least part of an equation that must act on the freedoms left, else it is rounding of directions stated by six or more

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.torsors.centring import Cones, largest_slack
@@ -12,8 +11,7 @@ from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 STEPS: Final = 40
 """Of Newton; in practice 2 to 8."""

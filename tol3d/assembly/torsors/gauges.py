@@ -4,16 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Feature, Floating, Slot
-from tol3d.assembly.model.bonus import GaugeRoom
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.room import Room
 from tol3d.assembly.torsors.torsor import cross_matrix, shift_at
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SEEN = 1e-6
 """Change of all offsets by a freedom of length 1 [mm] that is none."""

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.torsors.meeting import solved
+from tol3d.assembly.torsors.quick_centring import solved
 from tol3d.numerics.compiled import FULL, kernel, nested
 from tol3d.numerics.loops import fill
 

@@ -5,22 +5,19 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
-from tol3d.assembly.model.bonus import GaugeRoom, MaterialBonus
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
-from tol3d.assembly.torsors.flatness import balances
 from tol3d.assembly.torsors.gauged_positions import position_on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
-from tol3d.assembly.torsors.terms import Clipped, Width
+from tol3d.assembly.torsors.terms import Clipped, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.import_path import named
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 NEAR = 1.0
 """Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""

@@ -6,9 +6,8 @@ from operator import add
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 MANY = 64
 """Numbers of a matrix that is not 0, from which its sparse form, which adds in the same order, is quicker."""

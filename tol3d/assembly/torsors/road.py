@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.torsors.first_order import FirstOrder, displaced, first_order
 from tol3d.assembly.torsors.slopes import Slopes
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 _FOUND: WeakKeyDictionary[Assembly, FirstOrder] = WeakKeyDictionary()
 """Of each assembly in this process; another process finds its own, a matter of milliseconds."""

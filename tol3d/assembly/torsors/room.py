@@ -1,17 +1,169 @@
 """Where something with play lies in its room, as a term: a part on its pins, or the gauges of a datum frame."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.assembly.model import Floating
-from tol3d.assembly.torsors.centring import Cones, centred
-from tol3d.assembly.torsors.floating import along_rays, by_pairs, pushed
-from tol3d.assembly.torsors.ordered import ordered_product
+from tol3d.assembly.torsors.centring import DECIDES, Cones, centred, largest_slack, narrowed, refined
+from tol3d.assembly.torsors.interior_points import climbed
+from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum
+from tol3d.assembly.torsors.quick_centring import quickly_centred
 from tol3d.assembly.torsors.terms import Form
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
+HALVINGS: Final = 55
+"""Of the height of a segment, 1 at first: rounding is reached."""
+DOUBLINGS: Final = 40
+NEWTONS: Final = 30
+"""Steps to where a bolt has no place, 3 to 6 in practice."""
+BEYOND: Final = 1e-13
+"""Slack [mm] of a bolt that is none."""
+NONE: Final = 1e-9
+"""Change of an offset by a freedom of length 1 that is none."""
+
+
+def pushed(cones: Cones, q: Array, push: Array) -> Array:
+    """As far along a direction of the freedoms (freedoms,) as the room goes; what that leaves open is centred."""
+    trials = q.shape[1]
+    rows = cones.rows[..., None] * np.ones(trials)
+    counts = np.repeat((np.abs(cones.rows).max(axis=(1, 2)) > NONE)[:, None], trials, axis=1)
+    primal = np.concatenate([cones.clearances[:, None], cones.at(q)], axis=1)
+    dual = np.zeros(primal.shape)
+    dual[:, 0] = 1.0 / counts.sum(axis=0)
+    closed = np.zeros((len(q), len(q), trials))
+    step, multipliers, goal = np.empty(q.shape), np.empty(counts.shape), push[:, None] * np.ones(trials)
+    climbed(primal, dual, rows, counts, closed, goal, 0, step, multipliers)
+    near = np.ones(trials, dtype=bool)
+    offsets, clearances = np.ascontiguousarray(cones.at(q)), np.ascontiguousarray(cones.clearances)
+    quickly_centred(offsets, clearances, rows, counts, closed, goal, 0, step, multipliers, near)
+    decides = counts & (multipliers > DECIDES)
+    everything = np.eye(len(q))[:, :, None] * np.ones(trials)
+    return refined(cones, q + step, narrowed(everything, rows, decides), decides)
+
+
+def along_rays(cones: Cones, q: Array, directions: Array, share: Array) -> Array:
+    """From centred poses along directions (freedoms, trials), share^(1 / freedoms) of the way that the room has."""
+    length = np.sqrt(ordered_sum(directions**2))
+    moves = length > 0.0
+    ray = directions / np.where(moves, length, 1.0)
+    at, parts = cones.at(q), cones.parts
+    gone = np.stack([ordered_product(cones.rows[:, r, :parts], ray) for r in (0, 1)], axis=1)
+    held = np.array(cones.bolt_of or (-1,) * len(at)) < 0
+    # the larger root of |at + t gone|^2 = clearance^2
+    a, half_b, c = (
+        ordered_sum(one[:, r] * other[:, r] for r in (0, 1)) for one, other in ((gone, gone), (at, gone), (at, at))
+    )
+    bent = a > NONE**2
+    root = np.sqrt(np.maximum(half_b**2 - a * (c - cones.clearances**2), 0.0))
+    way = np.where(bent, (root - half_b) / np.where(bent, a, 1.0), np.inf)[held].min(axis=0, initial=np.inf)
+    for bolt in range((cones.freedoms - parts) // 4):
+        way = np.minimum(way, _bolt_way(cones, bolt, at, gone))
+    way = np.where(moves & np.isfinite(way), np.maximum(way, 0.0), 0.0)
+    inside = np.clip(share, 0.0, 1.0)  # slopes ask beyond its ends
+    moved = q.copy()
+    moved[:parts] = q[:parts] + inside ** (1.0 / parts) * way * ray
+    return moved
+
+
+def _bolt_way(cones: Cones, bolt: int, at: Array, gone: Array) -> Array:
+    """How far along rays a bolt has a place in both its holes (trials,), inf where nothing stops it.
+
+    The largest slack that the bolt's own four freedoms leave is concave in the way, and more than 0 at its start: twice
+    as far until it is none, then by Newton's steps.
+    """
+    own = np.flatnonzero(np.array(cones.bolt_of) == bolt)
+    columns = slice(cones.parts + 4 * bolt, cones.parts + 4 * bolt + 4)
+    rows = cones.rows[own][:, :, columns, None] * np.ones(at.shape[2])
+    at, gone, clearances = at[own], gone[own], cones.clearances[own]
+    counts, closed = np.ones(clearances.shape, dtype=bool), np.zeros((4, 4, at.shape[2]))
+
+    def slack(way: Array) -> tuple[Array, Array]:
+        offsets = at + way * gone
+        step, multipliers = largest_slack(offsets, clearances, rows, counts, closed)
+        ends = offsets + ordered_sum(rows[:, :, k] * step[k] for k in range(4))
+        lengths = np.sqrt(ends[:, 0] ** 2 + ends[:, 1] ** 2)
+        along = (ends * gone).sum(axis=1) / np.where(lengths > 0.0, lengths, 1.0)
+        return (clearances - lengths).min(axis=0), -(multipliers * along).sum(axis=0)
+
+    speed = np.sqrt((gone**2).sum(axis=1)).max(axis=0)
+    moves = speed > NONE
+    way = np.where(moves, 2.0 * clearances.max(axis=0) / np.where(moves, speed, 1.0), 0.0)
+    for _ in range(DOUBLINGS):
+        left, change = slack(way)
+        if not (short := moves & (left > 0.0)).any():
+            break
+        way = np.where(short, 2.0 * way, way)
+    for _ in range(NEWTONS):
+        beyond = moves & (left < -BEYOND) & (change < 0.0)
+        if not beyond.any():
+            break
+        way = np.where(beyond, way - left / np.where(beyond, change, 1.0), way)
+        left, change = slack(way)
+    return np.where(moves, way, np.inf)
+
+
+def by_pairs(cones: Cones, q: Array, drawn: Array) -> Array:
+    """A pin anywhere in its hole (both its ends the first places), then the next anywhere in its slot.
+
+    Args:
+        cones: the limits.
+        q: centred (freedoms, trials).
+        drawn: points of the disc of radius 1: of both ends, or of the pin; then of -1 to 1 for the slot, where positive
+            is against its normal.
+    """
+    both = len(drawn) - (len(cones.rows) > 2) == 4
+    at = cones.at(q)
+    if both:
+        rows = cones.rows[:2].reshape(4, -1)
+        missing = (cones.clearances[:2, None] * drawn[:4].reshape(2, 2, -1) - at[:2]).reshape(4, -1)
+    else:
+        rows = cones.rows[:2].mean(axis=0)
+        missing = in_lens((at[0] - at[1]) / 2.0, cones.clearances[0], drawn[:2]) - (at[0] + at[1]) / 2.0
+    inverse: Array = np.asarray(np.linalg.pinv(rows), dtype=np.float64)
+    q = q + ordered_product(inverse, np.asarray(missing))
+    if len(cones.rows) == 2:
+        return q
+    turn = np.linalg.svd(rows)[2][-1]
+    if float(cones.rows[2, 0] @ turn) > 0.0:
+        turn = -turn  # positive draws let the pin lie on the other side of its slot
+    at, gain = cones.at(q)[2:, 0], cones.rows[2:, 0] @ turn
+    ends = np.sort(np.stack([(sign * cones.clearances[2:] - at) / gain[:, None] for sign in (-1.0, 1.0)]), axis=0)
+    low, high = ends[0].max(axis=0), ends[1].min(axis=0)
+    return np.asarray(q + turn[:, None] * (low + (1.0 + drawn[-1]) / 2.0 * np.maximum(high - low, 0.0)))
+
+
+def in_lens(off: Array, radius: Array, drawn: Array) -> Array:
+    """Points of the lens of two discs (2, trials), from points of the disc of radius 1, areas kept.
+
+    Args:
+        off: from the middle of the lens to a centre (2, trials) [mm].
+        radius: of both discs (trials,) [mm].
+        drawn: (2, trials).
+    """
+    distance = np.hypot(off[0], off[1])
+    apart = distance > 0.0
+    axis = np.where(apart, off / np.where(apart, distance, 1.0), np.array([[1.0], [0.0]]))
+    side = np.stack([-axis[1], axis[0]])
+    along, aside = (ordered_sum(drawn * own) for own in (axis, side))
+    start = np.minimum(distance / radius, 1.0)
+    wanted = _beyond(np.abs(along)) * _beyond(start) / (np.pi / 2.0)
+    low, high = start.copy(), np.ones(len(start))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2.0
+        deep = _beyond(middle) > wanted
+        low, high = np.where(deep, middle, low), np.where(deep, high, middle)
+    height = np.where(along == 0.0, start, (low + high) / 2.0)
+    chords = [np.sqrt(np.maximum(1.0 - own**2, 0.0)) for own in (along, height)]
+    across = aside * chords[1] / np.where(chords[0] > 0.0, chords[0], 1.0)
+    return np.asarray(radius * (np.sign(along) * (height - start) * axis + across * side))
+
+
+def _beyond(height: Array) -> Array:
+    """Area of a disc of radius 1 beyond a height."""
+    angle = np.arccos(np.minimum(height, 1.0))
+    return np.asarray(angle - np.sin(angle) * np.cos(angle))
 
 
 @dataclass(frozen=True, eq=False)

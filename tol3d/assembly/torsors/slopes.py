@@ -3,12 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.torsors.terms import Form
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 STEP: Final = 1e-6
 """Step [mm] for slopes of what does not vary."""

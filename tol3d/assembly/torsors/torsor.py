@@ -5,9 +5,8 @@ varies from trial to trial (see columns.py). Torsors in one frame add up.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def cross_matrix(vector: Array) -> Array:

@@ -3,15 +3,11 @@
 from collections.abc import Mapping
 from copy import copy
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.features import PartTorsors
 from tol3d.assembly.torsors.torsor import seen_from
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class World:

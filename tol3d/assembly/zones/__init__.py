@@ -4,8 +4,7 @@
 zone by the size of its feature, `Widened` draws from what it leaves.
 """
 
-from tol3d.assembly.zones.bonus import Bonus
-from tol3d.assembly.zones.widened import JudgedProcess, SizedBy, Widened
+from tol3d.assembly.zones.widened import Bonus, JudgedProcess, SizedBy, Widened
 from tol3d.assembly.zones.zone import Zone
 from tol3d.assembly.zones.zone_draw import (
     Confined,

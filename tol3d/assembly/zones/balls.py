@@ -7,8 +7,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
-from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group
 
 
@@ -20,20 +21,16 @@ class Line(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformLine()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalLine()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         return np.copysign(half, gradient)
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return np.asarray(np.abs(coordinates[:, 0]) - half)
 
 
@@ -44,11 +41,9 @@ class UniformLine(UnitLaw):
     uniforms = 1
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return (2.0 * uniforms[0] - 1.0,)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return np.array([[1.0 / 3.0]])
 
 
@@ -59,7 +54,6 @@ class NormalLine(UnitLaw):
     uniforms = 1
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         value = ndtri(0.5 + (uniforms[0] - 0.5) * math.erf(SIGMAS * math.sqrt(0.5))) / SIGMAS
         return (np.clip(value, -1.0, 1.0),)
 
@@ -79,20 +73,16 @@ class Flat(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformFlat(self.section)
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalFlat(self.section)
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         return half * self.section.furthest(gradient)
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return self.section.length(coordinates) - half
 
 
@@ -109,11 +99,9 @@ class UniformFlat(UnitLaw):
         return self.section.groups
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return self.section.uniform(_ONE, *uniforms)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return self.section.uniform_variance * np.eye(2)
 
 
@@ -130,11 +118,9 @@ class NormalFlat(UnitLaw):
         return self.section.groups
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return self.section.normal(_ONE, *uniforms)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return float(self.section.normal_variance(_ONE)) * np.eye(2)
 
 
@@ -149,12 +135,10 @@ class RingFlat(UnitLaw):
         return (Group("phase", (0,)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         phase = (2.0 * math.pi) * uniforms[0]
         return np.cos(phase), np.sin(phase)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return 0.5 * np.eye(2)
 
 
@@ -166,21 +150,17 @@ class Sphere(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformSphere()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalSphere()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
-        """See Domain."""
         size = math.hypot(*gradient)
         return half * (gradient / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         return np.asarray(np.sqrt((coordinates * coordinates).sum(axis=1)) - half)
 
 
@@ -195,11 +175,9 @@ class UniformSphere(UnitLaw):
         return (Group("space", (0, 1, 2)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return _in_space(np.cbrt(uniforms[0]), *uniforms[1:])
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         return np.eye(3) / 5.0
 
 
@@ -214,7 +192,6 @@ class NormalSphere(UnitLaw):
         return (Group("space", (0, 1, 2)),)
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         return _in_space(inverse(maxwell, 3)(np.cbrt(uniforms[0])), *uniforms[1:])
 
     def covariance(self, ratio: float) -> Array:

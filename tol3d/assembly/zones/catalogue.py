@@ -9,9 +9,8 @@ import math
 
 from tol3d.assembly.zones.balls import Flat, Line, Sphere
 from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
-from tol3d.assembly.zones.ends import Ends
+from tol3d.assembly.zones.ends import Ends, FlatEnds
 from tol3d.assembly.zones.face import Face
-from tol3d.assembly.zones.flat_ends import FlatEnds
 from tol3d.assembly.zones.zone import Shape, Zone
 from tol3d.errors import InputError
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf, ndtri
 
-from tol3d.assembly.zones.domain import Array
+from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 
 SIGMAS = 3.0  # of a normal coordinate within its largest value
@@ -55,7 +55,6 @@ class Diamond(CrossSection):
     """|x| + |y| <= r: (x + y, x - y) lie each within ±r and are independent under both laws."""
 
     def uniform(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
-        """See CrossSection."""
         return radius * (u + v - 1.0), radius * (u - v)
 
     def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
@@ -67,7 +66,6 @@ class Diamond(CrossSection):
 
     @property
     def uniform_variance(self) -> float:
-        """See CrossSection."""
         return 1.0 / 6.0
 
     def normal_variance(self, radius: Array) -> Array:
@@ -75,7 +73,6 @@ class Diamond(CrossSection):
         return cut_variance(math.sqrt(0.5) * radius)
 
     def length(self, rises: Array) -> Array:
-        """See CrossSection."""
         return np.asarray(np.abs(rises).sum(axis=-1))
 
     def furthest(self, gradient: Array) -> Array:
@@ -95,12 +92,10 @@ class Disc(CrossSection):
         return _turned(radius * np.sqrt(u), v)
 
     def normal(self, radius: Array, u: Array, v: Array) -> tuple[Array, Array]:
-        """See CrossSection."""
         return _turned(cut_rayleigh(radius, u), v)
 
     @property
     def uniform_variance(self) -> float:
-        """See CrossSection."""
         return 0.25
 
     def normal_variance(self, radius: Array) -> Array:
@@ -109,11 +104,9 @@ class Disc(CrossSection):
         return np.asarray((1.0 - square / np.expm1(square)) / SIGMAS**2)
 
     def length(self, rises: Array) -> Array:
-        """See CrossSection."""
         return np.asarray(np.hypot(rises[..., 0], rises[..., 1]))
 
     def furthest(self, gradient: Array) -> Array:
-        """See CrossSection."""
         size = math.hypot(*gradient)
         return gradient / size if size > 0.0 else np.array([1.0, 0.0])
 

@@ -9,10 +9,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_rayleigh
-from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
+from tol3d.assembly.zones.balls import NormalLine
+from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_normal, cut_rayleigh, cut_variance
+from tol3d.assembly.zones.face import left_by_a_normal
 from tol3d.assembly.zones.half_difference import QUARTER_TURN, UNIFORM_DIFFERENCE, uniform_lens
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 
 ROUNDING = 1e-12
@@ -26,12 +29,10 @@ class Ends(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformEnds()
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalEnds()
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
@@ -53,7 +54,6 @@ class Ends(Domain):
         return half * max(points, key=lambda point: float(point @ gradient))
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         start, end = coordinates[:, :2], coordinates[:, 2:]
         lengths = [np.hypot(own[:, 0], own[:, 1]) for own in (start, end, 0.5 * (end - start))]
         return np.maximum(np.maximum(lengths[0], lengths[1]) - half, lengths[2] - orientation_half)
@@ -83,7 +83,6 @@ class UniformEnds(UnitLaw):
         return _ends(angle, np.copysign(inner, v - 0.5), np.sin(inner) * (2.0 * p - 1.0), q)
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         if ratio >= 1.0:
             return 0.25 * np.eye(4)
         return _uniform_covariance(ratio)
@@ -174,3 +173,71 @@ def _is_allowed(start: complex, end: complex, ratio: float) -> bool:
 
 
 _ONE = np.asarray(1.0)
+
+
+@dataclass(frozen=True)
+class FlatEnds(Domain):
+    """Coordinates: start and end along the direction of the zone; with middle and half difference |m| + |d| <= 1."""
+
+    coordinates = 2
+
+    @property
+    def uniform(self) -> UnitLaw:
+        return UniformFlatEnds()
+
+    @property
+    def normal(self) -> UnitLaw:
+        return NormalFlatEnds()
+
+    def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
+        """See Domain: a corner of the hexagon."""
+        both, apart = gradient[1] + gradient[0], gradient[1] - gradient[0]
+        difference = math.copysign(orientation_half, apart) if abs(apart) > abs(both) else 0.0
+        middle = math.copysign(half - abs(difference), both)
+        return np.array([middle - difference, middle + difference])
+
+    def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
+        start, end = coordinates.T
+        outside = np.maximum(np.abs(start), np.abs(end)) - half
+        return np.asarray(np.maximum(outside, 0.5 * np.abs(end - start) - orientation_half))
+
+
+@dataclass(frozen=True)
+class UniformFlatEnds(UnitLaw):
+    """Uniform: |d| by its marginal, proportional to 1 - |d|, then the middle."""
+
+    uniforms = 2
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        """See UnitLaw: closed, for the distribution function of |d| is a square."""
+        u, v = uniforms
+        if isinstance(ratio, float) and ratio >= 1.0:
+            return 2.0 * u - 1.0, 2.0 * v - 1.0
+        square = np.abs(2.0 * u - 1.0) * (ratio * (2.0 - ratio))
+        difference = np.copysign(np.minimum(square / (1.0 + np.sqrt(1.0 - square)), ratio), u - 0.5)
+        middle = (1.0 - np.abs(difference)) * (2.0 * v - 1.0)
+        return middle - difference, middle + difference
+
+    def covariance(self, ratio: float) -> Array:
+        """See UnitLaw: integrals of d^2 (1 - d) and (1 - d)^3 / 3."""
+        mass = ratio - 0.5 * ratio**2
+        apart = (ratio**3 / 3.0 - ratio**4 / 4.0) / mass
+        middle = (1.0 - (1.0 - ratio) ** 4) / (12.0 * mass)
+        return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])
+
+
+@dataclass(frozen=True)
+class NormalFlatEnds(UnitLaw):
+    """Normal: the middle as of a point, then half the difference, of sigma ratio / 3, in what the middle leaves."""
+
+    uniforms = 2
+
+    def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
+        u, v = uniforms
+        (middle,) = NormalLine().coordinates(ratio, u)
+        difference = ratio * cut_normal(np.minimum((1.0 - np.abs(middle)) / ratio, 1.0), v)
+        return middle - difference, middle + difference
+
+    def covariance(self, ratio: float) -> Array:
+        middle, apart = NormalLine().covariance(ratio)[0, 0], ratio**2 * left_by_a_normal(cut_variance, ratio)
+        return np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]])

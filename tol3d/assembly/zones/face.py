@@ -12,8 +12,9 @@ import numpy as np
 
 from tol3d.assembly.zones.balls import NormalLine
 from tol3d.assembly.zones.cross_section import SIGMAS, CrossSection
-from tol3d.assembly.zones.domain import Array, Domain, Ratio, UnitLaw
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS
+from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
+from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars, shifted
 
 
@@ -30,12 +31,10 @@ class Face(Domain):
 
     @property
     def uniform(self) -> UnitLaw:
-        """See Domain."""
         return UniformFace(self.section)
 
     @property
     def normal(self) -> UnitLaw:
-        """See Domain."""
         return NormalFace(self.section)
 
     def furthest(self, gradient: Array, half: float, orientation_half: float) -> Array:
@@ -47,7 +46,6 @@ class Face(Domain):
         return np.array([height * (half - rise), *(rise * rises)])
 
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """See Domain."""
         rises = self.section.length(coordinates[:, 1:])
         return np.maximum(np.abs(coordinates[:, 0]) + rises - half, rises - orientation_half)
 
@@ -102,14 +100,12 @@ class NormalFace(UnitLaw):
         return (*scalars(1), *shifted(self.section.groups, 1))
 
     def coordinates(self, ratio: Ratio, *uniforms: Array) -> tuple[Array, ...]:
-        """See UnitLaw."""
         of_height, u, v = uniforms
         (height,) = NormalLine().coordinates(ratio, of_height)
         radius = np.minimum((1.0 - np.abs(height)) / ratio, 1.0)
         return height, *(ratio * rise for rise in self.section.normal(radius, u, v))
 
     def covariance(self, ratio: float) -> Array:
-        """See UnitLaw."""
         rise = ratio**2 * left_by_a_normal(self.section.normal_variance, ratio)
         return np.diag([NormalLine().covariance(ratio)[0, 0], rise, rise])
 

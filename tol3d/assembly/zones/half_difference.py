@@ -10,8 +10,9 @@ from functools import cached_property
 
 import numpy as np
 
-from tol3d.assembly.zones.domain import Array, Ratio
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, Density, InverseTable, integral, inverse, table
+from tol3d.assembly.zones.zone import Ratio
+from tol3d.numerics.arrays import Array
 
 QUARTER_TURN = 0.5 * math.pi
 HALF_RANGE = 0.25 * math.pi  # rad; where the tables of small and of large differences meet

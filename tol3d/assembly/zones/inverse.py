@@ -11,7 +11,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Density = Callable[[Array], Array]
 """Density at z in [0, 1], up to a factor. A function of a module, which tables are kept by."""
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.balls import RingFlat
-from tol3d.assembly.zones.domain import Array, Ratio, UnitLaw
-from tol3d.assembly.zones.zone import Zone
+from tol3d.assembly.zones.zone import Ratio, UnitLaw, Zone
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw, Values
 from tol3d.system.normals import Group, scalars
@@ -153,13 +153,11 @@ class Confined(ZoneDraw):
 
     @cached_property
     def distribution(self) -> ComponentLaw:
-        """See ZoneDraw."""
         centre, half = self.zone.centre, self.zone.half
         return ComponentLaw(centre, float(self.covariance[0, 0]), centre - half, centre + half)
 
     @property
     def uniforms(self) -> int:
-        """See ZoneDraw."""
         return self.law.uniforms
 
     @property
@@ -169,14 +167,12 @@ class Confined(ZoneDraw):
 
     @cached_property
     def mean_vector(self) -> Array:
-        """See ZoneDraw."""
         mean = np.zeros(len(self.components))
         mean[0] = self.zone.centre
         return mean
 
     @cached_property
     def covariance(self) -> Array:
-        """See ZoneDraw."""
         return self.law.covariance(self.zone.ratio) * self.zone.half**2
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
@@ -184,7 +180,6 @@ class Confined(ZoneDraw):
         return self._drawn(self.zone.half, self.zone.ratio, uniforms)
 
     def deviations_in(self, width: Ratio, orientation: Ratio | None, *uniforms: Array) -> tuple[Array, ...]:
-        """See ZoneDraw."""
         return self._drawn(*self.zone.halves(width, orientation), uniforms)
 
     def _drawn(self, half: Ratio, ratio: Ratio, uniforms: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -192,11 +187,9 @@ class Confined(ZoneDraw):
         return (first if self.zone.centre == 0.0 else first + self.zone.centre, *others)
 
     def furthest(self, gradient: Array) -> Array:
-        """See ZoneDraw."""
         return self.zone.furthest(gradient)
 
     def support(self, gradient: Array) -> float:
-        """See ZoneDraw."""
         return self.zone.support(gradient)
 
 
@@ -223,12 +216,10 @@ class Process(ZoneDraw):
 
     @property
     def distribution(self) -> Distribution:
-        """See ZoneDraw."""
         return self.laws[0]
 
     @property
     def uniforms(self) -> int:
-        """See ZoneDraw."""
         return len(self.laws)
 
     @property
@@ -238,12 +229,10 @@ class Process(ZoneDraw):
 
     @cached_property
     def mean_vector(self) -> Array:
-        """See ZoneDraw."""
         return np.array([law.mean for law in self.laws])
 
     @cached_property
     def covariance(self) -> Array:
-        """See ZoneDraw."""
         return np.diag([law.variance for law in self.laws])
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:

@@ -20,8 +20,7 @@ from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body
 from tol3d.numerics.arrays import Array
-from tol3d.report.body import Body, Surface, World
-from tol3d.report.built_body import built_body
+from tol3d.report.body import Body, Surface, World, built_body
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run

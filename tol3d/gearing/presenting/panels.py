@@ -14,9 +14,9 @@ from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
 from tol3d.gearing.placed import SeatedMesh
 from tol3d.gearing.presenting.gap_section import gap_section
 from tol3d.gearing.presenting.whole_trains import WholeTrain
-from tol3d.report.camera import FRONT, look, look_from_near
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
+    FRONT,
     GAP_COLOUR,
     add_label,
     add_names_below,
@@ -24,6 +24,8 @@ from tol3d.report.drawn_solids import (
     add_solid,
     add_title,
     arrow,
+    look,
+    look_from_near,
     poly_data,
     set_background,
 )

@@ -9,7 +9,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.shape import nominal_size
+from tol3d.assembly.model.feature import nominal_size
 from tol3d.gearing.grammar.checks import too_thick
 from tol3d.gearing.grammar.parts import ShaftSpec
 from tol3d.machine.grammar.open_chain import OpenChainSpec

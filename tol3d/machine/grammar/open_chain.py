@@ -102,16 +102,13 @@ class OpenChainSpec(StatedMoveSpec):
 
     @property
     def parts_placed(self) -> Sequence[tuple[KeyPath, str]]:
-        """See StatedMoveSpec."""
         return [(("joints", name, "between", 1), part_of(own.between[1])) for name, own in self.joints.items()]
 
     def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
-        """See StatedMoveSpec."""
         return ((("joints", name, "between", 0), own.between[0]) for name, own in self.joints.items())
 
     @property
     def pose_names(self) -> Sequence[str]:
-        """See StatedMoveSpec."""
         return tuple(self.poses)
 
     def references(self) -> tuple[Reference, ...]:
@@ -149,7 +146,6 @@ class OpenChainSpec(StatedMoveSpec):
     def stated(
         self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
     ) -> "StatedMove":
-        """See StatedMoveSpec."""
         found: StatedMove = named(f"{READ_BY}:chain_of")(self, name, understood, drawn, pose)
         return found
 

@@ -6,22 +6,20 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.assembly.presenting.labels import unnamed
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
+from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import RunError
 from tol3d.gearing.display import replayed_build, replayed_of, seated_build
 from tol3d.gearing.presenting.gear_display import GearDisplay
 from tol3d.machine.system import MachineSystem
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.simulate import Replay
 from tol3d.system.stated import magnified
-
-Array = NDArray[np.float64]
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
 """Of housings and other parts: greyer than those of shafts and their gears."""

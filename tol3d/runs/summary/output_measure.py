@@ -31,10 +31,8 @@ class OutputMeasureSummary(MeasureSummary):
 
     @property
     def position_word(self) -> str:
-        """See MeasureSummary."""
         return "output"
 
     @property
     def identity(self) -> tuple[str | None, ...]:
-        """See MeasureSummary."""
         return self.kind, self.of, None if self.order is None else str(self.order)

@@ -1,7 +1,6 @@
 """What somebody else found: any number of a run's summary, by the summary's own keys, roads left out."""
 
-from tol3d.scene.published.column import PublishedColumn
-from tol3d.scene.published.measure import PublishedMeasure
+from tol3d.scene.published.measure import PublishedColumn, PublishedMeasure
 from tol3d.scene.published.whole import PublishedFigures
 
 __all__ = ["PublishedColumn", "PublishedFigures", "PublishedMeasure"]

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.road_fits import RoadFits
@@ -28,8 +28,6 @@ from tol3d.system.stated import component_count, component_slices, mean_deviatio
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
 from tol3d.units import FACTORS
-
-Array = NDArray[np.float64]
 
 SURE = 5.0  # standard errors; by chance once in two million
 SUREST = 1e6  # standard errors, at most, in a summary; without any chance there are infinitely many

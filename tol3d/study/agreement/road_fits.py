@@ -5,16 +5,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics.linear_fit import LinearFit
-from tol3d.study.agreement.disagreement import Disagreement
 from tol3d.study.regressors import Regressed, regressor_set
-from tol3d.study.tally import MeasureTally
+from tol3d.study.tally import Disagreement, MeasureTally
 from tol3d.system.measure import Measure
 from tol3d.system.system import System, Theory
-
-Array = NDArray[np.float64]
 
 LEAST_OWN = 1e-3  # of the measure's sigma; effects below it count as that, or rounding errors would be compared
 

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import sparse_products
 from tol3d.study.columns import drawn_columns
@@ -27,8 +27,6 @@ from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations
 from tol3d.system.system import Described, System
 from tol3d.system.trials import Trials, joined
-
-Array = NDArray[np.float64]
 
 SHORT_STEPS = (0.25, 0.5)  # of the deviations; of what is of third order three quarters count as second
 LONG_STEPS = (0.5, 1.0)  # for an engine with chord errors, which short steps would magnify

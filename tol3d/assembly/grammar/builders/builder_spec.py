@@ -2,13 +2,18 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
+from pydantic import AfterValidator, Field
+
+from tol3d.parts.details import Hole, Pin, Slot
 from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Coordinate
 from tol3d.solids import BuiltShape
-from tol3d.strict import Strict
+from tol3d.strict import Strict, refused
+from tol3d.units import Of, Quantity, shown
 
 Place = Annotated[tuple[Coordinate, Coordinate], listed("lengths", 2, 2)]
 """Two coordinates on a flat face."""
@@ -39,3 +44,70 @@ def place_of(builder: Strict, detail: str) -> KeyPath:
         if isinstance(named, Mapping) and detail in named:
             return (field, detail)
     return ()
+
+
+class HoleSpec(Strict):
+    """A drilled hole."""
+
+    at: Place = Field(description="its axis on the face: x, y and z of the part without the one square to the face")
+    diameter: Length
+    depth: Length | None = Field(default=None, description="of a blind hole; it goes through if not given")
+
+    def named(self, name: str, face: str = "top") -> Hole:
+        """The hole by its name, in a face."""
+        depth = None if self.depth is None else self.depth.internal
+        return Hole(name, place(self.at), self.diameter.internal, depth, face)
+
+
+class SlotSpec(Strict):
+    """A milled slot with round ends."""
+
+    at: Place = Field(description="its middle on the face")
+    length: Length = Field(description="from end to end")
+    width: Length = Field(description="between its walls")
+    turned: Annotated[Quantity, Of("angle")] | None = Field(
+        default=None, description="from the face's first coordinate towards its second; along the first if not given"
+    )
+    depth: Length | None = Field(default=None, description="of a blind slot; it goes through if not given")
+
+    def named(self, name: str, face: str = "top") -> Slot:
+        """The slot by its name, in a face."""
+        turned = 0.0 if self.turned is None else self.turned.internal
+        depth = None if self.depth is None else self.depth.internal
+        return Slot(name, place(self.at), self.length.internal, self.width.internal, turned, depth, face)
+
+
+class PinSpec(Strict):
+    """A round pin that stands on the top, or on a rim."""
+
+    at: Place = Field(description="its axis")
+    diameter: Length
+    height: Length = Field(description="above what it stands on")
+
+    def named(self, name: str) -> Pin:
+        """The pin by its name."""
+        return Pin(name, place(self.at), self.diameter.internal, self.height.internal)
+
+
+def _argument(name: str) -> str:
+    if not name.isidentifier():
+        raise refused("", "a name that Python takes as an argument, such as wall_thickness", shown(name))
+    return name
+
+
+Argument = Annotated[str, AfterValidator(_argument)]
+Size = Annotated[Quantity, Of("length", "angle")]
+
+
+class OwnFileSpec(Strict):
+    """A program that makes the solid; it runs only where the user says so, and never from a run that was kept."""
+
+    words: ClassVar[str] = "a Python file"
+
+    kind: Literal["file"]
+    file: str = Field(description="the Python file, in the scene's folder")
+    function: Argument = Field(default="build", description="of the file, which returns the solid")
+    dimensions: Mapping[Argument, Size] = Field(
+        default_factory=dict, description="its arguments that are lengths or angles; it gets them in mm and rad"
+    )
+    counts: Mapping[Argument, int] = Field(default_factory=dict, description="its arguments that are whole numbers")

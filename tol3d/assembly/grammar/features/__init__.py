@@ -5,10 +5,8 @@ from typing import Annotated
 from pydantic import Field
 
 from tol3d.assembly.grammar.features.axis import AxisSpec, CylinderSpec
-from tol3d.assembly.grammar.features.plane import PlaneSpec
-from tol3d.assembly.grammar.features.point import PointSpec
-from tol3d.assembly.grammar.features.slot import SlotSpec
-from tol3d.assembly.grammar.features.sphere import SphereSpec
+from tol3d.assembly.grammar.features.plane import PlaneSpec, SlotSpec
+from tol3d.assembly.grammar.features.point import PointSpec, SphereSpec
 
 FeatureUnion = Annotated[
     PointSpec | SphereSpec | PlaneSpec | SlotSpec | CylinderSpec | AxisSpec, Field(discriminator="kind")

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from tol3d.assembly.grammar.features.face import FaceKind
-from tol3d.assembly.grammar.features.feature_spec import Found, OneFaceSpec, known, lengths
+from tol3d.assembly.grammar.features.feature_spec import FaceKind, Found, OneFaceSpec, known, lengths
 from tol3d.assembly.grammar.features.nominal_frame import frame
 from tol3d.assembly.model import Axis
 from tol3d.scene.part import Length
@@ -31,16 +30,13 @@ class AxisSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Axis:
-        """See FeatureSpec."""
         return Axis(known(self.length, "length").internal)
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.axis, "axis"))
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """See FeatureSpec."""
         (face,) = faces
         return {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": lengths(face.extent[0])[0]}
 
@@ -60,17 +56,14 @@ class CylinderSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Axis:
-        """See FeatureSpec."""
         length, diameter = known(self.length, "length"), known(self.diameter, "diameter")
         return Axis(length.internal, diameter.internal, self.hole)
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """See FeatureSpec."""
         return frame(self.origin, known(self.axis, "axis"))
 
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """See FeatureSpec."""
         (face,) = faces
         length, diameter = lengths(face.extent[0], 2 * face.radius)
         own: dict[str, Found] = {"at": lengths(*face.at), "axis": face.axis(self.axis), "length": length}

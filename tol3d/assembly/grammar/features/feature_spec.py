@@ -2,16 +2,16 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar, Self, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.features.face import FaceKind, FaceSpec
 from tol3d.assembly.grammar.features.nominal_frame import ALONG
 from tol3d.assembly.grammar.features.pattern import PatternSpec
 from tol3d.assembly.model import Shape
+from tol3d.numerics.arrays import Array
+from tol3d.scene.name import Name
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
 from tol3d.units import Quantity
@@ -19,7 +19,26 @@ from tol3d.units import Quantity
 if TYPE_CHECKING:
     from tol3d.solids.pick import PickedFace
 
-Array = NDArray[np.float64]
+
+FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
+
+
+class FaceSpec(Strict):
+    """A face by its name, or the nearest one to a point."""
+
+    name: Name | None = Field(default=None, description="of the face, as the builder has it")
+    near: Vector | None = Field(
+        default=None, description="a point in the frame of the part that no other such face is as near to"
+    )
+    kind: FaceKind | None = Field(default=None, description="what it is; whatever the feature may be if not given")
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        if (self.name is None) == (self.near is None):
+            raise refused("", "either a name or a point `near` it", "neither" if self.name is None else "both")
+        return self
+
+
 Known = TypeVar("Known")
 
 Found = Quantity | tuple[Quantity, ...] | tuple[float, float, float] | bool
@@ -121,7 +140,6 @@ class OneFaceSpec(FeatureSpec):
 
     @property
     def faces_picked(self) -> Mapping[str, FaceSpec]:
-        """See FeatureSpec."""
         return {} if self.face is None else {"face": self.face}
 
 

@@ -5,9 +5,9 @@ from struct import pack, unpack
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+
 Triple = tuple[float, float, float]
 
 KEPT: Final = 4096  # ways in which features look; parts have few, which all their features share

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from typing import Annotated, Any, Final, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import ALONG, unit
+from tol3d.numerics.arrays import Array
 from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
@@ -15,7 +15,6 @@ from tol3d.units import Quantity, summed
 
 MOST: Final = 1000  # features of a pattern
 
-Array = NDArray[np.float64]
 Count = Annotated[int, Field(ge=1, le=MOST)]
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.features.face import FaceKind
-from tol3d.assembly.grammar.features.feature_spec import Found, OneFaceSpec, lengths
+from tol3d.assembly.grammar.features.feature_spec import FaceKind, Found, OneFaceSpec, known, lengths
 from tol3d.assembly.grammar.features.nominal_frame import frame
 from tol3d.assembly.model import Point
+from tol3d.scene.part import Length
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 
@@ -29,7 +29,6 @@ class PointSpec(OneFaceSpec):
 
     @property
     def shape(self) -> Point:
-        """See FeatureSpec."""
         return Point()
 
     @property
@@ -47,3 +46,28 @@ class PointSpec(OneFaceSpec):
         if self.face is not None and self.face.name is not None and self.at is None:
             raise refused("at", f"which point of the face {self.face.name!r} is meant", "none")
         return self
+
+
+class SphereSpec(OneFaceSpec):
+    """A ball, or a socket: a point with a size."""
+
+    words: ClassVar[str] = "a sphere"
+    face_kinds: ClassVar[tuple[FaceKind, ...]] = ("sphere",)
+    numbers: ClassVar[tuple[str, ...]] = ("at", "diameter")
+
+    kind: Literal["sphere"]
+    diameter: Length | None = Field(default=None, description="nominal")
+    hole: bool = Field(default=False, description="whether it is a socket, not a ball")
+
+    @property
+    def shape(self) -> Point:
+        return Point(known(self.diameter, "diameter").internal, self.hole)
+
+    @property
+    def frame(self) -> NDArray[np.float64]:
+        """See FeatureSpec; z is that of the part."""
+        return frame(self.origin, (0.0, 0.0, 1.0))
+
+    def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
+        (face,) = faces
+        return {"at": lengths(*face.at), "diameter": lengths(2 * face.radius)[0], "hole": face.hole}

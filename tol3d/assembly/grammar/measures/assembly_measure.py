@@ -10,10 +10,10 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.moves.fix import WeldSpec
 from tol3d.assembly.grammar.moves.forgotten import MoveReference
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
-from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import Measured, OverPlay, Reading, Rocking
 from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry, Take
@@ -54,7 +54,6 @@ class AssemblyMeasureSpec(MeasureEntry):
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
-        """See Entry."""
         if hasattr(cls, "reads"):
             yield from cls.reads.lacking()
         else:
@@ -150,7 +149,6 @@ class FeatureMeasureSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return [part_of(name) for _, name, _ in self.named()]
 
     def uses(self) -> Iterator[Use]:
@@ -174,11 +172,9 @@ class BetweenSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, ()), (("to",), self.to, ()))
 
 

@@ -1,15 +1,21 @@
-"""How far two parts are apart anywhere."""
+"""Clearances: of whole parts, of a bolt through holes, and the slack of a move."""
 
 from collections.abc import Sequence
-from typing import ClassVar, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.feature_name import FeatureName
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
+from tol3d.assembly.grammar.moves.forgotten import MoveReference
+from tol3d.assembly.grammar.moves.play import PlaySpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model.measures import Measured, Reading
+from tol3d.assembly.model.measures import PLACING, TORSORS, Measured, Reading
+from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
+from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 
@@ -27,7 +33,7 @@ class ClearanceSpec(TimedSpec):
     reads: ClassVar[Reading] = Reading(
         "clearance",
         "tol3d.assembly.clearances.distances:SolidDistances",
-        "tol3d.assembly.torsors.clearance:clearance",
+        "tol3d.assembly.torsors.surfaces:clearance",
         by_solids=True,
     )
 
@@ -45,7 +51,6 @@ class ClearanceSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return (self.from_, self.to)
 
     @property
@@ -67,3 +72,64 @@ class ClearanceSpec(TimedSpec):
         if self.from_ == self.to:
             raise refused("to", "another part", repr(self.to))
         return self
+
+
+MOST_HOLES = 8
+
+
+class VirtualClearanceSpec(FeatureMeasureSpec):
+    """Diameter of the largest straight bolt that passes all of 2 to 8 `holes`."""
+
+    reads: ClassVar[Reading] = Reading(
+        "virtual_clearance",
+        "tol3d.assembly.placing.measuring:virtual_clearance",
+        f"{TORSORS}:virtual_clearance",
+    )
+
+    kind: Literal["virtual_clearance"]
+    holes: Annotated[tuple[FeatureName, ...], listed("holes", 2, MOST_HOLES)] = Field(
+        description="in one line; the bolt stands along the nominal axis of the first, as its part carries it"
+    )
+    datums: Datums | None = Field(
+        default=None, description="of the first hole's part, to which the bolt stands; its part's frame if not given"
+    )
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        return self.datums or ()
+
+    @model_validator(mode="after")
+    def _refuse_twice(self) -> Self:
+        for k, name in enumerate(self.holes):
+            if name in self.holes[:k]:
+                raise refused("holes", "each hole once", repr(name))
+        return self
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        return tuple((("holes", k), name, ("cylinder",)) for k, name in enumerate(self.holes))
+
+
+class SlackSpec(AssemblyMeasureSpec):
+    """The largest clearance that a pose leaves at all pairs of a `pin_and_hole` or `pattern` move together.
+
+    Below 0 they do not go together.
+    """
+
+    words: ClassVar[str] = "a slack"
+    reads: ClassVar[Reading] = Reading("slack", f"{PLACING}:slack", f"{TORSORS}:slack", is_linear=True)
+
+    kind: Literal["slack"]
+    of: Name = Field(description="the move, of kind pin_and_hole or pattern")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The move."""
+        return (MoveReference(("of",), self.of, (PlaySpec,)),)
+
+    @property
+    def of_what(self) -> Sequence[str]:
+        """The move."""
+        return (self.of,)
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """The move."""
+        return Measured(self.reads, (), of_move=moves.index(self.of))

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
-from tol3d.assembly.grammar.moves.touch import SURFACES
+from tol3d.assembly.grammar.moves.mate import SURFACES
 from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
@@ -23,7 +23,6 @@ class SurfaceGapSpec(BetweenSpec):
     kind: Literal["surface_gap"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
 
 
@@ -42,11 +41,9 @@ class ContactAngleSpec(BetweenSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.direction
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         sides = ((("from",), self.from_, SURFACES), (("to",), self.to, SURFACES))
         return sides if self.against is None else (*sides, (("against",), self.against, ("plane", "cylinder", "axis")))
 

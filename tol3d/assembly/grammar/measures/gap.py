@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec, OverPl
 from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
+from tol3d.units import Dimension
 
 
 class DistanceSpec(BetweenSpec):
@@ -29,7 +30,6 @@ class DirectedSpec(OverPlaySpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.direction
 
 
@@ -55,5 +55,18 @@ class PointPlaneSpec(OverPlaySpec):
     kind: Literal["point_plane"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("from",), self.from_, ()), (("to",), self.to, ("plane", "point")))
+
+
+class AngleSpec(OverPlaySpec):
+    """Between normals or axes, 0 to 180°; about a direction with its sign."""
+
+    dimension: ClassVar[Dimension] = "angle"
+    reads: ClassVar[Reading] = Reading("angle", f"{PLACING}:angle", f"{TORSORS}:angle")
+
+    kind: Literal["angle"]
+    about: Direction | None = Field(default=None, description="in the frame of the part of `from`")
+
+    @property
+    def along(self) -> Direction | None:
+        return self.about

@@ -8,8 +8,9 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.model.bonus import Modifier
-from tol3d.assembly.model.measures import PLACING, TORSORS, Reading
+from tol3d.assembly.grammar.measures.clearance import MOST_HOLES
+from tol3d.assembly.model.datum_frame import Modifier
+from tol3d.assembly.model.measures import PLACING, TORSORS, Gauge, Reading
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
@@ -25,11 +26,9 @@ class InspectedSpec(FeatureMeasureSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureMeasureSpec."""
         return self.datums or ()
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("of",), self.of, ()),)
 
 
@@ -55,11 +54,9 @@ class InspectedPositionSpec(InspectedSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.across
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         kinds = ("cylinder", "slot") if self.modifier is not None else () if self.across is None else ("point",)
         if self.projected is not None:
             kinds = ("cylinder",) if self.modifier is not None else ("axis", "cylinder")
@@ -76,7 +73,6 @@ class InspectedOrientationSpec(InspectedSpec):
     kind: Literal["inspected_orientation"]
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return ((("of",), self.of, ("plane", "slot", "cylinder", "axis")),)
 
 
@@ -93,7 +89,6 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
 
     @property
     def along(self) -> Direction | None:
-        """See FeatureMeasureSpec."""
         return self.normal
 
     @model_validator(mode="after")
@@ -104,5 +99,57 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        """See FeatureMeasureSpec."""
         return tuple((("points", k), name, ("point",)) for k, name in enumerate(self.points))
+
+
+class InspectedPatternSpec(FeatureMeasureSpec):
+    """The largest position of 2 to 8 parallel features, where nominal places may move to make it least.
+
+    They may `shift`, or `shift_and_turn`; with a `modifier` each position is less its bonus.
+    """
+
+    reads: ClassVar[Reading] = Reading(
+        "pattern", "tol3d.assembly.placing.measuring:pattern", f"{TORSORS}:pattern", worse="high"
+    )
+
+    kind: Literal["inspected_pattern"]
+    features: Annotated[tuple[FeatureName, ...], listed("features", 2, MOST_HOLES)] = Field(
+        alias="of", description="parallel holes or pins of one part"
+    )
+    free: Gauge = Field(description="how the gauge finds its pose, across the first feature's axis")
+    datums: Datums | None = Field(default=None, description="what orients the gauge; the part's frame if not given")
+    modifier: Modifier | None = Field(
+        default=None, description="mmc or lmc: each less the bonus of its size, so that all count against t0"
+    )
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        return self.datums or ()
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        parts = sorted({part_of(name) for name in self.features})
+        if len(parts) > 1:
+            raise refused("of", "features of one part", f"features of {', '.join(map(repr, parts))}")
+        for k, name in enumerate(self.features):
+            if name in self.features[:k]:
+                raise refused("of", "each feature once", repr(name))
+        if len(self.named_datums) > 1:
+            raise refused("datums", "one at most, which orients the gauge: it finds its place by the features", "more")
+        return self
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        kinds = ("cylinder",) if self.modifier is not None else ("cylinder", "axis")
+        return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
+
+
+class InspectedSizeSpec(FeatureMeasureSpec):
+    """The diameter, or the width of a slot."""
+
+    reads: ClassVar[Reading] = Reading("size", f"{PLACING}:size", f"{TORSORS}:size", is_linear=True, of_part=True)
+
+    kind: Literal["inspected_size"]
+    of: FeatureName = Field(description="the feature")
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        return ((("of",), self.of, ("cylinder", "slot", "sphere")),)

@@ -1,4 +1,4 @@
-"""How far a feature lies from where it is nominally, and how it is turned against that, as another part sees it."""
+"""How far a feature lies from where it is nominally, as another part sees it; and differences of measures."""
 
 from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal, Self
@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
-from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
 from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import PLACING, TORSORS, Measured, Reading
@@ -50,7 +50,6 @@ class PoseErrorSpec(TimedSpec):
 
     @property
     def parts_read(self) -> Sequence[str]:
-        """See TimedSpec."""
         return (self.from_, part_of(self.of))
 
     def references(self) -> tuple[Reference, ...]:
@@ -154,3 +153,32 @@ class DirectionErrorSpec(TimedSpec):
         if self.component != "size" and self.against is None:
             raise refused("against", f"the axis from which it tilts, beside component: {self.component}", "none")
         return self
+
+
+class DifferenceSpec(AssemblyMeasureSpec):
+    """One measure less another in the same trial, such as the taper of a gap."""
+
+    words: ClassVar[str] = "a difference"
+
+    kind: Literal["difference"]
+    of: Name = Field(description="the measure")
+    minus: Name = Field(description="the one that is subtracted")
+
+    @classmethod
+    def lacking(cls) -> Iterator[str]:
+        """Nothing: both measures have their readings."""
+        return iter(())
+
+    @property
+    def of_what(self) -> Sequence[str]:
+        """Both measures."""
+        return (self.of, self.minus)
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        """Nothing by itself."""
+        raise TypeError("a difference is read as its measures are")
+
+    def references(self) -> tuple[Reference, ...]:
+        """Both measures; those of lengths."""
+        specs = (FeatureMeasureSpec, PoseErrorSpec)
+        return Reference(("of",), self.of, specs), Reference(("minus",), self.minus, specs)

@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from tol3d.assembly.grammar.moves.fix import FixSpec
+from tol3d.assembly.grammar.moves.fix import FixSpec, WeldSpec
 from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
 from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
-from tol3d.assembly.grammar.moves.weld import WeldSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene.reference import Reference
 

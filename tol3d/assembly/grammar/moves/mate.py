@@ -1,13 +1,15 @@
-"""A part that is mated: relations in order, each takes the freedoms that are left."""
+"""Parts that are mated, fitted or brought into touch."""
 
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from tol3d.assembly.grammar.feature_name import Use
 from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
+from tol3d.scene.vector import Direction
 from tol3d.strict import refused
 from tol3d.units import Of, Quantity
 
@@ -38,5 +40,59 @@ class MateSpec(PlacingSpec):
     relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)]
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         return ((("relations", k), pair) for k, pair in enumerate(self.relations))
+
+
+class FitSpec(PairSpec):
+    """Two points that are to coincide."""
+
+    weight: float = Field(default=1.0, gt=0.0, description="of its square, with criterion: squares")
+    along: Annotated[tuple[Direction, ...], listed("directions", 1, 3)] = Field(
+        default=(), description="directions of the target's part in which it counts; all if not given"
+    )
+
+
+class BestFitSpec(PlacingSpec):
+    """Points are brought together as well as may be: least squares, or least largest distance; no scale."""
+
+    words: ClassVar[str] = "a best fit"
+
+    kind: Literal["best_fit"]
+    pairs: Annotated[tuple[FitSpec, ...], listed("pairs", 3)]
+    criterion: Literal["squares", "minimax"] = Field(default="squares", description="what is made least")
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        weighted = [k for k, pair in enumerate(self.pairs) if pair.weight != 1.0]
+        if self.criterion == "minimax" and weighted:
+            raise refused(f"pairs.{weighted[0]}.weight", "none with criterion: minimax, whose residuals count alike",
+                          f"{self.pairs[weighted[0]].weight:g}")  # fmt: skip
+        return self
+
+    def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
+        return ((("pairs", k), pair) for k, pair in enumerate(self.pairs))
+
+
+SURFACES = ("plane", "cylinder", "sphere", "point")
+
+
+class TouchSpec(PlacingSpec):
+    """Contacts of round features, all at once: surfaces touch by the sizes of the trial."""
+
+    words: ClassVar[str] = "a touch"
+
+    kind: Literal["touch"]
+    contacts: Annotated[tuple[PairSpec, ...], listed("contacts", 1, 6)]
+    pressed: Direction | None = Field(
+        default=None,
+        description="where the part is pressed to, in the frame of the part of the first `to`; contacts do not pull",
+    )
+
+    def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
+        return ((("contacts", k), pair) for k, pair in enumerate(self.contacts))
+
+    def uses(self) -> Iterator[Use]:
+        """The features of the contacts."""
+        for path, pair in self.paired():
+            yield Use((*path, "from"), pair.from_, SURFACES)
+            yield Use((*path, "to"), pair.to, SURFACES)

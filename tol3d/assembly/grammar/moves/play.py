@@ -127,19 +127,16 @@ class PlaySpec(PlacingSpec):
         """What engages, in order."""
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
-        """See PlacingSpec."""
         yield from ((("relations", k), pair) for k, pair in enumerate(self.relations))
         yield from ((("pairs", k), pair) for k, pair in enumerate(self.engaged))
 
     def references(self) -> tuple[Reference, ...]:
-        """See PlacingSpec."""
         found = super().references()
         if isinstance(self.floating, TowardSpec):
             found += (Reference(("float", "at"), part_of(self.floating.at), (SolidSpec,)),)
         return found
 
     def uses(self) -> Iterator[Use]:
-        """See PlacingSpec."""
         yield from (Use((*path, "from"), pair.from_) for path, pair in self.paired())
         yield from (Use((*path, "to"), pair.to) for path, pair in self.paired())
         if isinstance(self.floating, TowardSpec):
@@ -156,7 +153,6 @@ class PinAndHoleSpec(PlaySpec):
 
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:
-        """See PlaySpec."""
         return self.pairs
 
 
@@ -170,18 +166,15 @@ class PatternSpec(PlaySpec):
 
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:
-        """See PlaySpec."""
         return self.pairs
 
     def references(self) -> tuple[Reference, ...]:
-        """See PlaySpec."""
         bolts = [(path, own) for path, own in self._bolts() if own.of is not None]
         return super().references() + tuple(
             Reference(path, part_of(own.of), (SolidSpec,)) for path, own in bolts if own.of is not None
         )
 
     def uses(self) -> Iterator[Use]:
-        """See PlaySpec."""
         yield from super().uses()
         for path, own in self._bolts():
             if own.of is not None:

@@ -80,7 +80,6 @@ class SolidSpec(GrowingSpec):
 
     @property
     def has_solid(self) -> bool:
-        """See PartSpec."""
         return self.builder is not None
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:

@@ -9,9 +9,11 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import laws_lacking
+from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceEntry
+from tol3d.strict import Strict
 
 
 class FeatureTolerance(ToleranceEntry):
@@ -43,3 +45,11 @@ class FeatureTolerance(ToleranceEntry):
             for name in datum.features:
                 path: KeyPath = ("datums", k)
                 yield Use(path, f"{part_of(self.of)}.{name}", datum.kinds)
+
+
+class Modified(Strict):
+    """A tolerance that a bonus may widen."""
+
+    modifier: Modifier | None = Field(
+        default=None, description="mmc or lmc: the size of the feature widens the zone; none, regardless of size"
+    )

@@ -1,4 +1,4 @@
-"""Zones that say where a feature lies: position, profile, coaxiality."""
+"""Zones that say where a feature lies, how it is turned, of what form it is; run-outs are of an axis."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar, Literal
@@ -6,8 +6,7 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
-from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.modified import Modified
+from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
@@ -30,7 +29,6 @@ class LocationSpec(FeatureTolerance):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureTolerance."""
         return self.datums or ()
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
@@ -74,3 +72,90 @@ class SymmetrySpec(LocationSpec):
 
     kind: Literal["symmetry"]
     datums: Datums = Field(description="the median plane or axis that it is symmetric to")
+
+
+class OrientationSpec(Modified, FeatureTolerance):
+    """A zone for how a feature is turned."""
+
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
+
+    zone: ZoneSpec
+    law: LawUnion | None = Field(
+        default=None, description="of a feature without a location zone; else that zone's law counts"
+    )
+    datums: Datums
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        return self.datums
+
+
+class PerpendicularitySpec(OrientationSpec):
+    """Square to a datum."""
+
+    words: ClassVar[str] = "a perpendicularity tolerance"
+
+    kind: Literal["perpendicularity"]
+
+
+class ParallelismSpec(OrientationSpec):
+    """Parallel to a datum."""
+
+    words: ClassVar[str] = "a parallelism tolerance"
+
+    kind: Literal["parallelism"]
+
+
+class AngularitySpec(OrientationSpec):
+    """At an angle to a datum, as it is nominally."""
+
+    words: ClassVar[str] = "an angularity tolerance"
+
+    kind: Literal["angularity"]
+
+
+class FormSpec(FeatureTolerance):
+    """A zone for the form of a feature; where it touches at a point, that point lies off by up to half of it."""
+
+    zone: ZoneSpec
+    law: LawUnion | None = Field(
+        default=None, description="of the points that touch; they lie on the shape if not given"
+    )
+
+
+class FlatnessSpec(FormSpec):
+    """Of a plane."""
+
+    words: ClassVar[str] = "a flatness tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("plane",)
+
+    kind: Literal["flatness"]
+
+
+class StraightnessSpec(FormSpec):
+    """Of an axis."""
+
+    words: ClassVar[str] = "a straightness tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+
+    kind: Literal["straightness"]
+
+
+class CircularRunOutSpec(LocationSpec):
+    """Radial run-out at the middle section: twice the eccentricity; the zone's width is the run-out."""
+
+    words: ClassVar[str] = "a circular run-out tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+
+    kind: Literal["circular_run_out"]
+    datums: Datums = Field(description="the axis that it turns about")
+
+
+class TotalRunOutSpec(LocationSpec):
+    """Radial run-out at both ends."""
+
+    words: ClassVar[str] = "a total run-out tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+
+    kind: Literal["total_run_out"]
+    datums: Datums = Field(description="the axis that it turns about")

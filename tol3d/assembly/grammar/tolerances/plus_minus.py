@@ -1,17 +1,22 @@
-"""A dimension with its limits: how far a feature lies off along a direction."""
+"""Lengths with a law: where a feature lies along a direction, its size, and locators of a move."""
 
-from collections.abc import Iterator
-from typing import ClassVar, Literal
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import Use
+from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
+from tol3d.scene.listed import listed
+from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
+from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.scene.vector import Direction
+from tol3d.strict import refused
+from tol3d.units import Of, Quantity
 
 
 class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
@@ -29,17 +34,65 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
-        """See FeatureTolerance."""
         return self.datums or ()
 
     def references(self) -> tuple[Reference, ...]:
-        """See FeatureTolerance."""
         return FeatureTolerance.references(self)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """See ToleranceSpec."""
         return ToleranceSpec.file_names(self)
 
     def uses(self) -> Iterator[Use]:
-        """See FeatureTolerance."""
         return FeatureTolerance.uses(self)
+
+
+Deviation = Annotated[Quantity, Of("length")]
+
+
+class SizeSpec(FeatureTolerance, ToleranceSpec):
+    """How much larger a diameter or width is than nominal."""
+
+    words: ClassVar[str] = "a size tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "slot", "sphere")
+
+    kind: Literal["size"]
+    limits: Annotated[tuple[Deviation, Deviation], listed("lengths", 2, 2)] | None = Field(
+        default=None,
+        description="lower and upper on the drawing, as deviations from nominal, from which a bonus counts; those of "
+        "the distribution if not given",
+    )
+
+    @model_validator(mode="after")
+    def _refuse_limits_out_of_order(self) -> Self:
+        if self.limits is not None and not self.limits[0].internal < self.limits[1].internal:
+            raise refused("limits", "the lower one before the upper one", list(map(str, self.limits)))
+        return self
+
+    def references(self) -> tuple[Reference, ...]:
+        return FeatureTolerance.references(self)
+
+    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
+        return ToleranceSpec.file_names(self)
+
+    def uses(self) -> Iterator[Use]:
+        return FeatureTolerance.uses(self)
+
+
+class LocatorSpec(ToleranceSpec):
+    """How far a locator stands off along its normal; positive lifts the part."""
+
+    words: ClassVar[str] = "a locator's tolerance"
+
+    kind: Literal["locator"]
+    of: Name = Field(description="the move")
+    pair: str = Field(description="which of its pairs: primary 1 .. 3, secondary 1, 2, tertiary 1, or 1 .. 6")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The move."""
+        return (Reference(("of",), self.of, (LocatingSpec,)),)
+
+    def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
+        """A pair that the move does not have."""
+        known = tuple(moves[self.of].pairs_by_name)
+        if self.pair not in known:
+            yield Contradiction(("pair",), f"one of {', '.join(known)}", repr(self.pair), known)
