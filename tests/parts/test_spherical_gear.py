@@ -179,8 +179,6 @@ def test_thick_teeth_share_as_much_by_cad_as_by_points(degrees: float) -> None:
     angle = math.radians(degrees)
     grid = overlap(angle, -0.05, 120)  # of 0.17 by 0.17 by 0.07 mm; a sliver of 0.05 mm is about as thick
     assert common(angle, -0.05) == pytest.approx(grid, rel=0.15)
-        overlap(angle, -0.05, 120), rel=0.1
-    )  # a grid of 0.17 by 0.17 by 0.07 mm
 
 
 # refused -------------------------------------------------------------------------------------------------------------

@@ -116,9 +116,11 @@ def test_the_drive_points_as_far_aside_as_a_program_of_its_own_has_it(tmp_path: 
         assert said.sigma is not None
         # both samples scatter, that of the figures like one of as many trials
         noise = 4 * math.sqrt(2 / count)
-        assert own["mean"] == pytest.approx(said.mean.value, abs=noise * own["sigma"] + of_mean / 2)
+        assert own["mean"] == pytest.approx(said.mean.internal / ARCMIN, abs=noise * own["sigma"] + of_mean / 2)
         tail = math.sqrt((own["kurtosis"] + 2) / 4)  # of a sigma's scatter, over a normal's 1 / sqrt(2 n)
-        assert own["sigma"] == pytest.approx(said.sigma.value, abs=noise * own["sigma"] * tail + of_sigma / 2)
+        assert own["sigma"] == pytest.approx(
+            said.sigma.internal / ARCMIN, abs=noise * own["sigma"] * tail + of_sigma / 2
+        )
     tilted = measures["along the tilt at far"]["geometric"], measures["across the tilt at far"]["geometric"]
     assert (
         tilted[0]["sigma"] > 15 * tilted[1]["sigma"]
