@@ -4,18 +4,13 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby, pairwise
 from typing import Final
 
-import cadquery as cq
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
-from OCP.gp import gp_Ax1, gp_Dir, gp_Pln, gp_Pnt
-
 from tol3d.errors import GeometryError
-from tol3d.parts.named_solid import BACK, FRONT, NamedEdge, NamedSolid, wire_of
+from tol3d.parts.named_solid import BACK, FRONT, NamedSolid
 from tol3d.parts.tooth_edges import SHORTEST_EDGE
+from tol3d.parts.turned import AXIS, Corner, section, turned
 
 CHAMFER_SHARE: Final = 1 / 20  # of the diameter; a turned shaft's usual edge
 CHAMFER_OF_LENGTH: Final = 1 / 4  # at most, of the length of that diameter: two chamfers leave half of it
-AXIS = "axis"
 
 Cylinder = tuple[float, float, float]
 """Diameter, start and end along z [mm]."""
@@ -35,16 +30,7 @@ def shaft(diameter: float, start: float, end: float, collars: Sequence[Cylinder]
             raise GeometryError(f"a shaft of diameter {wide:g} mm from {low:g} mm to {high:g} mm has no volume")
         if low < start or high > end:
             raise GeometryError(f"a collar from {low:g} mm to {high:g} mm leaves the shaft, {start:g} mm to {end:g} mm")
-    outline = _outline(_steps([(diameter, start, end), *collars]))
-    section = BRepBuilderAPI_MakeFace(
-        gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, -1.0, 0.0)), wire_of(outline), True
-    ).Face()
-    turned = BRepPrimAPI_MakeRevol(section, gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)))
-    solid = cq.Solid(turned.Shape())
-    # the sweep itself is asked, for its history leaves out the flat ends
-    swept = {named.name: cq.Face(turned.Revol().Shape(named.edge.wrapped)) for named in outline if named.name != AXIS}
-    outward = {face: face for face in solid.Faces()}
-    return NamedSolid(solid, {name: outward[face] for name, face in swept.items()})
+    return turned(section(list(_corners(_steps([(diameter, start, end), *collars])))), "the shaft")
 
 
 def chamfer(diameter: float, length: float) -> float:
@@ -63,7 +49,7 @@ def _steps(cylinders: Sequence[Cylinder]) -> list[Cylinder]:
     return [(group[0][0], group[0][1], group[-1][2]) for group in alike]
 
 
-def _corners(steps: Sequence[Cylinder]) -> Iterator[tuple[str, float, float]]:
+def _corners(steps: Sequence[Cylinder]) -> Iterator[Corner]:
     """Corners of the section (x, z) [mm] from the axis at the back on, and what begins there."""
     (first, start, behind), (last, before, end) = steps[0], steps[-1]
     edges = chamfer(first, behind - start), chamfer(last, end - before)
@@ -77,14 +63,3 @@ def _corners(steps: Sequence[Cylinder]) -> Iterator[tuple[str, float, float]]:
     yield "front chamfer", last / 2, end - edges[1]
     yield FRONT, last / 2 - edges[1], end
     yield AXIS, 0.0, end
-
-
-def _outline(steps: Sequence[Cylinder]) -> list[NamedEdge]:
-    """The section from the axis to +x, counter-clockwise seen from -y."""
-    corners = list(_corners(steps))
-    vertices = [BRepBuilderAPI_MakeVertex(gp_Pnt(x, 0.0, z)).Vertex() for _, x, z in corners]
-    ends = zip(vertices, vertices[1:] + vertices[:1], strict=True)
-    return [
-        NamedEdge(name, cq.Edge(BRepBuilderAPI_MakeEdge(*both).Edge()))
-        for (name, _, _), both in zip(corners, ends, strict=True)
-    ]

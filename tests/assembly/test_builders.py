@@ -21,7 +21,19 @@ TEXT = (SCENES / "machined_parts.yaml").read_text("utf-8")
 KINDS: dict[str, type[Strict]] = {
     get_args(spec.model_fields["kind"].annotation)[0]: spec for spec in get_args(get_args(BuilderUnion)[0])
 }
-BY_DIMENSIONS = {"base": "plate", "housing": "housing", "cover": "cover", "block": "block", "bracket": "bracket"}
+BY_DIMENSIONS = {
+    ("machined_parts", "base"): "plate",
+    ("machined_parts", "housing"): "housing",
+    ("machined_parts", "cover"): "cover",
+    ("machined_parts", "block"): "block",
+    ("machined_parts", "bracket"): "bracket",
+    ("spherical_drive", "rod 1"): "rod",
+    ("spherical_drive", "nut 1"): "nut",
+    ("spherical_drive", "screw 1"): "ball_screw",
+    ("spherical_drive", "ring"): "thrust_ring",
+    ("stewart", "foot 1"): "ball_socket",
+}
+GEARS = {"gear 1": "tooth", "gear 2": "space"}
 
 
 def rows(head: str) -> dict[str, list[str]]:
@@ -33,26 +45,56 @@ def rows(head: str) -> dict[str, list[str]]:
 
 def test_the_page_has_a_row_with_every_field_of_every_builder() -> None:
     table = rows("builder")
-    assert set(table) == set(KINDS) - {"file"} == set(BY_DIMENSIONS.values())
+    assert set(table) == set(KINDS) - {"file"} == {*BY_DIMENSIONS.values(), "spherical_gear"}
     for kind, (dimensions, *_) in table.items():
         known = set(KINDS[kind].model_fields) - {"kind"}
-        within = {"face", "spigot", "at", "length", "width", "height"}
+        within = {"face", "spigot", "at", "length", "width", "height", "diameter", "depth", "angle"}
         assert known <= words(dimensions)
         assert words(dimensions) <= known | within
 
 
-@pytest.mark.parametrize("part", BY_DIMENSIONS)
-def test_the_page_names_the_faces_that_the_solid_has(part: str) -> None:
-    """Those of holes, slots, pins, bores and bosses aside."""
-    built: Any = load_scene(SCENES / "machined_parts.yaml").parts[part]
-    shape: Any = built.builder.shape
-    own = [one.name for field in ("holes", "slots", "pins", "bores", "bosses") for one in getattr(shape, field, ())]
-    plain = {face for face in solid_of(shape).faces if not face.startswith(tuple(own)) or face in ("front", "back")}
-    said = rows("builder")[BY_DIMENSIONS[part]][2]
+def shape_in(scene: str, part: str) -> Any:
+    """What a part of a scene is built of."""
+    built: Any = load_scene(SCENES / f"{scene}.yaml").parts[part]
+    return built.builder.shape
+
+
+def named(kind: str) -> set[str]:
+    """The faces that the page says a builder's solids have."""
+    said = rows("builder")[kind][2]
     said = rows("builder")["plate"][2] if said == "as the plate" else said
-    named = {name.split(" (")[0].strip() for name in said.replace(";", ",").split(",") if name.strip()}
-    named = {name for name in named if not name.startswith("round")}
-    assert named == plain
+    said = said.replace(" or ", ",").replace("with a journal ", ",").replace("of ring k", "")
+    cells = {name.split(" (")[0].strip() for name in said.replace(";", ",").split(",")}
+    return {name for name in cells if name and not name.startswith("round")}
+
+
+@pytest.mark.parametrize(("scene", "part"), BY_DIMENSIONS)
+def test_the_page_names_the_faces_that_the_solid_has(scene: str, part: str) -> None:
+    """Those of holes, slots, pins, bores, bosses and ears aside."""
+    shape = shape_in(scene, part)
+    own = [one.name for field in ("holes", "slots", "pins", "bores", "bosses") for one in getattr(shape, field, ())]
+    own += [f"{name}{end}" for name, _ in getattr(shape, "ears", ()) for end in ("", " left", " right", " end")]
+    kept = ("front", "back", "bottom")
+    plain = {face for face in solid_of(shape).faces if not face.startswith(tuple(own)) or face in kept}
+    plain = {"side 1 and so on behind each ear" if face.startswith("side ") else face for face in plain}
+    assert named(BY_DIMENSIONS[scene, part]) == plain
+
+
+@pytest.mark.parametrize(("part", "pole"), GEARS.items())
+def test_the_page_names_the_faces_that_a_spherical_gear_has(part: str, pole: str) -> None:
+    found = set(solid_of(shape_in("spherical_drive", part)).faces)
+    said = rows("builder")["spherical_gear"][2]
+    assert "the same with outer; root k behind it, root 0 before ring 1" in said
+    rings = 6 if pole == "tooth" else 7
+    of_ring = {f"{side} {own}" for side in ("inner", "outer") for own in ("flank", "fillet", "radial")} | {"tip"}
+    for own in of_ring:
+        assert f"ring k {own}" in said or own.startswith("outer")
+    expected = {f"ring {k} {own}" for k in range(1, rings + 1) for own in of_ring}
+    expected |= {f"root {k}" for k in range(0 if pole == "tooth" else 1, rings + 1)} | {"bottom"}
+    ends = {"pole tip", "pole flank", "pole fillet", "pole radial"} if pole == "tooth" else {"pole root"}
+    expected |= ends | (set() if pole == "tooth" else {"bore", "bore floor"})
+    assert found == expected
+    assert ends | {"bottom", "bore", "bore floor"} <= named("spherical_gear")
 
 
 def test_a_housing_that_opens_at_its_front_has_the_faces_that_the_page_says() -> None:

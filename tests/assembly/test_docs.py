@@ -67,7 +67,8 @@ FIELD_SCENES = (
     "machined_parts",
     "warm_bar",
 )
-"""Between them every kind and every field."""
+"""Between them every kind and every field, but for the builders of linkages."""
+LINKAGES = ("spherical_drive", "stewart")
 
 BUILDERS_PAGE = (ROOT / "docs" / "builders.md").read_text("utf-8")
 OWN_PROGRAM, OWN_LINES = (
@@ -102,10 +103,11 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith(OWN)}
-    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 6 builders, 10 details, face
-    beside = 42
+    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face
+    beside = 51
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
+    said |= {own for name in LINKAGES for own in fields_said(load_scene(SCENES / f"{name}.yaml"))}
     assert len(PAIRS) == 3
     said |= {own for pair in PAIRS for own in fields_said(pair)}  # of the page
     said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one

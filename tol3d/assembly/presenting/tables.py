@@ -39,6 +39,7 @@ from tol3d.report.number import NOTHING
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.presenter import Map
 from tol3d.report.system_check import MIDDLE, system_blocks
+from tol3d.solids import BuiltShape
 from tol3d.solids.bounding_box import bounding_box
 from tol3d.solids.kept_shape import KeptShape
 from tol3d.study.simulation import Simulation
@@ -178,13 +179,18 @@ def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float6
     return words
 
 
+def _builder_words(shape: BuiltShape) -> str:
+    """The builder of a shape: that of a ThrustRing is "thrust ring"."""
+    return "".join(f" {own.lower()}" if own.isupper() else own for own in type(shape).__name__).strip()
+
+
 def _solids(system: AssemblySystem) -> Sequence[PageItem]:
     """Solids of parts, by what builds them, and how large they are."""
     rows = []
     for part in system.assembly.parts:
         if part.solid is not None:
             low, high = bounding_box(part.solid)
-            builder = "file" if isinstance(part.solid, KeptShape) else type(part.solid).__name__.lower()
+            builder = "file" if isinstance(part.solid, KeptShape) else _builder_words(part.solid)
             rows.append(Row(part.name, (builder, _listed(high - low, " × "), _listed(low, ", "), _listed(high, ", "))))
     columns = [Heading("builder", words=True), *map(Heading, ("size x × y × z [mm]", "from [mm]", "to [mm]"))]
     return titled("solids, in the frames of their parts", Table("", columns, rows)) if rows else ()
