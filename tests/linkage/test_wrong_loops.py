@@ -49,6 +49,7 @@ JOINTS = {
     "c": "{kind: cylindrical, between: [rod.C, rocker.C]}",
     "d": "{kind: revolute, between: [frame.D, rocker.D]}",
 }
+IDLE = {"c": "{kind: ball, between: [rod.Q, rocker.Q]}"}
 INPUTS = "{angle: {of: a}}"
 POSES = "{here: {angle: 0 deg}, on: {angle: 20 deg}}"
 MEASURE = "{kind: gap, from: frame.zero, to: rocker.tip, along: [1, 0, 0], at: here}"
@@ -139,6 +140,31 @@ WRONG = {
         ),
         "measures.x.to",
         "got 'rod.side', which it leaves free: 'rod' turns about",
+    ),
+    "the turn of an idle point": (
+        scene(IDLE, measure="{kind: orientation_error, of: rod.P, from: frame, at: here}"),
+        "measures.x.of",
+        "expected a part whose turn the loop holds, got 'rod', which it leaves free: 'rod' turns about",
+    ),
+    "what an idle part sees": (
+        scene(IDLE, measure="{kind: position_error, of: rocker.tip, from: rod, at: here}"),
+        "measures.x.from",
+        "got 'rod', which it leaves free: 'rod' turns about",
+    ),
+    "a direction in an idle part": (
+        scene(IDLE, measure="{kind: gap, from: rod.P, to: frame.zero, along: [0, 1, 0], at: here}"),
+        "measures.x.from",
+        "got 'rod', which it leaves free: 'rod' turns about",
+    ),
+    "a weld to an idle part": (
+        scene(
+            IDLE,
+            parts=PARTS + "\n  flag: {kind: solid, features: {P: {kind: point, at: [50 mm, 0 mm, 9 mm]}}}",
+            before="\n  flag stays: {kind: fix, part: flag}",
+            after="\n  join: {kind: weld, part: flag, to: [rod]}",
+        ),
+        "moves.join.to[0]",
+        "got 'rod', which it leaves free: 'rod' turns about",
     ),
     "an input that it does not reach": (
         scene(
@@ -317,9 +343,19 @@ def test_check_refuses_in_one_line(name: str, tmp_path: Path, tol3d: Command) ->
     assert_refused(tol3d("check", str(path)), path, place, words)
 
 
-def test_an_idle_freedom_that_nothing_reads_is_allowed_and_named(tmp_path: Path, tol3d: Command) -> None:
+@pytest.mark.parametrize(
+    "measure",
+    [
+        MEASURE,
+        "{kind: gap, from: frame.zero, to: rod.P, along: [0, 1, 0], at: here}",
+        "{kind: gap, from: rod.P, to: frame.zero, along: [100, 30, 0], at: here}",
+        "{kind: distance, from: rod.P, to: frame.zero, at: here}",
+    ],
+    ids=["elsewhere", "a point on its axis", "along its axis", "a distance"],
+)
+def test_an_idle_freedom_that_nothing_reads_is_allowed_and_named(measure: str, tmp_path: Path, tol3d: Command) -> None:
     path = tmp_path / "idle.yaml"
-    path.write_text(scene({"c": "{kind: ball, between: [rod.Q, rocker.Q]}"}), "utf-8")
+    path.write_text(scene(IDLE, measure=measure), "utf-8")
     code, out, err = tol3d("check", str(path))
     assert code == 0, err
     assert "1 idle" in out
