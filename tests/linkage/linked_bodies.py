@@ -203,7 +203,7 @@ class Linkage:
         if poses:
             lines += ["    poses:"]
         for key, values in poses.items():
-            said = (f"{own}: {value!r} {'mm' if self.is_slide(own) else 'rad'}" for own, value in values.items())
+            said = (f"{name}: {value!r} {'mm' if self.is_slide(name) else 'rad'}" for name, value in values.items())
             lines += [f"      {key}: {{{', '.join(said)}}}"]
         return lines
 

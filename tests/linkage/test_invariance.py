@@ -72,7 +72,9 @@ CHANGES: dict[str, Callable[[Linkage], Linkage]] = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-@pytest.mark.parametrize("name", MAKERS)
+@pytest.mark.parametrize(
+    "name", [own if own in ("random", "planet") else pytest.param(own, marks=pytest.mark.slow) for own in MAKERS]
+)
 def test_measures_do_not_change(name: str, change: str, tmp_path: Path) -> None:
     """All features of joints and all inputs deviate; on both roads."""
     linkage = MAKERS[name]()
@@ -91,7 +93,9 @@ def test_measures_do_not_change(name: str, change: str, tmp_path: Path) -> None:
             assert np.abs(before.seen(rows[0], where, road) - after.seen(rows[1], where, road)).max() < LIMIT
 
 
-@pytest.mark.parametrize("change", ["moved", "shifted", "shuffled"])
+@pytest.mark.parametrize(
+    "change", ["shuffled", *(pytest.param(own, marks=pytest.mark.slow) for own in ("moved", "shifted"))]
+)
 def test_plays_do_not_change_either(change: str, tmp_path: Path) -> None:
     linkage = with_plays(random_loop(11, two=True))[0]
     before, after = study_of(linkage, tmp_path, []), study_of(CHANGES[change](linkage), tmp_path, [])

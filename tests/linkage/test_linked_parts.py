@@ -15,8 +15,8 @@ from scipy.optimize import root
 from tol3d.system.stated import component_count, component_slices, stated
 
 SERIES = {
-    "slider crank": (slider_crank, [["crank"], ["rod", "slider"]], np.linspace(0.0, 6.0, 7)),
-    "four-bar": (four_bar, [["crank"], ["coupler", "rocker"]], np.linspace(0.0, 6.0, 7)),
+    "slider crank": (slider_crank, [["crank"], ["rod", "slider"]], np.linspace(0.0, 6.0, 4)),
+    "four-bar": (four_bar, [["crank"], ["coupler", "rocker"]], np.linspace(0.0, 6.0, 4)),
     "rssr": (rssr, [["crank"], ["rod", "rocker"]], np.linspace(-0.5, 0.8, 3)),
 }
 
@@ -98,7 +98,8 @@ tolerances:
     part: cover{pairs}
 measures:
 """ + "".join(
-        f"  {name} {axis} at {where}: {{kind: gap, from: frame.zero, to: {of}, along: {triple(np.eye(3)[k], '')}, at: {where}}}\n"
+        f"  {name} {axis} at {where}: {{kind: gap, from: frame.zero, to: {of}, "
+        f"along: {triple(np.eye(3)[k], '')}, at: {where}}}\n"
         for where in linkage.poses
         for name, of in (("slider", "slider.probe"), ("cover", "cover.top"))
         for k, axis in enumerate("xyz")
@@ -116,7 +117,7 @@ def planes(floor: Array, back: float, left: float) -> tuple[Array, Array]:
     middles[0] += [0.0, 0.0, floor[0]]
     middles[1] += [0.0, back, 0.0]
     middles[2] += [left, 0.0, 0.0]
-    return normals, np.einsum("ij,ij->i", normals, middles)
+    return normals, np.asarray(np.einsum("ij,ij->i", normals, middles))
 
 
 def corners(name: str, off: float) -> Array:
@@ -179,10 +180,10 @@ def test_a_linked_part_is_held_by_a_feature_toleranced_to_datums_that_deviate(co
         normals, distances = planes(own["floor form"], *sides)
         feature = linkage.feature("slider.sleeve")
         frame = datum_frame(normals, distances, *sides) @ feature.displaced(own["sleeve place"])
-        poses = closed(linkage.loops, displaced(linkage.loops, {"slide": (None, frame)}), start, linkage.poses[where])
-        assert poses is not None
-        cover = poses["slider"] @ laid(normals, distances)
-        expected.append([(poses["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
+        placed = closed(linkage.loops, displaced(linkage.loops, {"slide": (None, frame)}), start, linkage.poses[where])
+        assert placed is not None
+        cover = placed["slider"] @ laid(normals, distances)
+        expected.append([(placed["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
     made = covered.system.road("exact", covered.system.materials("exact"))
     values = made.answers(stated(covered.system, np.array(rows)), covered.system.measures).values
     found = np.array(

@@ -238,9 +238,9 @@ def _read_turns(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tupl
             yield ("measures", own, "from"), part_of(entry.from_), entry.along
     for own, move in list(scene.moves.items())[list(scene.moves).index(name) + 1 :]:
         if isinstance(move, WeldSpec):
-            for key, part in ((("part",), move.part), *((("to", k), part) for k, part in enumerate(move.to))):
-                if part in spec.bodies:
-                    yield ("moves", own, *key), part, None
+            for reference in move.references():
+                if reference.name in spec.bodies:
+                    yield ("moves", own, *reference.path), reference.name, None
 
 
 def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
