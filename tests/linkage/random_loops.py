@@ -65,7 +65,7 @@ def random_loop(
     rng = np.random.default_rng(seed)
     while True:
         found = _one(rng, kinds or kinds_at_random(rng, 7), given, two)
-        far = followed(found.loops, found.loops, found.poses["on"])
+        far = followed(found.loops, found.loops, found.poses["on"], found.steps)
         if far is not None and max(conditioned(found.loops, own) for own in (found.loops.bodies, far)) < WELL:
             return found
 
@@ -109,6 +109,7 @@ def _one(rng: np.random.Generator, kinds: Sequence[str], given: int | None, two:
         [f"{name}.probe" for name in placed if name != "frame"],
         {"drawn": {"input": 0.0}, "on": {"input": float(3.0 if motion == "slide" else 0.05)}},
         rng.permutation([name for name in placed if name != "frame"]).tolist(),
+        steps=1,
     )
     return own
 

@@ -125,7 +125,7 @@ def corners(name: str, off: float) -> Array:
     at, normal = PLANES[name]
     long = np.eye(3)[0 if name == "back" else 1]
     ends = [a * 30.0 * long + b * 20.0 * np.cross(normal, long) for a in (-1, 1) for b in (-1, 1)]
-    return np.array(ends) + at + off * normal
+    return np.asarray(np.array(ends) + at + off * normal)
 
 
 def datum_frame(normals: Array, distances: Array, back: float, left: float) -> Array:
@@ -180,10 +180,12 @@ def test_a_linked_part_is_held_by_a_feature_toleranced_to_datums_that_deviate(co
         normals, distances = planes(own["floor form"], *sides)
         feature = linkage.feature("slider.sleeve")
         frame = datum_frame(normals, distances, *sides) @ feature.displaced(own["sleeve place"])
-        placed = closed(linkage.loops, displaced(linkage.loops, {"slide": (None, frame)}), start, linkage.poses[where])
-        assert placed is not None
-        cover = placed["slider"] @ laid(normals, distances)
-        expected.append([(placed["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
+        standing = closed(
+            linkage.loops, displaced(linkage.loops, {"slide": (None, frame)}), start, linkage.poses[where]
+        )
+        assert standing is not None
+        cover = standing["slider"] @ laid(normals, distances)
+        expected.append([(standing["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
     made = covered.system.road("exact", covered.system.materials("exact"))
     values = made.answers(stated(covered.system, np.array(rows)), covered.system.measures).values
     found = np.array(
