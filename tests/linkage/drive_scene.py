@@ -95,7 +95,9 @@ parts:
   gear 2:
     kind: solid
     placed: {{at: [0 mm, 0 mm, 100 mm]}}
-    features: {{sphere: {{kind: sphere, at: [0 mm, 0 mm, 0 mm], diameter: 100 mm}}, axis: {_axis(0.0, 0.0, 30.0, 20)}}}{parts}
+    features:
+      sphere: {{kind: sphere, at: [0 mm, 0 mm, 0 mm], diameter: 100 mm}}
+      axis: {_axis(0.0, 0.0, 30.0, 20)}{parts}
 tolerances:
 {tolerances}{_off("centre", "frame.centre", "xyz", 10)}moves:
   base: {{kind: fix, part: frame}}

@@ -124,6 +124,8 @@ class Linkage:
         inputs: by name: the joint and which of its motions.
         probes: points of bodies that are read.
         poses: by name, the inputs [mm or rad].
+        bodies: in the move's order; in that of the parts if not given.
+        steps: in which the oracle goes to a pose.
     """
 
     parts: Mapping[str, Part]
@@ -133,6 +135,7 @@ class Linkage:
     probes: Sequence[str]
     poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     bodies: Sequence[str] = ()
+    steps: int = 4
 
     @property
     def placed_bodies(self) -> Sequence[str]:
@@ -175,10 +178,10 @@ class Linkage:
         lines += ["measures:"]
         for where in self.poses or ("",):
             for probe in self.probes:
-                at = f", at: {where}" if where else ""
+                when = f", at: {where}" if where else ""
                 lines += [
                     f"  {self.measure(probe, k, where)}: {{kind: gap, from: {self.fixed[0]}.zero, to: {probe}, "
-                    f"along: {triple(np.eye(3)[k], '')}{at}}}"
+                    f"along: {triple(np.eye(3)[k], '')}{when}}}"
                     for k in range(3)
                 ]
         return "\n".join([*lines, "study: {trials: 100}", ""])
@@ -203,7 +206,7 @@ class Linkage:
         if poses:
             lines += ["    poses:"]
         for key, values in poses.items():
-            said = (f"{own}: {value!r} {'mm' if self.is_slide(own) else 'rad'}" for own, value in values.items())
+            said = (f"{name}: {value!r} {'mm' if self.is_slide(name) else 'rad'}" for name, value in values.items())
             lines += [f"      {key}: {{{', '.join(said)}}}"]
         return lines
 
@@ -253,7 +256,7 @@ class Linkage:
     def expected(self, where: str, trials: Sequence[Trial]) -> Array:
         """The oracle's places of the probes (trials, probes, 3) [mm]: the nominal pose, then the deviations."""
         wanted = self.poses.get(where, dict.fromkeys(self.inputs, 0.0))
-        start = followed(self.loops, self.loops, wanted)
+        start = followed(self.loops, self.loops, wanted, self.steps)
         assert start is not None, "a pose that the linkage reaches"
         found = []
         for deviations, zeros in trials:

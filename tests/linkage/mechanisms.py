@@ -151,7 +151,7 @@ def stewart(seed: int = 0) -> Linkage:
             {"probe": point((10.0, 20.0, 5.0)), "other": point((-30.0, 15.0, -8.0)), "third": point((7.0, -40.0, 3.0))},
         ),
     }
-    joints, inputs = {}, {}
+    joints, inputs = dict[str, Joint](), dict[str, tuple[str, str]]()
     frame, plate = dict(ZERO), dict(parts["platform"].features)
     for k in range(6):
         end = (platform @ np.append(top[k], 1.0))[:3]

@@ -46,7 +46,7 @@ class Play:
 
 def with_plays(linkage: Linkage) -> tuple[Linkage, Mapping[str, Play]]:
     """Balls random, toward and centred in turn; every other axial joint random at both ends."""
-    plays, kinds = {}, ("random", "toward", "centred")
+    plays, kinds = dict[str, Play](), ("random", "toward", "centred")
     for name, own in linkage.joints.items():
         count = len(plays)
         if own.kind == "ball":

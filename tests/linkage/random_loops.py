@@ -65,7 +65,7 @@ def random_loop(
     rng = np.random.default_rng(seed)
     while True:
         found = _one(rng, kinds or kinds_at_random(rng, 7), given, two)
-        far = followed(found.loops, found.loops, found.poses["on"])
+        far = followed(found.loops, found.loops, found.poses["on"], found.steps)
         if far is not None and max(conditioned(found.loops, own) for own in (found.loops.bodies, far)) < WELL:
             return found
 
@@ -91,7 +91,7 @@ def _one(rng: np.random.Generator, kinds: Sequence[str], given: int | None, two:
             if rng.random() < 0.5:
                 names.reverse()
             lead = float(rng.uniform(5, 60) * rng.choice([-1, 1])) if kind == "screw" else 0.0
-            joints[name] = Joint(kind, *names, lead=lead)
+            joints[name] = Joint(kind, names[0], names[1], lead)
             before = after
 
     chain("a", kinds, "frame")
@@ -109,6 +109,7 @@ def _one(rng: np.random.Generator, kinds: Sequence[str], given: int | None, two:
         [f"{name}.probe" for name in placed if name != "frame"],
         {"drawn": {"input": 0.0}, "on": {"input": float(3.0 if motion == "slide" else 0.05)}},
         rng.permutation([name for name in placed if name != "frame"]).tolist(),
+        steps=1,
     )
     return own
 
@@ -118,7 +119,7 @@ def open_chain() -> Linkage:
     rng = np.random.default_rng(4)
     kinds = ("cylindrical", "universal", "swing", "screw", "revolute", "prismatic", "universal", "swing")
     placed, features = {"frame": random_pose(rng, 20.0)}, {"frame": {"zero": point(rng.normal(size=3))}}
-    joints, inputs, before = {}, {}, "frame"
+    joints, inputs, before = dict[str, Joint](), dict[str, tuple[str, str]](), "frame"
     for k, kind in enumerate(kinds):
         after, name = f"link {k}", f"joint {k}"
         placed[after] = random_pose(rng, 20.0)
@@ -126,7 +127,8 @@ def open_chain() -> Linkage:
         for part, frame in zip((before, after), _ends(kind, rng), strict=True):
             features[part][name] = _drawn(kind, np.linalg.inv(placed[part]) @ frame)
         names = [f"{before}.{name}", f"{after}.{name}"]
-        joints[name] = Joint(kind, *(names[::-1] if k >= 5 else names), lead=12.0 if kind == "screw" else 0.0)
+        on, of = names[::-1] if k >= 5 else names
+        joints[name] = Joint(kind, on, of, 12.0 if kind == "screw" else 0.0)
         inputs |= {f"{name} {motion}": (name, motion) for motion in MOTIONS[kind]}
         before = after
     values = {name: float(rng.uniform(-1, 1) * (15.0 if own[1] == "slide" else 0.8)) for name, own in inputs.items()}

@@ -54,7 +54,7 @@ def test_a_four_bar_by_the_cosine_rule(tmp_path: Path) -> None:
                 [FOUR["ground"], 0],
             ),
         ):
-            local = np.append(drawn / 2, 0.0) + [3.0, 8.0, -5.0] if own is None else np.array(own)
+            local = np.append(drawn / 2, 0.0) + np.array([3.0, 8.0, -5.0]) if own is None else np.array(own)
             spin = np.arctan2(ends[1], ends[0]) - np.arctan2(drawn[1], drawn[0])
             want = pose([0, 0, spin], [*start, 0.0]) @ np.append(local, 1.0)
             assert found == pytest.approx(want[:3], abs=LIMIT)
@@ -149,7 +149,7 @@ def hung(feet: Array, balls: Array, lengths: Array, start: Array) -> Array:
 def test_random_stewart_platforms_hang_where_scipy_finds_them(platform: Study, count: int) -> None:
     """Displaced balls at both ends of each leg, and legs that are off.
 
-    A piston's ball that is off across the leg makes the leg longer, and turns it: only its distance from the foot counts.
+    A piston's ball that is off across the leg makes it longer and turns it: only its distance from the foot counts.
     """
     feet, balls, start = ends(platform)
     rng = np.random.default_rng(count)

@@ -9,6 +9,7 @@ import pytest
 from assembly_trials import Assembled, assembled
 from linkage.drive_scene import POSES, drive_text, error
 from linkage.linked_bodies import Array
+from numpy.typing import NDArray
 from oracles.spherical_drive import HALF, RADIUS, ROD, travels
 from scipy.spatial.transform import Rotation
 
@@ -44,7 +45,7 @@ class Sample:
     trials: Trials
     exact: Mapping[str, Array]
     linear: Mapping[str, Array]
-    codes: Mapping[str, Array]
+    codes: Mapping[str, NDArray[np.int8]]
 
     def column(self, name: str) -> Array:
         """Deviations of a contributor (trials, components)."""
@@ -164,7 +165,7 @@ def test_trials_against_two_equations_in_two_unknowns(sample: Sample, pose: str)
             a[s] += [*(float(sample.column(f"guide {side} {axis}")[k, 0]) for axis in "xy"), way - ROD]
             a[s] += 0.005 * sample.column(f"float of lower {side}")[k]
             own = 0.005 * sample.column(f"float of upper {side}")[k]
-            long[s] = np.linalg.norm(own + [0.0, 0.0, ROD + float(sample.column(f"rod {side} z")[k, 0])])
+            long[s] = np.linalg.norm(own + np.array([0.0, 0.0, ROD + float(sample.column(f"rod {side} z")[k, 0])]))
         centre = np.array([float(sample.column(f"centre {axis}")[k, 0]) for axis in "xyz"])
         tilt = ring_tilt(b, a, centre, long, start)
         now = Rotation.from_rotvec([*(2 * tilt), 0.0]).apply([0, 0, 1])

@@ -1,10 +1,11 @@
 """Where joints lie in their plays, against the oracle."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from linkage.linked_bodies import Array, study_of
+from linkage.linked_bodies import Array, Linkage, study_of
 from linkage.mechanisms import ALL
 from linkage.plays import with_plays
 from linkage.random_loops import open_chain, random_loop
@@ -12,7 +13,7 @@ from oracles.closed_loops import closed, displaced, followed
 
 from tol3d.system.stated import component_slices
 
-MAKERS = {
+MAKERS: dict[str, Callable[[], Linkage]] = {
     **{name: ALL[name] for name in ("slider crank", "rssr", "swash on swing")},
     "open chain": open_chain,
     "random": lambda: random_loop(3, two=True),
@@ -46,8 +47,8 @@ def test_plays_move_bodies_as_the_oracle_moves_them(name: str, tmp_path: Path) -
     start = followed(linkage.loops, linkage.loops, linkage.poses[where])
     assert start is not None
     expected = []
-    for own in loops:
-        poses = closed(linkage.loops, own, start, linkage.poses[where])
+    for each in loops:
+        poses = closed(linkage.loops, each, start, linkage.poses[where])
         assert poses is not None
         expected.append(linkage.seen(poses))
     assert np.abs(study.seen(np.stack(rows), where) - np.stack(expected)).max() < 1e-9

@@ -12,7 +12,7 @@ from linkage.mechanisms import ALL
 from linkage.plays import with_plays
 from linkage.random_loops import open_chain
 
-from tol3d.system.stated import component_count, component_slices
+from tol3d.system.stated import component_count, component_slices, stated
 
 STEPS = {"mm": 1e-3, "µm": 1e-3, "um": 1e-3, "1": 0.05}  # mm, shares of a radius of some 0.02 mm; all others rad
 ANGLE = 1e-5
@@ -68,13 +68,15 @@ def assert_same(finite: Array, linear: Array) -> None:
 
 
 @pytest.mark.parametrize("plays", [False, True], ids=["", "with play"])
-@pytest.mark.parametrize("name", ALL)
-def test_slopes_at_random_poses(name: str, plays: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "count"), [(name, 2) for name in ALL] + [pytest.param(name, 7, marks=pytest.mark.slow) for name in ALL]
+)
+def test_slopes_at_random_poses(name: str, count: int, plays: bool, tmp_path: Path) -> None:
+    """Of all linkages 32 poses by default, 112 more among the slow tests."""
     linkage = ALL[name]()
     if plays:
         linkage = with_plays(linkage)[0]
-    count = {"stewart": 3, "delta": 4}.get(name, 8)
-    linkage = at_random(linkage, REACHES[name], count, seed=7)
+    linkage = at_random(linkage, REACHES[name], count, seed=count)
     study = study_of(linkage, tmp_path)
     for where in linkage.poses:
         assert_same(*slopes(study, where))
@@ -99,8 +101,16 @@ def test_deviations_of_an_input_by_its_way_and_by_its_lead(tmp_path: Path) -> No
     text = f"""
 scene: one slide
 parts:
-  frame: {{kind: solid, features: {{zero: {{kind: point, at: [0 mm, 0 mm, 0 mm]}}, way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}}}}}
-  car: {{kind: solid, features: {{way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}, nose: {{kind: point, at: [3 mm, 0 mm, 0 mm]}}}}}}
+  frame:
+    kind: solid
+    features:
+      zero: {{kind: point, at: [0 mm, 0 mm, 0 mm]}}
+      way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}
+  car:
+    kind: solid
+    features:
+      way: {{kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [1, 0, 0], length: 20 mm}}
+      nose: {{kind: point, at: [3 mm, 0 mm, 0 mm]}}
 moves:
   base: {{kind: fix, part: frame}}
   slide:
@@ -126,8 +136,6 @@ study: {{trials: 10}}
         shares = {"zero": 1.0, "lead": abs(way) / 300, "backlash": by, "turn error": by * abs(way) / 100}
         for road in ("exact", "analytic"):
             answers = made.system.road(road, made.system.materials(road))
-            from tol3d.system.stated import stated
-
             rows = np.zeros((5, component_count(made.system)))
             for k, name in enumerate(shares):
                 rows[k, slices[f"{name} of travel"]] = 1e-3

@@ -6,6 +6,7 @@ more equation. Rates are differences. A motion that no joint notices stays where
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,16 @@ def facing(z: Sequence[float] | Array, at: Sequence[float] | Array) -> Array:
     found = np.eye(4)
     found[:3, :3] = np.stack([x, np.cross(axis, x), axis], axis=1)
     found[:3, 3] = at
+    return found
+
+
+def inverse(poses: Array) -> Array:
+    """Of poses (..., 4, 4)."""
+    found = np.zeros_like(poses)
+    turned = np.swapaxes(poses[..., :3, :3], -1, -2)
+    found[..., :3, :3] = turned
+    found[..., :3, 3] = -(turned @ poses[..., :3, 3:])[..., 0]
+    found[..., 3, 3] = 1.0
     return found
 
 
@@ -79,10 +90,17 @@ class Loops:
         """Of a body, or of the world (4, 4)."""
         return np.eye(4) if body is None else self.bodies[body]
 
+    @cached_property
+    def rests(self) -> Mapping[str, Array]:
+        """Of all pairs, the second frame in the first as all is drawn (4, 4)."""
+        return {
+            name: inverse(self.drawn(own.on) @ own.base) @ self.drawn(own.of) @ own.own
+            for name, own in self.pairs.items()
+        }
+
     def rest(self, name: str) -> Array:
-        """The second frame in the first as all is drawn (4, 4)."""
-        own = self.pairs[name]
-        return np.asarray(np.linalg.inv(self.drawn(own.on) @ own.base) @ self.drawn(own.of) @ own.own)
+        """Of one of them (4, 4)."""
+        return self.rests[name]
 
 
 Poses = Mapping[str, Array]
@@ -98,7 +116,7 @@ def _lacks(drawn: Loops, loops: Loops, name: str, poses: Poses) -> list[Array]:
     own, rest = loops.pairs[name], drawn.rest(name)
     first = own.base if own.on is None else poses[own.on] @ own.base
     last = own.own if own.of is None else poses[own.of] @ own.own
-    seen = np.linalg.inv(first) @ last
+    seen = inverse(first) @ last
     at, z = [seen[..., k, 3] for k in range(3)], [LENGTH * seen[..., k, 2] for k in range(3)]
     left = seen[..., :3, :3] @ rest[:3, :3].T
     match own.kind:
@@ -126,7 +144,7 @@ def _lacks(drawn: Loops, loops: Loops, name: str, poses: Poses) -> list[Array]:
 
 def _rolls(drawn: Loops, loops: Loops, name: str, poses: Poses, first: Array, last: Array) -> list[Array]:
     own = loops.pairs[name]
-    carried = np.linalg.inv(drawn.drawn(own.carrier))
+    carried = inverse(drawn.drawn(own.carrier))
     centre = (carried @ drawn.drawn(own.of) @ drawn.pairs[name].own)[:3, 3]
     rest = (carried @ drawn.drawn(own.on) @ drawn.pairs[name].base)[:3, 2]
     carrier = np.eye(4) if own.carrier is None else poses[own.carrier]
@@ -145,7 +163,7 @@ def _seen(loops: Loops, name: str, poses: Poses) -> Array:
     own = loops.pairs[name]
     first = own.base if own.on is None else poses[own.on] @ own.base
     last = own.own if own.of is None else poses[own.of] @ own.own
-    return np.asarray(np.linalg.inv(first) @ last)
+    return np.asarray(inverse(first) @ last)
 
 
 def _turn(drawn: Loops, loops: Loops, name: str, poses: Poses) -> Array:
@@ -204,13 +222,13 @@ def closed(drawn: Loops, loops: Loops, start: Poses, wanted: Mapping[str, float]
         wanted: of each input how far it has gone.
     """
     count, poses = 6 * len(start), start
-    ends = STEP * np.concatenate([np.eye(count), -np.eye(count)])
+    ends = np.asarray(STEP * np.concatenate([np.eye(count), -np.eye(count)]), dtype=np.float64)
     for _ in range(60):
         lacks = _equations(drawn, loops, poses, wanted)
         each = _equations(drawn, loops, _moved(poses, ends), wanted)
         rates = (each[:count] - each[count:]).T / (2 * STEP)
         step = np.linalg.lstsq(rates, -lacks, rcond=1e-8)[0]
-        step *= min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-300))
+        step = np.asarray(step * min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-300)), dtype=np.float64)
         poses = _moved(poses, step)
         if np.abs(step).max() < MET:
             return poses if np.abs(_equations(drawn, loops, poses, wanted)).max() < 1e-9 else None
@@ -221,7 +239,7 @@ def closed(drawn: Loops, loops: Loops, start: Poses, wanted: Mapping[str, float]
 def followed(drawn: Loops, loops: Loops, wanted: Mapping[str, float], steps: int = 4) -> Poses | None:
     """Bodies where inputs have gone so far, step by step from where they are drawn."""
     poses: Poses | None = drawn.bodies
-    for share in np.linspace(0.0, 1.0, steps + 1):
+    for share in np.linspace(0.0, 1.0, steps + 1)[1:]:
         if poses is None:
             return None
         poses = closed(drawn, loops, poses, {name: share * target for name, target in wanted.items()})
@@ -240,7 +258,7 @@ def displaced(loops: Loops, frames: Mapping[str, tuple[Array | None, Array | Non
 def conditioned(loops: Loops, poses: Poses) -> float:
     """The condition number of all equations; infinite where something is free."""
     count = 6 * len(loops.bodies)
-    ends = STEP * np.concatenate([np.eye(count), -np.eye(count)])
+    ends = np.asarray(STEP * np.concatenate([np.eye(count), -np.eye(count)]), dtype=np.float64)
     each = _equations(loops, loops, _moved(poses, ends), dict.fromkeys(loops.inputs, 0.0))
     sizes = np.linalg.svd((each[:count] - each[count:]) / (2 * STEP), compute_uv=False)
     return float(sizes[0] / max(sizes[-1], 1e-300))

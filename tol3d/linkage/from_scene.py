@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import UsesFeatures, part_of
-from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
+from tol3d.assembly.grammar.measures import ClearanceSpec as SolidClearanceSpec
+from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
+from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, OrientationErrorSpec, PoseErrorSpec
+from tol3d.assembly.grammar.moves import WeldSpec
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.errors import InputError
@@ -219,11 +223,32 @@ def _read_features(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[t
                     yield (section, own, *use.path), use.name
 
 
+def _read_turns(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tuple[KeyPath, str, Triple | None]]:
+    """Bodies whose turn is read, with the field: of a direction in the body, or of all of it where that is None."""
+    for own, entry in scene.measures.items():
+        if isinstance(entry, PoseErrorSpec | DirectionErrorSpec) and entry.from_ in spec.bodies:
+            yield ("measures", own, "from"), entry.from_, None
+        if isinstance(entry, OrientationErrorSpec) and part_of(entry.of) in spec.bodies:
+            yield ("measures", own, "of"), part_of(entry.of), None
+        if isinstance(entry, SolidClearanceSpec):
+            for key, part in (("from", entry.from_), ("to", entry.to)):
+                if part in spec.bodies:
+                    yield ("measures", own, key), part, None
+        if isinstance(entry, BetweenSpec) and entry.along is not None and part_of(entry.from_) in spec.bodies:
+            yield ("measures", own, "from"), part_of(entry.from_), entry.along
+    for own, move in list(scene.moves.items())[list(scene.moves).index(name) + 1 :]:
+        if isinstance(move, WeldSpec):
+            for reference in move.references():
+                if reference.name in spec.bodies:
+                    yield ("moves", own, *reference.path), reference.name, None
+
+
 def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
     """Refuse to read what a freedom moves that moves no joint, for nothing says where it is."""
     own = kinematics.structure
     for words, moved in kinematics.idle_freedoms():
         size = max(np.abs(moved[:, :3]).max() * own.length, np.abs(moved[:, 3:]).max())
+        told = f"which it leaves free: {words}"
         for path, feature in _read_features(spec, name, scene):
             body = own.body_of[part_of(feature)]
             frame = kinematics.drawn.poses[body] @ own.frames[feature]
@@ -232,8 +257,14 @@ def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: D
             if drawing.kind(feature).kind in ("point", "sphere"):
                 turn = np.zeros(3)
             if max(np.abs(shift).max(), np.abs(turn).max()) > TINY * size:
-                told = f"expected a feature that the loop holds, got {feature!r}, which it leaves free: {words}"
-                raise scene.refuse(path, told)
+                raise scene.refuse(path, f"expected a feature that the loop holds, got {feature!r}, {told}")
+        for path, part, along in _read_turns(spec, name, scene):
+            body = own.body_of[part]
+            turn = moved[body, :3] * own.length
+            if along is not None:
+                turn = np.cross(turn, kinematics.drawn.poses[body, :3, :3] @ unit(along))
+            if np.abs(turn).max() > TINY * size:
+                raise scene.refuse(path, f"expected a part whose turn the loop holds, got {part!r}, {told}")
 
 
 def _position(

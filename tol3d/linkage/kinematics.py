@@ -29,6 +29,8 @@ STRIDE: Final = 0.1
 """Step of inputs and outputs [rad, or of the loop's length] on the way to a pose."""
 LEAST: Final = 2.0**-20
 """Share of the way under which no step is tried."""
+FLAT: Final = 1e-6
+"""The same where a pose is singular, as in trials."""
 ROUNDS: Final = 60
 """Of closing a loop as it is drawn."""
 
@@ -150,12 +152,18 @@ class Kinematics:
             right, matrix, twists, poses = self._linear(coordinates, turns)
         else:
             raise InputError(self._open(first, self._least_open(coordinates, turns, free, scale)))
-        self._refuse_unfit(matrix * scale / own.length, twists * scale, poses)
+        away = self._linear(*self._stepped(coordinates, turns, free, self._away(len(scale)) * scale))[1]
+        self._refuse_unfit(matrix * scale / own.length, twists * scale, poses, away * scale / own.length)
         held, singular, sign = self._held(matrix * scale / own.length, None)
         base, child = self._frames
         found = self._solved(Position(coordinates, turns, held, sign, base, child, singular, np.empty(0)), {}, None)
         assert found is not None
         return found
+
+    @staticmethod
+    def _away(count: int) -> Array:
+        """A step (count,) [rad, or of the loop's length] that no loop is made for."""
+        return np.asarray(0.1 * np.sin(1.0 + np.sqrt(2.0) * np.arange(count)))
 
     def _stepped(self, coordinates: Array, turns: Array, free: NDArray[np.int64], step: Array) -> tuple[Array, Array]:
         coordinates, turns = coordinates.copy(), turns.copy()
@@ -191,23 +199,35 @@ class Kinematics:
             "are `placed`"
         )
 
-    def _refuse_unfit(self, matrix: Array, twists: Array, poses: Array) -> None:
-        """Refuse equations that ask twice for the same, and freedoms that move what joints hold."""
+    def _refuse_singular(self, elsewhere: Array, rows: int) -> None:
+        """Refuse parts `placed` where equations (rows, free) depend on each other that do not elsewhere."""
+        sizes = np.linalg.svd(elsewhere, compute_uv=False)
+        if (sizes > FLAT * max(sizes.max(), 1.0)).sum() == rows:
+            words = (
+                "expected parts `placed` in a pose that is not singular, got one in which inputs do not move the loop"
+            )
+            raise InputError(f"moves.{self.structure.name}: {words}, or leave it free; place them in another one")
+
+    def _refuse_unfit(self, matrix: Array, twists: Array, poses: Array, elsewhere: Array) -> None:
+        """Refuse equations that ask twice for the same, and freedoms that move what joints hold.
+
+        Args:
+            matrix: of the equations (rows, free).
+            twists, poses: of bodies.
+            elsewhere: the equations in a pose near by, in which nothing closes.
+        """
         own = self.structure
         if matrix.size:
             left, sizes, _ = np.linalg.svd(matrix)
-            rank = int((sizes > DEPENDENT * max(sizes.max(), 1.0)).sum())
+            rank = int((sizes > FLAT * max(sizes.max(), 1.0)).sum())
             if rank < len(matrix):
+                self._refuse_singular(elsewhere, len(matrix))
                 excess = len(matrix) - rank
                 joints = self._in_loops(left[:, rank:])
-                words = f"expected joints that do not ask twice for the same, got {excess} too many held"
-                some = f"freedom{'s' if excess > 1 else ''}"
+                words = "expected joints that do not ask twice for the same, got"
+                some = f"freedom{'s' if excess > 1 else ''} held twice in the loop of {', '.join(joints)}"
                 advice = "give one of them more freedom, such as a ball, a cylindrical or a universal one"
-                raise InputError(
-                    f"moves.{own.name}.joints: {words} {some} in the loop of {', '.join(joints)}; {advice}".replace(
-                        f"too many held {some}", f"{some} held twice"
-                    )
-                )
+                raise InputError(f"moves.{own.name}.joints: {words} {excess} {some}; {advice}")
         for motion in self._idle(matrix):
             moved = np.einsum("bij,j->bi", twists, motion)
             if self._moves_joints(moved, poses):
