@@ -11,8 +11,8 @@ from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import UsesFeatures, part_of
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
-from tol3d.assembly.grammar.measures import ClearanceSpec as SolidClearanceSpec
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
+from tol3d.assembly.grammar.measures.clearance import ClearanceSpec as SolidClearanceSpec
 from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, OrientationErrorSpec, PoseErrorSpec
 from tol3d.assembly.grammar.moves import WeldSpec
 from tol3d.assembly.model.feature import nominal_size
