@@ -13,8 +13,10 @@ from scipy.spatial.transform import Rotation
 from thinned import thinned
 
 from tol3d.distributions import Constant
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
+from tol3d.gearing.builds.rates import build_rates, left_jacobian
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.meshing.seats import geometric_values, seated
 from tol3d.gearing.model import (
     AxesOffset,
     AxisOffset,
@@ -28,10 +30,8 @@ from tol3d.gearing.model import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.rates import build_rates, left_jacobian
-from tol3d.gearing.seats import geometric_values, seated
-from tol3d.gearing.sensitivity import by_contributor, peak_weights, sensitivities, taken_rates
-from tol3d.gearing.slopes import mean_slopes
+from tol3d.gearing.slopes.at_mean import mean_slopes
+from tol3d.gearing.slopes.sensitivity import by_contributor, peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
 from tol3d.system.positions import Take

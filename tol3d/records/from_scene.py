@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.shafts import Mesh
 from tol3d.gearing.system import GearSystem
 from tol3d.records.pair import RigPair, Specimen
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import OK
-from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.flank_offsets import deviates
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.records.from_scene import gears_of, mean_row, mesh_of, specimen_of_build
 from tol3d.records.pair import Specimen
 from tol3d.records.simulated_unit import SimulatedUnit

@@ -18,7 +18,7 @@ from tol3d.records.exact_play import Side
 from tol3d.records.pair import RigPair, Specimen
 
 if TYPE_CHECKING:
-    from tol3d.gearing.build import Build
+    from tol3d.gearing.builds.build import Build
     from tol3d.gearing.engines import ReadingEngine
     from tol3d.gearing.model import Mesh
 

@@ -1,14 +1,19 @@
 """What an engine offers: signed gaps of candidate tooth pairs, with contact points and normals."""
 
+import importlib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
-from tol3d.gearing.model import Mesh, Reading
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.engines.status import INTERFERES, STATUS_TEXT
+from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Flank
+from tol3d.solids import FlankStrips
+from tol3d.system.statuses import Statuses
 
 Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
@@ -161,3 +166,32 @@ class ReadingEngine(Engine, Protocol):
             driver_angle: (positions,) [rad], the same of every trial; contacts are those of the first.
         """
         ...
+
+
+EXACT = "tol3d.gearing.engines.exact"
+FCL = "tol3d.gearing.engines.fcl"
+
+
+def exact_engine(model: Model) -> ReadingEngine:
+    """The exact engine of a model."""
+    engine: ReadingEngine = importlib.import_module(EXACT).ExactEngine(model)
+    return engine
+
+
+def exact_is_compiled(model: Model) -> bool:
+    """Whether the exact engine's kernels for a model were compiled on this machine before."""
+    return bool(importlib.import_module(EXACT).ExactEngine(model).kept)
+
+
+def fcl_engine(model: Model, strips: Mapping[str, FlankStrips]) -> Engine:
+    """FCL on the measuring strips of every gear, by its name."""
+    engine: Engine = importlib.import_module(FCL).FclEngine(model, strips)
+    return engine
+
+
+STATUSES: Final = Statuses(
+    texts=tuple(STATUS_TEXT[code] for code in range(len(STATUS_TEXT))),
+    lacking=frozenset((STATUS_TEXT[INTERFERES],)),
+    words={"interferes": "jam", "no contact": "find no contact", "out of range": "are out of range"},
+    states={"interferes": "jammed", "no contact": "without contact"},
+)

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, Gaps
-from tol3d.gearing.flank_margin import margin_of
-from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.model import Mesh, Model, Reading
+from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
 from tol3d.gears.pair import candidate_teeth

@@ -17,23 +17,24 @@ from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.model.drive import Drive, drives_of, periods_of
 from tol3d.gearing.model.links import (
+    Drive,
     Link,
     LoadPath,
     back_to_root,
     carriers,
+    drives_of,
     first_drivers,
     freed_turn,
     links_between_shafts,
     load_path_between,
     onwards,
+    periods_of,
     turned_by,
     upstream,
 )
-from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.networks import network_path
-from tol3d.gearing.model.shafts import Carried, Shaft
+from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
 
 Array = NDArray[np.float64]
 

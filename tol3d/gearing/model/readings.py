@@ -7,8 +7,8 @@ import numpy as np
 
 from tol3d.gearing.grammar.measures import FlankMeasureSpec
 from tol3d.gearing.model.measure import Kind, Measure, Reading
-from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.model import Model
+from tol3d.gearing.model.shafts import Mesh
 from tol3d.gears import one_tooth_acts, one_tooth_share
 from tol3d.scene import Scene
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import ShownStage, shafts_along
-from tol3d.gearing.summary_types import TrainSummary
+from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
 
 Array = NDArray[np.float64]

@@ -13,12 +13,11 @@ from typing import Any, Final, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.display import SeatedBuild
-from tol3d.gearing.linked import link_contributors
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.model import Model
-from tol3d.gearing.presenting.gear_display import GearDisplay
-from tol3d.gearing.presenting.moved_gears import TURN, whole_train
+from tol3d.gearing.play.linked import link_contributors
+from tol3d.gearing.presenting.gear_display import TURN, GearDisplay, whole_train
+from tol3d.gearing.shown.display import SeatedBuild
 from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
 from tol3d.report.page import PageItem

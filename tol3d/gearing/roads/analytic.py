@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.breakdowns import staged_measures
-from tol3d.gearing.linked import Remembered, by_theory
+from tol3d.gearing.meshing.seats import driver_angles
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
-from tol3d.gearing.play import Play, SeatKey, seat_key
-from tol3d.gearing.seats import driver_angles
+from tol3d.gearing.play.linked import Remembered, by_theory
+from tol3d.gearing.play.play import Play, SeatKey, seat_key, staged_measures
 from tol3d.gearing.stack_up import (
     analytic_backlash,
     analytic_transmission_error,

@@ -7,15 +7,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.breakdowns import staged_measures
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, MeshReading, ReadingEngine
-from tol3d.gearing.linked import Remembered, as_built
-from tol3d.gearing.measures import measure_backlash, moved, read_backlash, turning_gear
+from tol3d.gearing.meshing.backlash import measure_backlash, moved, read_backlash, turning_gear
+from tol3d.gearing.meshing.seats import driver_angles, seated
 from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
-from tol3d.gearing.play import Play, Read, SeatKey, seat_key, seat_keys
-from tol3d.gearing.seats import driver_angles, seated
+from tol3d.gearing.play.linked import Remembered, as_built
+from tol3d.gearing.play.play import Play, Read, SeatKey, seat_key, seat_keys, staged_measures
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers, Codes, joined_answers
 from tol3d.system.trials import Trials

@@ -32,7 +32,7 @@ class GearTeeth(NamedTuple):
         form, tip: rolls at which they begin and end [rad].
         face: width of the face [mm].
         wave_rate, wave_middle: phase of the waves of their form per roll, and the roll at which it is 0 [1; rad]; a
-            rate of 0 is a barrel, see effects/flank_deviation.py.
+            rate of 0 is a barrel, see FlankDeviation in effects.py.
     """
 
     base: float

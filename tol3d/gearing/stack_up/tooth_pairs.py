@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
-from tol3d.gearing.flank_margin import margin_of
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading
+from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.flank import RIGHT

@@ -8,10 +8,18 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
-from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
-from tol3d.gearing.engines.exact.small_angles import arcsine, sine
+from tol3d.gearing.engines.exact.foot import (
+    PER_TURN,
+    TURN,
+    external,
+    flank_of,
+    foot,
+    grown,
+    line_of_action,
+    section,
+    turn_to,
+)
+from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose, arcsine, sine
 from tol3d.numerics.compiled import inlined, variant
 
 LEAST_RISE = 1e-9  # mm; a point within the base cone has no such plane

@@ -7,8 +7,7 @@ millimetres. What is left out is of the order of (its slope)^2 times itself, 1e-
 import math
 from typing import Any, NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import flank_of, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.foot import external, flank_of, foot, grown, line_of_action, section, turn_to
 from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.numerics.compiled import part, variant
@@ -30,7 +29,7 @@ class DeviatedTooth(NamedTuple):
         scale: by which the gear has grown.
         middle, per_length: of the profile's rolls, and one over their span [rad, 1/rad].
         per_face: one over the width of the whole face [1/mm].
-        waves: of the form, see effects/flank_deviation.py.
+        waves: of the form, see FlankDeviation in effects.py.
         level, slope, form, helix: of the flank [mm]; 0 where none is meant.
     """
 

@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 from tol3d.gearing.engines.exact.numbers import Foot, Nearest
+from tol3d.numerics.compiled import variant
 
 TURN = 2.0 * math.pi
 PER_TURN = 1.0 / TURN
@@ -102,3 +103,25 @@ def widest(driver: Any, driven: Any, tangent: float) -> float:
         tangent: length of the tangent of both base circles [mm].
     """
     raise NotImplementedError
+
+
+def external(kind: type) -> None:
+    """Register the gears of a kind as external; see foot.py."""
+    variant(opening, kind)(external_opening)
+    variant(handed, kind)(external_side)
+    variant(widest, kind)(external_radius)
+
+
+def external_opening(driven: Any) -> float:
+    """In the sense in which the driver leaves its mate."""
+    return 1.0
+
+
+def external_side(driver: Any, sigma: float) -> float:
+    """Flanks of one side meet."""
+    return sigma
+
+
+def external_radius(driver: Any, driven: Any, tangent: float) -> float:
+    """r_1 r_2/(r_1 + r_2), where r_1 + r_2 is the tangent, is at most a quarter of it."""
+    return 0.25 * tangent

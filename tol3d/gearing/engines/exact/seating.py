@@ -12,8 +12,7 @@ import numpy as np
 
 from tol3d.gearing.engines.exact.foot import flank_of, handed, opening, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
-from tol3d.gearing.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose
-from tol3d.gearing.engines.exact.small_angles import turned
+from tol3d.gearing.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose, turned
 from tol3d.numerics.compiled import part
 
 LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start

@@ -8,8 +8,17 @@ t = sigma (psi - azimuth) + eta_b its roll: the gap is s - r_b t, and it closes 
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.foot import (
+    PER_TURN,
+    TURN,
+    external,
+    flank_of,
+    foot,
+    grown,
+    line_of_action,
+    section,
+    turn_to,
+)
 from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
 from tol3d.numerics.compiled import variant
 

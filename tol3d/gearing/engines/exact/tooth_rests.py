@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
 from tol3d.gearing.engines.exact.deviated_rows import with_flanks
 from tol3d.gearing.engines.exact.foot import flank_of, section
-from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
+from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
 from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rests import write_first
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
@@ -30,7 +30,6 @@ from tol3d.gearing.engines.exact.seating import (
     seen,
     standing,
 )
-from tol3d.gearing.engines.exact.small_angles import turned
 from tol3d.gearing.engines.exact.tooth_contact import Sight, Touch, edge_gap, height, most_out, sight, touch, wrapped
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
 from tol3d.numerics.compiled import part

@@ -3,10 +3,17 @@
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import Field
 
 from tol3d.gearing.effects import Effect, Together
+from tol3d.gearing.grammar.moves import MeshSpec
+from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene.direction import At
+from tol3d.scene.entry import Entry
+from tol3d.scene.name import Name
+from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 
 if TYPE_CHECKING:
@@ -18,7 +25,7 @@ class Meaning:
     """What a deviation does.
 
     Args:
-        effect: on which parts and how; see effects/.
+        effect: on which parts and how; see effects.py.
         planar: whether the deviation is a length in a direction across an axis.
         azimuth: that direction [rad]; None for a random one.
         least: smallest physical deviation [mm, rad or K], such as 0 of a clearance, if there is one.
@@ -55,3 +62,27 @@ def in_direction(effects: Sequence[Effect], direction: object) -> Meaning:
 def together(effects: Sequence[Effect]) -> Effect:
     """Several effects of one deviation as one."""
     return effects[0] if len(effects) == 1 else Together(tuple(effects))
+
+
+class GearToleranceSpec(GearingToleranceSpec):
+    """A tolerance of one gear, or of what carries it."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)
+
+    of: Name = Field(description="the gear")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The gear, or what carries it."""
+        return (Reference(("of",), self.of, self.applies_to),)
+
+
+class MeshToleranceSpec(GearingToleranceSpec):
+    """A tolerance of how two axes lie to each other."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)
+
+    of: Name = Field(description="the mesh move")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The mesh."""
+        return (Reference(("of",), self.of, self.applies_to),)
