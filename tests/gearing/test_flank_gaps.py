@@ -8,7 +8,7 @@ import pytest
 from oracles.random_builds import Builds, Spread, random_builds
 
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.exact.nearest import FlankGap, GearRows, flank_gap
+from tol3d.gearing.engines.exact.flank_gaps import FlankGap, GearRows, flank_gap
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear, SpurPair
 
 ALPHA = math.radians(20)

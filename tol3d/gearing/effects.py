@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.flank import Flank
+from tol3d.numerics.arrays import Array
 
 if TYPE_CHECKING:
     from tol3d.gearing.model.shafts import Mesh
@@ -95,7 +95,6 @@ class Together(Effect):
 NOTHING = Together(())
 
 
-Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 

@@ -26,6 +26,7 @@ from tol3d.gearing.roads.witness import FLANKS_OF_A_BACKLASH, FclRoad
 from tol3d.gearing.stack_up import closed_form, reference_form
 from tol3d.gearing.summary.descriptions import description
 from tol3d.gearing.summary.train_sections import train_sections
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.system import contributor as system_contributor
@@ -39,7 +40,6 @@ from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Strips = Mapping[str, FlankStrips]
 
 EXACT: Final = "exact"

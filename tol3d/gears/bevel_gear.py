@@ -12,9 +12,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import (
@@ -26,8 +23,7 @@ from tol3d.gears.spherical_involute import (
 )
 from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, crown_rack_undercut_angle
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 PITCH_ANGLES: Final = (0.01, 89.99)  # deg
 LONGEST_FACE = 0.9  # of the outer cone distance; common practice stops at a third

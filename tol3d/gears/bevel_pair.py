@@ -15,8 +15,7 @@ from tol3d.gears.bevel_gear import BevelGear
 from tol3d.gears.flank import Flank
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
 from tol3d.gears.pitch_angles import pitch_angles
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
 SAME_ANGLE = 1e-9  # rad; over 100 mm a ten-thousandth of a micrometre

@@ -17,8 +17,7 @@ from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import inverse_involute, involute
 from tol3d.gears.pair import CONTACT_MARGIN, candidate_teeth
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in this sense
 

@@ -11,14 +11,12 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.involute import involute
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.tooth_outline import tooth_half_angle
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 STEPS: Final = 400  # of a tip corner's way through the mate's fillet: its bend over a step is 1e-5 of the fillet
 

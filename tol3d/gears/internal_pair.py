@@ -19,8 +19,7 @@ from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced
 from tol3d.gears.radial_assembly import radially_assembled
 from tol3d.gears.spur_gear import SpurGear
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears.flank import Flank
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 

@@ -15,11 +15,10 @@ lines through the apex, and its normal, which stays in the rolling plane, is the
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.flank import Flank
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Angles = float | Array
 
 SERIES_BELOW = 0.1  # tan q over sin b; from there on the closed form loses less than 2e-17 rad

@@ -14,8 +14,7 @@ from tol3d.gears.cylindrical_pair import CylindricalPair
 from tol3d.gears.flank import Flank
 from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -3,12 +3,10 @@
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.flank import RIGHT
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def tooth_half_angle(gear: CylindricalGear, radius: Array) -> Array:

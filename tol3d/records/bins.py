@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.pair import TURN, RigPair
-
-Array = NDArray[np.float64]
 
 BINS_A_TOOTH = 32  # of the driver; a tooth's own harmonic is averaged by 0.2 % then
 FEWEST_BINS_A_TOOTH = 8

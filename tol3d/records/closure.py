@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.alignment import Aligned
 from tol3d.records.bins import Bins
 from tol3d.records.ends import WINDOW, Ends
@@ -21,7 +21,6 @@ from tol3d.records.pair import ARCSEC, Specimen
 from tol3d.records.prediction import Figure, quantile_of
 from tol3d.records.terms import Points, columns
 
-Array = NDArray[np.float64]
 Closing = Literal["drive", "back", "backlash"]
 
 OPEN: Final = 3.0  # standard errors from which on a side does not close

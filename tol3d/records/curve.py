@@ -5,15 +5,13 @@ import io
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.exact_play import Side
 from tol3d.records.findings import Identified
 from tol3d.records.fit import Fit
 from tol3d.records.pair import ARCSEC
 from tol3d.records.spectrum import with_tooth_mesh
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

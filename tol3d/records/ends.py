@@ -4,12 +4,10 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.bins import Bins, BinSums
 from tol3d.records.pair import TURN, RigPair
-
-Array = NDArray[np.float64]
 
 WINDOW: Final = TURN / 4  # of the driver: some teeth, so that single ones matter little, and little of any drift
 SHORT: Final = WINDOW / 2  # by which a pass may fall short of the long period; from which over it places are compared

@@ -14,11 +14,10 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.pair import RigPair, Specimen
 
-Array = NDArray[np.float64]
 Side = Literal["drive", "back"]
 
 ROUNDS = 6  # each gains a factor e2/a, 1e-3 or less for any gear that runs

@@ -6,9 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.records.alignment import Aligned, HiddenShift
 from tol3d.records.closure import Closing, closures
 from tol3d.records.exact_play import Side
@@ -20,8 +17,6 @@ from tol3d.records.reading import Pass, Senses
 from tol3d.records.spectrum import Spectrum
 from tol3d.records.terms import ECCENTRIC, encoder_names
 from tol3d.records.whole_backlash import ToothPart, WholeBacklash
-
-Array = NDArray[np.float64]
 
 ENCODER_ERROR: Final = 20 * ARCSEC  # once per turn, that a rig's encoders and couplings may have
 

@@ -14,20 +14,19 @@ import math
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model
 from tol3d.gearing.model.shafts import Mesh
 from tol3d.gearing.system import GearSystem
+from tol3d.numerics.arrays import Array
 from tol3d.records.pair import RigPair, Specimen
 
 if TYPE_CHECKING:
     from tol3d.gears import SpurGear, SpurPair
     from tol3d.system.system import System
 
-Array = NDArray[np.float64]
 
 DIGITS: Final = 15  # of numbers in a written scene
 POSITIONS: Final = 72  # a turn of the driver, in a written scene

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.records.alignment import Aligned, HiddenShift, hidden_shift
 from tol3d.records.cautions import cautions, refuse_hidden_shift
 from tol3d.records.exact_play import Side
@@ -32,7 +32,6 @@ from tol3d.records.spectrum import spectrum_of
 from tol3d.records.terms import ECCENTRIC, ENCODERS, Terms
 from tol3d.records.whole_backlash import ToothPart, tooth_part, whole_backlash
 
-Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
 ROWS_A_TOOTH: Final = 5.0  # from which on tooth mesh and its second harmonic are fitted along

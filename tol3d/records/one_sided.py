@@ -5,14 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.exact_play import Side
 from tol3d.records.fit import Fit, fitted
 from tol3d.records.prediction import BacklashModel, Extreme, Figure, length_and_phase
 from tol3d.records.terms import ECCENTRIC, ENCODERS, Terms
-
-Array = NDArray[np.float64]
 
 DISAGREEING = 3.0  # standard errors of the difference
 

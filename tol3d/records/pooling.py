@@ -8,15 +8,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.alignment import Aligned, Alignment
 from tol3d.records.bins import Bins, BinSums
 from tol3d.records.exact_play import Side
 from tol3d.records.pair import RigPair
 from tol3d.records.reading import Pass
-
-Array = NDArray[np.float64]
 
 
 class SidePool:

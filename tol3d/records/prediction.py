@@ -3,15 +3,13 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.exact_play import angular_backlash, driven_angle
 from tol3d.records.fit import specimen_of
 from tol3d.records.pair import TURN, RigPair
 from tol3d.records.terms import backlash_columns
-
-Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 NEAR_ZERO = 4.0  # standard errors of a length, within which it may be that of a vector in any direction

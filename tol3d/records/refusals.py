@@ -5,14 +5,12 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.records.bins import Bins
 from tol3d.records.pair import ARCSEC, TURN, RigPair
 from tol3d.records.reading import Pass
-
-Array = NDArray[np.float64]
 
 LARGEST_CONDITION: Final = 10.0  # of the columns once per turn of either gear and the constant; 19 at one turn of 27/48
 OTHER_UNITS: Final = (

@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.exact_play import ClosedForm, Side, Unit
 from tol3d.records.pair import ARCSEC, TURN, Specimen
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

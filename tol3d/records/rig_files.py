@@ -4,15 +4,12 @@ import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError, unwritable
 from tol3d.records.exact_play import Side, Unit
 from tol3d.records.folder import begins_with, made_folder, whole
 from tol3d.records.pair import TURN, Specimen
 from tol3d.records.rig import Readings, Rig, measured
-
-Array = NDArray[np.float64]
 
 MOST_ROWS = 3 * 10**7  # a side; they are made in memory, 100 bytes a row
 MARK = "# synthetic: written by tol3d rig"  # first line of its files, which readers pass over

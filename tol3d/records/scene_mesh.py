@@ -5,12 +5,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import OK
 from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.numerics.arrays import Array
 from tol3d.records.from_scene import gears_of, mean_row, mesh_of, specimen_of_build
 from tol3d.records.pair import Specimen
 from tol3d.records.simulated_unit import SimulatedUnit
@@ -20,8 +20,6 @@ from tol3d.system.trials import Trials
 if TYPE_CHECKING:
     from tol3d.gearing.model import Mesh, Model
     from tol3d.study.simulation import Simulation
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

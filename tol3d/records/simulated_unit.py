@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.model.measure import Reading
+from tol3d.numerics.arrays import Array
 from tol3d.records.exact_play import Side
 from tol3d.records.pair import RigPair, Specimen
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from tol3d.gearing.engines import ReadingEngine
     from tol3d.gearing.model import Mesh
 
-Array = NDArray[np.float64]
 
 POSITIONS_AT_ONCE: Final = 2**15  # of which each takes 100 bytes of readings
 READING: Final = Reading()

@@ -21,8 +21,7 @@ from tol3d.gearing.builds.flank_offsets import FlankDeviations, FlankPlaces
 from tol3d.gearing.builds.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, OFFSET, SLOTS, TURN
 from tol3d.gearing.model import Model
 from tol3d.numerics import frames
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.builds.slots import CENTRE, FLANK_TURN, OFFSET, TURN
 from tol3d.gearing.effects import (
@@ -21,8 +20,7 @@ from tol3d.gearing.effects import (
     TurningOffset,
 )
 from tol3d.gearing.model import Model, Seat
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,8 +18,8 @@ from tol3d.gearing.effects import FORM, SHAPES, SLOPE, UNIFORM, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import SpurGear
 from tol3d.gears.flank import RIGHT, Flank
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 

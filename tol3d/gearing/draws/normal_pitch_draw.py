@@ -7,13 +7,11 @@ from itertools import accumulate
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from tol3d.distributions import standard_normal
 from tol3d.gearing.draws.pitch_draw import PitchDraw, centred
+from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Values
-
-Array = NDArray[np.float64]
 
 END_SIGMAS = 3.0
 """At which the ends of a normal law stand."""

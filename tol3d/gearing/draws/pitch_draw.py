@@ -15,13 +15,11 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution, standard_normal
 from tol3d.distributions.empirical import Empirical
+from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Values
-
-Array = NDArray[np.float64]
 
 NET: Final = 4096
 """Patterns over which the covariance of a law is taken; each counts once for every tooth, for no tooth is special."""

@@ -26,10 +26,10 @@ from tol3d.gearing.engines.gaps import Gaps, Teeth
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import Flank
 from tol3d.numerics import frames
+from tol3d.numerics.arrays import Array
 from tol3d.solids import WHOLE_FACE, FlankStrips, PulledStrip, Span
 from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 
-Array = NDArray[np.float64]
 Numbers = tuple[float, ...]
 """Coefficients of one flank [mm], SHAPES of them; empty for a flank like all others of its gear."""
 

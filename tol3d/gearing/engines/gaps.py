@@ -12,10 +12,10 @@ from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines.status import INTERFERES, STATUS_TEXT
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Flank
+from tol3d.numerics.arrays import Array
 from tol3d.solids import FlankStrips
 from tol3d.system.statuses import Statuses
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 

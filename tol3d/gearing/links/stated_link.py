@@ -12,10 +12,9 @@ from typing import Any, ClassVar, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,12 @@
 """Backlash of a seated mesh: normal, circumferential, angular; below 0 where the teeth interfere."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.engines import INTERFERES, MeshReading
 from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Kind, LostMotion, Mesh, TransmissionError
 from tol3d.gears.flank import opposite
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:

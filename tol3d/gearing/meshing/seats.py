@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.engines import Engine
@@ -13,9 +12,8 @@ from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 from tol3d.gearing.model import Backlash, Measure, Model
 from tol3d.gearing.play.linked import as_built
 from tol3d.gearing.play.play import Play, SeatKey, seat_keys
+from tol3d.numerics.arrays import Array
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def driver_angles(key: SeatKey, trials: Trials) -> Array:

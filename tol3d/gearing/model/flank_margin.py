@@ -4,14 +4,11 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.effects import SHAPES, FlankDeviation
 from tol3d.gearing.model import Mesh, Model
 from tol3d.gears import GearPair, SpurGear
 from tol3d.gears.flank import RIGHT
-
-Array = NDArray[np.float64]
 
 MARGINS: Final = (0.35, 0.6, 0.85)
 """Pitches beyond CONTACT_MARGIN: the first that does."""

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.links import StatedLink
@@ -35,8 +34,7 @@ from tol3d.gearing.model.links import (
 )
 from tol3d.gearing.model.networks import network_path
 from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)

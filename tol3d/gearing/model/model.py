@@ -7,7 +7,6 @@ from fractions import Fraction
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.contributor import Contributor, gear_contributor
@@ -16,10 +15,9 @@ from tol3d.gearing.model.links import Drive
 from tol3d.gearing.model.measure import Backlash, Measure, TransmissionError
 from tol3d.gearing.model.shafts import Arm, Mesh, Seat, Shaft, Train
 from tol3d.gears import Gear
+from tol3d.numerics.arrays import Array
 from tol3d.system import contributor as system_contributor
 from tol3d.system.positions import Positions
-
-Array = NDArray[np.float64]
 
 DRIVER_POSITION = "driver position"
 MOST_PERIODS = Fraction(2**30)  # of 52 bits of a draw 22 are left to say where in one of them a mesh stands

@@ -5,14 +5,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.gearing.model import Measure, Model
 from tol3d.gearing.model.contributor import Contributor
+from tol3d.numerics.arrays import Array
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 DEAR: Final = 4
 """Contacts of a link from which it is worth the while to look for trials that it sees alike."""

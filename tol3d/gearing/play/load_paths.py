@@ -13,8 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 FREE: Final = 1e-9  # rad; load paths that overlap by rounding errors do not bind each other
 

@@ -14,11 +14,10 @@ from tol3d.gearing.model import Backlash, LostMotion, Measure, Mesh, Model, Read
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
 from tol3d.gearing.play.linked import LinkLaw, link_trials
 from tol3d.gearing.play.load_paths import FREE, LinearForm, Variable, free_form, value
+from tol3d.numerics.arrays import Array
 from tol3d.system.breakdown import Breakdown, SumTerm
 from tol3d.system.trials import Trials
 from tol3d.units import ARCMIN
-
-Array = NDArray[np.float64]
 
 
 def clocking(model: Model, mesh: Mesh, deviations: Array) -> Array:

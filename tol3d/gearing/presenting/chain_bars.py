@@ -17,7 +17,6 @@ from tol3d.gearing.presenting.chain_grid import (
     SMALL,
     TEXT,
     WIDTH,
-    Array,
     ChainRow,
     plain_part,
     published_colours,
@@ -25,6 +24,7 @@ from tol3d.gearing.presenting.chain_grid import (
 from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distributions_of, leading_sums, share_text
 from tol3d.gearing.summary.types import TrainSummary
+from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import NOTHING, short_text, tip_mm, value_text

@@ -8,20 +8,19 @@ from importlib import import_module
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
 from tol3d.gearing.meshing.mesh import MeshSeat
 from tol3d.gearing.presenting.whole_trains import WholeTrain, gear_body, whole_trains
 from tol3d.gearing.shown.display import SeatedBuild, Side, seated_mesh, seats_turned, shows_shafts
 from tol3d.gearing.shown.placed import SeatedMesh
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import World
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around, corner
 from tol3d.report.presenter import Panel, View
 from tol3d.scene.name import LONGEST_NAME
 from tol3d.scene.nearest import hint
 
-Array = NDArray[np.float64]
 Seats = Mapping[str, MeshSeat]
 
 TURN, SWING = "turn", "swing"

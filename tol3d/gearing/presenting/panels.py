@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
@@ -15,6 +14,7 @@ from tol3d.gearing.presenting.whole_trains import WholeTrain
 from tol3d.gearing.shown.display import SeatedBuild
 from tol3d.gearing.shown.placed import SeatedMesh
 from tol3d.gears import BevelPair
+from tol3d.numerics.arrays import Array
 from tol3d.report.drawn_solids import (
     CONTACT_COLOUR,
     FRONT,
@@ -34,8 +34,6 @@ from tol3d.report.label import legible
 from tol3d.report.number import measured_text
 from tol3d.report.presenter import Panel
 from tol3d.report.whole import draw_whole
-
-Array = NDArray[np.float64]
 
 INSIDE: Final = 0.02  # of the common face; a cut at its very end would miss a tilted gear
 

@@ -4,9 +4,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import singledispatch
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, Train, TransmissionError
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
@@ -26,14 +23,13 @@ from tol3d.gears import (
     SpurGear,
     SpurPair,
 )
+from tol3d.numerics.arrays import Array
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title, titled
 from tol3d.report.system_check import law_name, system_blocks
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw
 from tol3d.units import angle_text
-
-Array = NDArray[np.float64]
 
 
 def train_blocks(model: Model) -> list[PageItem]:

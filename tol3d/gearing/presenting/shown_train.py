@@ -11,13 +11,13 @@ from importlib import import_module
 from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.model import Model
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.presenting.gear_display import TURN, GearDisplay, whole_train
 from tol3d.gearing.shown.display import SeatedBuild
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
 from tol3d.report.page import PageItem
@@ -25,8 +25,6 @@ from tol3d.report.presenter import View, presenter_at
 from tol3d.runs.summary.run import RunSummary
 from tol3d.system.contributor import Contributor
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 TITLE_SIZE: Final = 13
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.meshing.seats import driver_angles
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
@@ -18,11 +17,10 @@ from tol3d.gearing.stack_up import (
     per_normal_backlash,
 )
 from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
+from tol3d.numerics.arrays import Array
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,11 @@ from tol3d.gearing.model import Backlash, Measure, Mesh, Model, TransmissionErro
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play.linked import Remembered, as_built
 from tol3d.gearing.play.play import Play, Read, SeatKey, seat_key, seat_keys, staged_measures
+from tol3d.numerics.arrays import Array
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers, Codes, joined_answers
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Details = dict[str, NDArray[np.generic]]
 
 BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.meshing.seats import driver_angles
 from tol3d.gearing.model import LostMotion, Measure, Model, TransmissionError
@@ -13,9 +12,8 @@ from tol3d.gearing.stack_up import per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Neglect
 from tol3d.gears import GearPair
+from tol3d.numerics.arrays import Array
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def neglected(model: Model, measure: Measure, trials: Trials) -> Mapping[str, Array]:

@@ -16,13 +16,13 @@ from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.numerics.arrays import Array
 from tol3d.system.itself import Itself
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import mean_deviations, stated
 from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[Any]]
 
 MOST_KEPT: Final = 200_000

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError, RunError
 from tol3d.gearing.engines import NO_CONTACT
@@ -16,13 +15,13 @@ from tol3d.gearing.model import Measure, Mesh, Model
 from tol3d.gearing.play.play import SeatKey, seat_keys
 from tol3d.gearing.shown.placed import PlacedGear, SeatedMesh, allowed_factor
 from tol3d.gearing.system import gears_in
+from tol3d.numerics.arrays import Array
 from tol3d.report.presenter import Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
 from tol3d.system.stated import magnified, mean_build, nominal_build
 
-Array = NDArray[np.float64]
 Side = Literal["drive", "back"]
 """Flanks on which meshes rest: those that the first shaft pushes with, or the others."""
 

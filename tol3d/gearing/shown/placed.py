@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines import OK
 from tol3d.gearing.model import Mesh
 from tol3d.gears import Gear
+from tol3d.numerics.arrays import Array
 from tol3d.report.number import measured_text
 from tol3d.solids import DisplayMesh, display_mesh
-
-Array = NDArray[np.float64]
 
 DISPLAY_DEFLECTION: Final = 0.5e-3  # mm; a hundredth of a common backlash, and 40 000 triangles a gear at most
 CONE_DEFLECTION: Final = 5e-3  # mm; of a bevel gear, whose faces OCC meshes one by one and much finer than asked

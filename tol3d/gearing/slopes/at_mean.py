@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.model import Contributor, Measure, Model, Planar
 from tol3d.gearing.model.contributor import Unit
 from tol3d.gearing.slopes.sensitivity import sensitivities
+from tol3d.numerics.arrays import Array
 from tol3d.system.stated import mean_deviations, stated
-
-Array = NDArray[np.float64]
 
 # mm, rad, K; separates the two sides of a kink (1 um of a gap by the end of a face) and bends nothing (1e-5 of a slope)
 STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 0.1}

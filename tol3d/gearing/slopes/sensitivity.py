@@ -27,10 +27,9 @@ from tol3d.gearing.play.play import seat_key
 from tol3d.gears import Flank
 from tol3d.gears.flank import opposite
 from tol3d.numerics import frames
+from tol3d.numerics.arrays import Array
 from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:

@@ -4,12 +4,12 @@ import math
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.model import Backlash, Kind, LostMotion, Mesh, Model, Reading
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Bound, Neglect, Role, Term
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
+from tol3d.numerics.arrays import Array
 
 
 class SpurStack(Stack[SpurPair | InternalPair]):
@@ -117,9 +117,6 @@ class BevelStack(Stack[BevelPair]):
     def _aside_by_shifts(self) -> Terms:
         """What shifts take from one flank side and give to the other."""
         return (*self.sideways, *self._left_out("aside_by_turns"))
-
-
-Array = NDArray[np.float64]
 
 
 def stack_of(model: Model, mesh: Mesh, reading: Reading) -> Stack[GearPair]:

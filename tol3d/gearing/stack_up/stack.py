@@ -15,8 +15,7 @@ from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, Pair
 from tol3d.gearing.stack_up.term import Neglect, Role
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, distinct, tooth_pairs
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class Stack(NominalMesh[Pair]):

@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Role = Literal["driver", "driven"]
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.effects import (
     AxesOffset,
@@ -26,6 +25,7 @@ from tol3d.gearing.model import Contributor, Effect
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, as_counted
 from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
+from tol3d.numerics.arrays import Array
 
 E = TypeVar("E", bound=Effect)
 P = TypeVar("P", bound=GearPair)
@@ -159,9 +159,6 @@ def _along_direction(
 def _sense(role: Role) -> float:
     """Sign with which a shift of a gear's apex along the pitch line counts: the driver's less the driven gear's."""
     return 1.0 if role == "driver" else -1.0
-
-
-Array = NDArray[np.float64]
 
 
 @contributes(AxisTilt, SpurPair)

@@ -13,8 +13,7 @@ from tol3d.gearing.builds.displacements import Displacement, FlankOffsets, Growt
 from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, write_builds
 from tol3d.gearing.model import Model
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

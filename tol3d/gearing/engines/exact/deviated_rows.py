@@ -9,9 +9,9 @@ from tol3d.gearing.engines.exact.deviated import FlankOffsets
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import build_of, gap_row, looks_of, read_row
 from tol3d.gearing.engines.exact.seating import MeshBuild
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 

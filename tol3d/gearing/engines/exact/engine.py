@@ -18,8 +18,8 @@ from tol3d.gearing.engines.status import OUT_OF_RANGE
 from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
 from tol3d.gearing.model.flank_margin import margin_of, standing_out
 from tol3d.gears import Flank
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 DEPTH = 1.0  # mm

@@ -14,9 +14,9 @@ from tol3d.gearing.engines.exact.reach import within_reach
 from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
 from tol3d.gearing.engines.exact.seating import Look, MeshBuild, Side, closed, seen, standing
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 

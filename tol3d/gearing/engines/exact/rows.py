@@ -24,10 +24,10 @@ from tol3d.gearing.engines.exact.seating import (
     standing,
 )
 from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 from tol3d.numerics.loops import fill
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 FREE = 1e-6  # mm; a play above minus this is called free

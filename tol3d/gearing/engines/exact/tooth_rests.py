@@ -32,9 +32,9 @@ from tol3d.gearing.engines.exact.seating import (
 )
 from tol3d.gearing.engines.exact.tooth_contact import Sight, Touch, edge_gap, height, most_out, sight, touch, wrapped
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 ECCENTRIC = 3e-5  # mm; as seating.ASIDE, by which a mate may move aside on the way to contact
