@@ -118,10 +118,6 @@ class CylindricalGear(ToothedGear):
         """Tooth thickness as an arc [mm] on the circle of that radius (radial flank below the base)."""
         return 2 * radius * (self.base_half_angle - self.iso_sign * involute(self.pressure_angle_at(radius)))
 
-    def space_at(self, radius: float) -> float:
-        """Space width as an arc [mm] on the circle of that radius."""
-        return radius * self.angular_pitch - self.thickness_at(radius)
-
     @property
     def tip_thickness(self) -> float:
         """s_a, arc at the tip circle [mm]."""

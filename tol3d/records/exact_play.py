@@ -29,11 +29,9 @@ class Unit(Protocol):
     @property
     def pair(self) -> RigPair:
         """Its nominal numbers."""
-        ...
 
     def driven_angle(self, phi1: Array, side: Side) -> Array:
         """phi2 [rad] at which the flank of that side touches, for phi1 [rad] of any shape."""
-        ...
 
 
 @dataclass(frozen=True)

@@ -70,14 +70,6 @@ def _is_external(mesh: Mesh) -> bool:
     return mesh.pair.arm_spread == 0.0 and mesh.driven_flank == mesh.working_flank
 
 
-def specimen_of_scene(model: Model, mesh: Mesh) -> Specimen:
-    """The pair with every contributor at its mean; random directions have none, and no eccentricity is left of them.
-
-    Where shafts lie in the bores of a housing, these are nominal.
-    """
-    return specimen_of_build(model, mesh, mean_row(model))
-
-
 def specimen_of_build(model: Model, mesh: Mesh, deviations: Array) -> Specimen:
     """The pair of one build, its axes as far apart as there.
 

@@ -193,8 +193,3 @@ class FlankDeviations:
     def __getitem__(self, rows: Any) -> "FlankDeviations":
         """Those of some rows."""
         return FlankDeviations(self.values, self.row[rows])
-
-    @property
-    def of_rows(self) -> Array:
-        """Coefficients of each row, (rows, coefficients)."""
-        return self.values[self.row]

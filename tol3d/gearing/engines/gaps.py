@@ -76,16 +76,13 @@ class Engine(Protocol):
 
     def depth(self, mesh: Mesh) -> float:
         """How deep an overlap [mm] of a mesh's flanks the engine can still measure."""
-        ...
 
     def last_step(self, mesh: Mesh) -> float:
         """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as known."""
-        ...
 
     @property
     def chord_error(self) -> float:
         """Largest distance [mm] between its flanks and the mathematical ones."""
-        ...
 
     def gaps(
         self,
@@ -109,7 +106,6 @@ class Engine(Protocol):
             wanted: (trials, pairs); the others stay nan.
             section: of the driver's flank take the section in the middle of the common face, not the whole.
         """
-        ...
 
 
 @dataclass(frozen=True)
@@ -142,7 +138,6 @@ class ReadingEngine(Engine, Protocol):
 
     def build(self, deviations: Array) -> Build:
         """Builds of the trials with these deviations (trials, components), as build.build makes them."""
-        ...
 
     def read(
         self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()
@@ -155,7 +150,6 @@ class ReadingEngine(Engine, Protocol):
             driver_angle: (rows,) [rad].
             turning: names of the gears whose free turn is wanted.
         """
-        ...
 
     def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
         """Where the driven gear rests on the drive and on the back side, by one contact each; gap and turns are nan.
@@ -165,7 +159,6 @@ class ReadingEngine(Engine, Protocol):
             mesh, reading: which gears, and where on them; its flank does not matter.
             driver_angle: (positions,) [rad], the same of every trial; contacts are those of the first.
         """
-        ...
 
 
 EXACT = "tol3d.gearing.engines.exact"

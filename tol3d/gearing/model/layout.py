@@ -107,10 +107,6 @@ class Layout:
         """How the driven gear of a mesh lies in it."""
         return self.closed.get(mesh, PLACES)
 
-    def drive_of(self, mesh: str) -> Drive:
-        """The tree that a mesh belongs to."""
-        return next(drive for drive in self.drives if mesh in drive.moves)
-
     def behind(self, shaft: str) -> tuple[Link, ...]:
         """The links from a shaft back to its root; the first of parallel load paths."""
         return back_to_root(self.driving, shaft)

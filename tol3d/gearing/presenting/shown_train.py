@@ -50,11 +50,9 @@ class ShowsLinks(Protocol):
 
     def link_blocks(self, link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
         """What a link of a scene is, and what contributors act on it, before any trial."""
-        ...
 
     def link_sections(self, summary: RunSummary) -> Sequence[PageItem]:
         """Further tables of a run of a train; none where its summary has nothing of such links."""
-        ...
 
     def shown_link(self, link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
         """A link in the first of some trials.
@@ -64,7 +62,6 @@ class ShowsLinks(Protocol):
             seen: what it deviates by, and where its driver stands.
             world_from_driver: pose of the driver's shaft at 0, (4, 4).
         """
-        ...
 
 
 def shows(link: StatedLink) -> ShowsLinks | None:

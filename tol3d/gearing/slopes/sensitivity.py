@@ -20,7 +20,7 @@ from tol3d.gearing.engines import OK, Engine, Gaps
 from tol3d.gearing.meshing.backlash import moved_rates
 from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
 from tol3d.gearing.meshing.seats import Seats, geometric_values, play_of, seated
-from tol3d.gearing.model import Backlash, Contributor, Measure, Model, Planar, TransmissionError
+from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.play.linked import link_trials
 from tol3d.gearing.play.load_paths import Variable
 from tol3d.gearing.play.play import seat_key
@@ -277,39 +277,3 @@ def peak_weights(values: Array, *, closed: bool) -> Array:
     weights[~bent] = 0.0
     weights[rows[~bent], peak[~bent]] = 1.0
     return weights
-
-
-# by contributor -----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class ContributorSensitivity:
-    """Derivatives of a measure by one contributor.
-
-    Args:
-        name: the contributor's.
-        value: (trials,), or (trials, positions) for a curve [mm or rad per mm, rad, K]; of a deviation with a
-            direction, or of many components, per length in its worst direction, never negative.
-        direction: that direction, of the largest increase [rad], the same shape; None for a deviation without.
-    """
-
-    name: str
-    value: Array
-    direction: Array | None = None
-
-    def along(self, angle: float) -> Array:
-        """Derivative by a length in a stated direction [rad]."""
-        return self.value if self.direction is None else self.value * np.cos(self.direction - angle)
-
-
-def by_contributor(model: Model, rates: Array) -> tuple[ContributorSensitivity, ...]:
-    """Derivatives (..., components) as `sensitivities` gives them, one entry a contributor of the model."""
-    return tuple(_grouped(c, rates[..., model.component_slices[c.name]]) for c in model.contributors)
-
-
-def _grouped(contributor: Contributor, own: Array) -> ContributorSensitivity:
-    if not isinstance(contributor.draw, Planar):
-        size = own[..., 0] if own.shape[-1] == 1 else np.sqrt((own * own).sum(axis=-1))
-        return ContributorSensitivity(contributor.name, size)
-    x, y = own[..., 0], own[..., 1]
-    return ContributorSensitivity(contributor.name, np.hypot(x, y), np.arctan2(y, x))
