@@ -16,13 +16,11 @@ from tol3d import load_scene, run_scene
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
 from tol3d.records import csv_file
-from tol3d.records.exact_play import Side, transmission_error
 from tol3d.records.findings import Settings
 from tol3d.records.from_scene import mean_row, mesh_of, scene_text, specimen_of_build
 from tol3d.records.identify import identify
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
-from tol3d.records.rig import Rig, measured
-from tol3d.records.rig_files import write_readings
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, transmission_error
+from tol3d.records.rig import Rig, measured, write_readings
 from tol3d.records.summary import IdentifiedSummary
 
 SIDES: tuple[Side, ...] = ("drive", "back")

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.gears.bevel_gear import BevelGear
+from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.flank import Flank
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
-from tol3d.gears.pitch_angles import pitch_angles
 from tol3d.numerics.arrays import Array
 
 SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense

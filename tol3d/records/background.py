@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from tol3d.numerics.arrays import Array
-from tol3d.records.exact_play import Side
-from tol3d.records.pair import ARCSEC, TURN, RigPair
+from tol3d.records.pair import ARCSEC, TURN, RigPair, Side
 from tol3d.records.terms import Points, Terms, columns
 
 Kind = Literal["common", "opposite"]

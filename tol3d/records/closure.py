@@ -13,11 +13,9 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.records.alignment import Aligned
-from tol3d.records.bins import Bins
-from tol3d.records.ends import WINDOW, Ends
-from tol3d.records.exact_play import Side, driven_angle
+from tol3d.records.bins import WINDOW, Bins, Ends
 from tol3d.records.fit import Fit
-from tol3d.records.pair import ARCSEC, Specimen
+from tol3d.records.pair import ARCSEC, Side, Specimen, driven_angle
 from tol3d.records.prediction import Figure, quantile_of
 from tol3d.records.terms import Points, columns
 

@@ -11,9 +11,8 @@ import numpy as np
 
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.records.bins import Bins, BinSums
+from tol3d.records.bins import Bins, BinSums, Ends, EndSums
 from tol3d.records.csv_file import Block, blocks_of, line_of
-from tol3d.records.ends import Ends, EndSums
 from tol3d.records.pair import TURN, RigPair
 
 Progress = Callable[[int], None]

@@ -8,8 +8,8 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.records.bins import bins_a_turn
-from tol3d.records.exact_play import Side
 from tol3d.records.fit import Fit, Measured
+from tol3d.records.pair import Side
 from tol3d.records.terms import columns
 
 

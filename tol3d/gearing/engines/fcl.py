@@ -36,7 +36,10 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class DeviatedStrips:
-    """The strips of a model's gears.
+    """The strips of a model's gears, moved along their normals by what each flank deviates.
+
+    Strips are cut anew for each flank that deviates in its own way, trial by trial; both ends of a generator are moved,
+    so that a flank that is turned about its profile stays ruled.
 
     Args:
         model: gears and meshes.

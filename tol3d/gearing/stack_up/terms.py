@@ -27,9 +27,6 @@ from tol3d.gearing.stack_up.term import Role, Term
 from tol3d.gears import BevelPair, GearPair, InternalPair, SpurPair
 from tol3d.numerics.arrays import Array
 
-E = TypeVar("E", bound=Effect)
-P = TypeVar("P", bound=GearPair)
-
 
 @dataclass(frozen=True)
 class Contribution:
@@ -59,18 +56,19 @@ class Contribution:
 
 NOTHING = Contribution()
 
-_KNOWN: dict[tuple[type[Effect], type | None], Callable[[Any, Any, Contributor], Contribution]] = {}
+Law = Callable[[Any, Any, Contributor], Contribution]
+F = TypeVar("F", bound=Law)
+
+_KNOWN: dict[tuple[type[Effect], type | None], Law] = {}
 
 
-def contributes(
-    effect: type[E], pair: type[P] | None = None
-) -> Callable[[Callable[[E, NominalMesh[P], Contributor], Contribution]], object]:
+def contributes(effect: type[Effect], pair: type[GearPair] | None = None) -> Callable[[F], F]:
     """Register what an effect does in meshes of one kind of pair, or in those of every kind that has none of its own.
 
     The registered function is called with the effect, the mesh and the contributor.
     """
 
-    def register(function: Callable[[E, NominalMesh[P], Contributor], Contribution]) -> object:
+    def register(function: F) -> F:
         _KNOWN[effect, pair] = function
         return function
 
@@ -118,6 +116,7 @@ def _aside(mesh: NominalMesh[GearPair], contributor: Contributor) -> Term:
 
 @contributes(AxisOffset)
 def _(effect: AxisOffset, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
+    """Across the axis 2 sin(alpha_w) cos(delta) away from the mesh, along it 2 sin(alpha_w) sin(delta) off the apex."""
     if (role := mesh.role(effect.part, effect.mesh)) is None:
         return NOTHING
     if len(contributor.draw.components) == 2:
@@ -161,16 +160,6 @@ def _sense(role: Role) -> float:
     return 1.0 if role == "driver" else -1.0
 
 
-@contributes(AxisTilt, SpurPair)
-def _(effect: AxisTilt, mesh: NominalMesh[SpurPair], contributor: Contributor) -> Contribution:
-    return _leaning(effect, mesh, contributor)
-
-
-@contributes(AxisTilt, InternalPair)
-def _(effect: AxisTilt, mesh: NominalMesh[InternalPair], contributor: Contributor) -> Contribution:
-    return _leaning(effect, mesh, contributor)
-
-
 @contributes(AxisTilt, BevelPair)
 def _(effect: AxisTilt, mesh: NominalMesh[BevelPair], contributor: Contributor) -> Contribution:
     """Shaft angle: 2 R_m sin(alpha) about the apex.
@@ -198,6 +187,8 @@ def _(effect: AxisTilt, mesh: NominalMesh[BevelPair], contributor: Contributor) 
     )
 
 
+@contributes(AxisTilt, SpurPair)
+@contributes(AxisTilt, InternalPair)
 def _leaning(effect: AxisTilt, mesh: NominalMesh[SpurPair | InternalPair], contributor: Contributor) -> Contribution:
     """The tighter end of the face loses b/2 times the tilt on each flank side.
 
@@ -237,35 +228,20 @@ def _turned(contributor: Contributor, turns: tuple[Array, Array], *, per_y: floa
 
 
 @contributes(FlankDeviation)
-def _(effect: FlankDeviation, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
-    return NOTHING
-
-
 @contributes(LinkDeviation)
-def _(effect: LinkDeviation, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
-    return NOTHING
-
-
 @contributes(Clocking)
-def _(effect: Clocking, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
-    return NOTHING
-
-
 @contributes(Temperature)
-def _(effect: Temperature, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
+def _nothing(effect: Effect, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
+    """No term of a sum.
+
+    Of single flanks the pair that touches first decides, see tooth_pairs.py; no mesh sees links, nor how gears sit on
+    their shafts; a bevel pair of one material only scales as it grows.
+    """
     return NOTHING
 
 
 @contributes(Temperature, SpurPair)
-def _(effect: Temperature, mesh: NominalMesh[SpurPair], contributor: Contributor) -> Contribution:
-    return _growing(effect, mesh, contributor)
-
-
 @contributes(Temperature, InternalPair)
-def _(effect: Temperature, mesh: NominalMesh[InternalPair], contributor: Contributor) -> Contribution:
-    return _growing(effect, mesh, contributor)
-
-
 def _growing(effect: Temperature, mesh: NominalMesh[SpurPair | InternalPair], contributor: Contributor) -> Contribution:
     """A growing housing opens by 2 a sin(alpha_w), a growing gear closes by 2 r_w sin(alpha_w), per strain.
 
@@ -290,6 +266,7 @@ def _growing(effect: Temperature, mesh: NominalMesh[SpurPair | InternalPair], co
 
 @contributes(ToothThickness)
 def _(effect: ToothThickness, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
+    """Both flanks leave their tooth; an arc s at the reference circle takes s cos(alpha)."""
     if (role := mesh.role(effect.part)) is None:
         return NOTHING
     arm = mesh.gear(role).section_arm
