@@ -16,10 +16,7 @@ from tol3d.records.pair import ARCSEC, TURN, RigPair
 from tol3d.records.reading import Pass
 
 LARGEST_CONDITION: Final = 10.0  # of the columns once per turn of either gear and the constant; 19 at one turn of 27/48
-OTHER_UNITS: Final = (
-    ("radians", "degrees", "deg", math.pi / 180),
-    ("degrees", "radians", "rad", 180 / math.pi),
-)
+OTHER_UNITS: Final = (("radians", "degrees", "deg", math.pi / 180), ("degrees", "radians", "rad", 180 / math.pi))
 """What angles may be read as, what they may be, its unit, and by what they would then have to be multiplied."""
 EXPLAINED: Final = 0.5  # of the scatter, by which another unit must fit better
 MOST_OF_A_TURN: Final = 0.8 * TURN

@@ -107,9 +107,7 @@ def _opened(header: Header) -> pc.CSVStreamingReader:
         ),
         parse_options=pc.ParseOptions(delimiter=header.delimiter),
         convert_options=pc.ConvertOptions(
-            column_types=columns,
-            include_columns=list(columns),
-            decimal_point="," if header.decimal_comma else ".",
+            column_types=columns, include_columns=list(columns), decimal_point="," if header.decimal_comma else "."
         ),
     )
 

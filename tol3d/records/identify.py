@@ -39,11 +39,7 @@ SAME_TORQUE: Final = 0.02  # of the largest torque; two levels nearer than that 
 
 
 def identify(
-    pair: RigPair,
-    drive: Sequence[Path],
-    back: Sequence[Path],
-    settings: Settings,
-    tell: Tell = lambda text: None,
+    pair: RigPair, drive: Sequence[Path], back: Sequence[Path], settings: Settings, tell: Tell = lambda text: None
 ) -> Identified:
     """Find eccentricities, play and the backlash over the long period.
 

@@ -68,10 +68,7 @@ class MeshMeasureSpec(FlankMeasureSpec):
     )
     take: Take = Field(default="value", description="value at one position; min, max, range or curve of several")
     positions: int = Field(
-        default=24,
-        ge=FEWEST_POSITIONS,
-        le=MOST_POSITIONS,
-        description="positions a turn, for turn and long_period",
+        default=24, ge=FEWEST_POSITIONS, le=MOST_POSITIONS, description="positions a turn, for turn and long_period"
     )
 
     @property

@@ -117,9 +117,7 @@ class BevelMeshSpec(GearMeshSpec):
 
     kind: Literal["bevel_mesh"]
     shaft_angle: Annotated[Quantity, Of("angle"), Positive()] = Field(
-        default=Quantity(90.0, "deg"),
-        description="between the axes",
-        json_schema_extra={"default": "90 deg"},
+        default=Quantity(90.0, "deg"), description="between the axes", json_schema_extra={"default": "90 deg"}
     )
 
 

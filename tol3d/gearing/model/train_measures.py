@@ -43,12 +43,7 @@ def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
 
 
 def lost_motion(
-    model: Model,
-    train: Train,
-    shaft: str,
-    quantity: TrainQuantity,
-    read: Reader,
-    tip: Tip | None = None,
+    model: Model, train: Train, shaft: str, quantity: TrainQuantity, read: Reader, tip: Tip | None = None
 ) -> LostMotion:
     """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
     path = model.layout.load_path(train.held, shaft)

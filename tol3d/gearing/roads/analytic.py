@@ -10,12 +10,7 @@ from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
 from tol3d.gearing.play.linked import Remembered, by_theory
 from tol3d.gearing.play.play import Play, SeatKey, seat_key, staged_measures
-from tol3d.gearing.stack_up import (
-    analytic_backlash,
-    analytic_transmission_error,
-    first_order,
-    per_normal_backlash,
-)
+from tol3d.gearing.stack_up import analytic_backlash, analytic_transmission_error, first_order, per_normal_backlash
 from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
 from tol3d.numerics.arrays import Array
 from tol3d.system import measure as system_measure

@@ -34,11 +34,7 @@ READING_WORDS: Final[Mapping[tuple[str, str], str]] = {
     ("face", "section"): "; contact over the face, gap in its middle",
     ("section", "section"): "; mean section",
 }
-TEETH_WORDS: Final[Mapping[str, str]] = {
-    "all": "",
-    "driver": ", one driver tooth",
-    "driven": ", one driven tooth",
-}
+TEETH_WORDS: Final[Mapping[str, str]] = {"all": "", "driver": ", one driver tooth", "driven": ", one driven tooth"}
 
 
 class Reading(Section):

@@ -24,14 +24,7 @@ from tol3d.units import ARCMIN, Quantity
 ENDS = ("low_3sigma", "mean", "high_3sigma")
 
 UNKNOWN = made(
-    Ends,
-    low_3sigma=None,
-    mean=None,
-    high_3sigma=None,
-    sigma=None,
-    sample_min=None,
-    sample_max=None,
-    share_percent=None,
+    Ends, low_3sigma=None, mean=None, high_3sigma=None, sigma=None, sample_min=None, sample_max=None, share_percent=None
 )
 ByLink = Mapping[str, Ends]
 

@@ -59,14 +59,7 @@ def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
 
 
 def line_of_action(
-    own: Any,
-    mate: Any,
-    pose: Any,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
+    own: Any, mate: Any, pose: Any, own_azimuth: float, mate_azimuth: float, sigma: float, offset: float, face: float
 ) -> Nearest:
     """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
     raise NotImplementedError

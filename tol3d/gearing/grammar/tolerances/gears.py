@@ -98,8 +98,7 @@ class RunOutSpec(GearToleranceSpec):
     kind: Literal["run_out"]
     of: Name = Field(description="the gear on the shaft, or the shaft with every gear on it")
     direction: RandomOrFixed = Field(
-        default="random",
-        description="phi, in the gear's frame (x through the middle of tooth 0), or in the shaft's",
+        default="random", description="phi, in the gear's frame (x through the middle of tooth 0), or in the shaft's"
     )
 
     def meaning(self, nominal: "Nominal") -> Meaning:
