@@ -6,32 +6,20 @@ The bodies here are never run: as a kernel is compiled for a kind of teeth, each
 import math
 from typing import Any
 
-from tol3d.gearing.engines.exact.numbers import Foot, Nearest
+from tol3d.gearing.engines.exact.numbers import Facing, Foot, Nearest
 from tol3d.numerics.compiled import variant
 
 TURN = 2.0 * math.pi
 PER_TURN = 1.0 / TURN
 
 
-def foot(
-    own: Any,
-    mate: Any,
-    pose: Any,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    profile: float,
-    face: float,
-) -> Foot:
+def foot(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Foot:
     """The foot on the mate's endless flank of a point of own flank; one variant a kind of gears.
 
     Args:
         own, mate: the gears' teeth.
         pose: mate from own.
-        own_azimuth, mate_azimuth: of the middle of the teeth [rad], their flanks' turns included.
-        sigma: side of the flanks, the same for both.
-        offset: of both flanks along their normals, together [mm].
+        facing: which flanks.
         profile, face: the point's parameters.
     """
     raise NotImplementedError
@@ -58,9 +46,7 @@ def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
     raise NotImplementedError
 
 
-def line_of_action(
-    own: Any, mate: Any, pose: Any, own_azimuth: float, mate_azimuth: float, sigma: float, offset: float, face: float
-) -> Nearest:
+def line_of_action(own: Any, mate: Any, pose: Any, facing: Facing, face: float) -> Nearest:
     """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
     raise NotImplementedError
 

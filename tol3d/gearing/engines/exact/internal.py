@@ -23,7 +23,7 @@ from tol3d.gearing.engines.exact.foot import (
     turn_to,
     widest,
 )
-from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.numerics.compiled import variant
 
 SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
@@ -92,17 +92,10 @@ def internal_radius(driver: InternalTooth, driven: InternalTooth, tangent: float
 
 @variant(foot, InternalTooth)
 def internal_foot(
-    own: InternalTooth,
-    mate: InternalTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    profile: float,
-    z: float,
+    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, profile: float, z: float
 ) -> Foot:
     """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
+    own_azimuth, mate_azimuth, sigma, offset = facing
     roll = own.sense * profile
     beta = sigma * (roll - own.half) + own_azimuth
     cos, sin = math.cos(beta), math.sin(beta)
@@ -157,20 +150,14 @@ def internal_turn(mate: InternalTooth, gap: float, offset: float, at: Foot) -> f
 
 @variant(line_of_action, InternalTooth)
 def internal_line_of_action(
-    own: InternalTooth,
-    mate: InternalTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
+    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """On parallel axes flanks touch on the line that touches both base circles, whose ends are T apart.
 
     From these the flanks stand r_b t away, t = alpha_w + half - sigma (azimuth off the line of centres): the gap is
     r_b t of the ring less that of the pinion and T, the same for every pair of one base pitch.
     """
+    own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     square, bases = pose.x * pose.x + pose.y * pose.y, -own.sense * own.base - mate.sense * mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:

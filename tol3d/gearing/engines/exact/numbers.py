@@ -25,6 +25,21 @@ class Pose(NamedTuple):
     z: float
 
 
+class Facing(NamedTuple):
+    """Two flanks that face each other.
+
+    Args:
+        own_azimuth, mate_azimuth: of the middle of the teeth [rad], their flanks' turns included.
+        sigma: side of the flanks, the same for both.
+        offset: of both flanks along their normals, together [mm].
+    """
+
+    own_azimuth: float
+    mate_azimuth: float
+    sigma: float
+    offset: float
+
+
 class Foot(NamedTuple):
     """A point of one gear's flank, and its foot on the endless flank of the mate.
 

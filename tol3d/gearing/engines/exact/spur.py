@@ -19,7 +19,7 @@ from tol3d.gearing.engines.exact.foot import (
     section,
     turn_to,
 )
-from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.numerics.compiled import variant
 
 SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
@@ -68,18 +68,9 @@ def spur_section(tooth: SpurTooth, share: float) -> SpurTooth:
 
 
 @variant(foot, SpurTooth)
-def spur_foot(
-    own: SpurTooth,
-    mate: SpurTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    roll: float,
-    z: float,
-) -> Foot:
+def spur_foot(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
     """See foot.foot: the point at a roll [rad] and a height [mm]."""
+    own_azimuth, mate_azimuth, sigma, offset = facing
     beta = sigma * (roll - own.half) + own_azimuth
     cos, sin = math.cos(beta), math.sin(beta)
     px = own.base * (cos + sigma * roll * sin)
@@ -131,21 +122,13 @@ def spur_turn(mate: SpurTooth, gap: float, offset: float, at: Foot) -> float:
 
 
 @variant(line_of_action, SpurTooth)
-def spur_line_of_action(
-    own: SpurTooth,
-    mate: SpurTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
-) -> Nearest:
+def spur_line_of_action(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
     """On parallel axes flanks touch where they cross the tangent of both base circles, T long.
 
     From its ends the flanks stand r_b t away, t = alpha_w + eta_b - sigma (azimuth off the line of centres): what is
     left of T is the gap, the same for every pair of one base pitch.
     """
+    own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:
