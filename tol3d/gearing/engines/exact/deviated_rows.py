@@ -8,31 +8,9 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.deviated import FlankOffsets
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rows import build_of, gap_row, looks_of, read_row
-from tol3d.gearing.engines.exact.seating import MeshBuild
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import part
 
 Integers = NDArray[np.int64]
-
-
-@part
-def with_flanks(build: MeshBuild, offsets: Array, places: Integers) -> MeshBuild:
-    """A build with the offsets of single flanks."""
-    return MeshBuild(
-        build.driver,
-        build.driven,
-        build.pair,
-        build.pose,
-        build.nominal,
-        build.driver_x,
-        build.driver_y,
-        build.driven_x,
-        build.driven_y,
-        build.driver_turn,
-        build.driven_turn,
-        build.offset,
-        FlankOffsets(offsets, places),
-    )
 
 
 def read_deviated_rows(
@@ -64,8 +42,8 @@ def read_deviated_rows(
     """
     gears, looks = (which[0], which[1]), looks_of(pair, which)
     for row in range(len(driver_angles)):
-        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        build = with_flanks(alike, offsets[builds[row]], places)
+        own = FlankOffsets(offsets[builds[row]], places)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         read_row(build, which, looks, shafts, flank_offset, scale, row, driver_angles[row], readings, teeth, status)
 
 
@@ -94,7 +72,7 @@ def gap_deviated_rows(
     """Gaps of the tooth pairs that are asked for; arguments as in rows.gap_rows and above."""
     gears = (which[0], which[1])
     for row in range(len(driver_angles)):
-        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        build = with_flanks(alike, offsets[builds[row]], places)
+        own = FlankOffsets(offsets[builds[row]], places)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         angles = (driver_angles[row], driven_angles[row])
         gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.deviated_rows import with_flanks
+from tol3d.gearing.engines.exact.deviated import DeviatedTooth, FlankOffsets
 from tol3d.gearing.engines.exact.foot import flank_of, section
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose, turned
 from tol3d.gearing.engines.exact.reach import within_reach
-from tol3d.gearing.engines.exact.rests import write_first
-from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, write_contact
 from tol3d.gearing.engines.exact.seating import (
     ALL_TEETH,
     Look,
@@ -154,7 +152,7 @@ def rest_row(
                 driven = at.driven
                 arm = abs(touching.ny * touching.x - touching.nx * touching.y)
                 if k == 0:
-                    write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
+                    write_contact(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
                     teeth[row, side] = touching.tooth
             rests[row, k, side] = driven
             turned_on[side] = driven - middle
@@ -186,6 +184,6 @@ def rest_deviated_rows(
     """Seat every build at every position on both sides; arguments as in rests.rest_rows and above."""
     gears = (which[0], which[1])
     for row in range(len(shafts)):
-        alike = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
-        build = with_flanks(alike, offsets[builds[row]], places)
+        own = FlankOffsets(offsets[builds[row]], places)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, own)
         rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)
