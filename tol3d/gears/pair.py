@@ -2,12 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
+from tol3d.gears.toothed_gear import ToothedGear
 from tol3d.numerics.arrays import Array
 
 Teeth = NDArray[np.int64]
@@ -191,6 +193,44 @@ class GearPair(Protocol):
 
         A gear leaves its mate on its own right flanks by a turn in the positive sense, on its left ones by one back.
         """
+
+
+SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in this sense
+
+
+@dataclass(frozen=True)
+class RollingPair:
+    """What pairs of any teeth share: one module and pressure angle, numbers of teeth, and which of them may touch."""
+
+    pinion: ToothedGear
+    wheel: ToothedGear
+
+    def _refuse_unlike(self) -> None:
+        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
+            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+                raise GeometryError(
+                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
+                )
+
+    @property
+    def ratio(self) -> float:
+        """z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
+        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """See GearPair."""
+        raise NotImplementedError
+
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[Teeth, NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank."""
+        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
 
 
 def candidate_teeth(
