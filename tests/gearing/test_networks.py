@@ -22,8 +22,8 @@ from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.meshing.seats import geometric_values, seated
 from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.model.measure import ParallelStage
+from tol3d.gearing.model.mesh_measures import reader_like
 from tol3d.gearing.model.networks import Network, network_path
-from tol3d.gearing.model.readings import reader_like
 from tol3d.gearing.model.train_measures import network_stage
 from tol3d.gearing.roads.analytic import analytic_play
 from tol3d.gearing.slopes.sensitivity import sensitivities

@@ -26,7 +26,7 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, model_from_scene
 from tol3d.gearing.model.nominal import Nominal
-from tol3d.gearing.slopes.at_mean import mean_slopes
+from tol3d.gearing.slopes.coefficients import mean_slopes
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import Term, closed_form, stack_of
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh

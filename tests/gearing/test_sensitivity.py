@@ -30,7 +30,7 @@ from tol3d.gearing.model import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.slopes.at_mean import mean_slopes
+from tol3d.gearing.slopes.coefficients import mean_slopes
 from tol3d.gearing.slopes.sensitivity import peak_weights, sensitivities, taken_rates
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank

@@ -21,7 +21,7 @@ from tol3d.errors import InputError
 from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.measure import AnyStage
-from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
+from tol3d.gearing.model.mesh_measures import reader_like, refuse_idle_teeth
 from tol3d.gearing.model.train_measures import lost_motion
 from tol3d.gearing.play.play import stages_of
 from tol3d.gearing.stack_up import closed_form

@@ -18,14 +18,12 @@ from tol3d.gearing.model.measure import gear_measure, gear_measures
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.roads.analytic import AnalyticRoad
-from tol3d.gearing.roads.geometric import GeometricRoad
+from tol3d.gearing.roads.geometric import FLANKS_OF_A_BACKLASH, FclRoad, GeometricRoad
 from tol3d.gearing.roads.interference import interferences
 from tol3d.gearing.roads.neglected import neglected, of_gaps
 from tol3d.gearing.roads.regressors import acting, position_column, regress, regressor_key
-from tol3d.gearing.roads.witness import FLANKS_OF_A_BACKLASH, FclRoad
 from tol3d.gearing.stack_up import closed_form, reference_form
-from tol3d.gearing.summary.descriptions import description
-from tol3d.gearing.summary.train_sections import train_sections
+from tol3d.gearing.summary.train_sections import description, train_sections
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.solids import FlankStrips, measuring_strips

@@ -18,10 +18,9 @@ from tol3d.gearing.model.measure import (
     Tip,
     TrainQuantity,
 )
-from tol3d.gearing.model.mesh_measures import measured
+from tol3d.gearing.model.mesh_measures import Reader, measured, reader_of
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.networks import Network, Walk
-from tol3d.gearing.model.readings import Reader, reader_of
 from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import gravity_torque, refuse_incomparable
 from tol3d.scene import Scene

@@ -9,7 +9,7 @@ import numpy as np
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.moves import GearMeshSpec, LinkSpec, TrainSpec, meshes_of
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
-from tol3d.gearing.grammar.tolerances.links import ReducerBacklashSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.layout import Layout, misfit
 from tol3d.gearing.model.shaft_trees import ratio_text

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows
+from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
 from tol3d.gearing.engines.exact.rows import gap_rows, read_rows
 from tol3d.gearing.engines.exact.spur import SpurTooth
-from tol3d.gearing.engines.exact.tooth_rests import rest_deviated_rows
 from tol3d.gears import BevelGear, BevelPair, GearPair, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.gears.pair import CONTACT_MARGIN
 from tol3d.numerics.compiled import Kernel
