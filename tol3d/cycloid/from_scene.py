@@ -24,7 +24,7 @@ from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.gears.cylindrical_pair import SAME_LENGTH
+from tol3d.gears.pair import SAME_LENGTH
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
