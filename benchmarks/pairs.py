@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gearing.model.model import GearPart

@@ -24,10 +24,9 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pc
 
-from tol3d.records.exact_play import Side
 from tol3d.records.findings import Settings
 from tol3d.records.identify import identified, identify
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
 from tol3d.records.reading import read_side, senses_of
 from tol3d.records.rig import Rig, measured
 

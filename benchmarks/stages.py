@@ -15,8 +15,8 @@ from rich.console import Console
 from rich.table import Table
 
 from tol3d import load_scene
-from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.measures import turning_gear
+from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.meshing.backlash import turning_gear
 from tol3d.gearing.model import Backlash
 from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import gear_model

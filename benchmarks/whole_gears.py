@@ -6,7 +6,7 @@ from dataclasses import replace
 import fcl
 import numpy as np
 
-from tol3d.gearing.build import Build, build
+from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import GearSystem
 from tol3d.solids import display_mesh

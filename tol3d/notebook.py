@@ -17,8 +17,8 @@ from tol3d.analyses.shim import Rounding
 from tol3d.analyses.shim_table import shim_report
 from tol3d.analyses.shimmed import Minimum
 from tol3d.errors import InputError, unwritable
-from tol3d.gearing.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.model import Model
+from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array
 from tol3d.report.page import Page

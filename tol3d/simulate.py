@@ -20,19 +20,19 @@ A study knows a system by `system/` alone: contributors, measures, statuses, roa
     model        parts, meshes, measures    gearing/model/              model_from_scene
     layout       shafts in trees, one world gearing/model/layout.py     Model.layout
     solids       CAD, strips of its flanks  parts/, solids/             measuring_strips  (for FCL, engine or witness)
-    build        deviations -> poses        gearing/build.py            build
+    build        deviations -> poses        gearing/builds/             build
     meshing      gaps -> seated meshes      gearing/meshing/            Meshing.seat      (engines/ give the gaps)
-    measures     seated meshes -> values    gearing/measures/           measure_backlash
+    measures     seated meshes -> values    gearing/meshing/backlash.py measure_backlash
     stack-up     the second road            gearing/stack_up/           analytic_backlash
-    play         backlashes, together       gearing/play.py             Play              (load_paths.py: in parallel)
+    play         backlashes, together       gearing/play/               Play              (load_paths.py: in parallel)
 
 The exact engine goes from builds to readings in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
-rows), to the same result as by its gaps. `rates.py` and `sensitivity.py` take the derivatives of measures through the
-contact.
+rows), to the same result as by its gaps. `builds/rates.py` and `slopes/` take the derivatives of measures
+through the contact.
 
 A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
 turn together (`layout.py`), so one position of the first shaft of a tree is that of all. A measure is a weighted sum of
-backlashes, one of a mesh, several of a train, or what that sum moves; both roads go through `play.py`, with what they
+backlashes, one of a mesh, several of a train, or what that sum moves; both roads go through `play/`, with what they
 read of single meshes. Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers.
 
 Assemblies are another. Theirs:

@@ -24,8 +24,8 @@ from tol3d.analyses.correction import CLOSED_FORM
 from tol3d.analyses.robots import STATES, left_of_the_mean
 from tol3d.analyses.spread import Spread
 from tol3d.errors import InputError
-from tol3d.gearing.engines.lazy import exact_engine
-from tol3d.gearing.grammar.tolerances.shim import ShimSpec
+from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.grammar.tolerances.gears import ShimSpec
 from tol3d.gears.flank import opposite
 from tol3d.report.number import tip_mm
 from tol3d.units import ARCMIN

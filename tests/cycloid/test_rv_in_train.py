@@ -20,8 +20,8 @@ from tol3d import Overrides, Run, SceneError, check_scene, compare_runs, load_sc
 from tol3d.cycloid.from_scene import rv_system
 from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.rv_link import RVLink
-from tol3d.gearing.linked import link_trials
 from tol3d.gearing.links import FreeTurn, LinkTrials
+from tol3d.gearing.play.linked import link_trials
 from tol3d.gearing.presenting import PRESENTER
 from tol3d.gearing.system import GearSystem, gear_system
 from tol3d.planetary.from_scene import planetary_system

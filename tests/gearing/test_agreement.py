@@ -16,11 +16,11 @@ from oracles.thickness import thickness_of
 from scipy.spatial.transform import Rotation
 
 from tol3d.distributions import Uniform
-from tol3d.gearing.build import Build, build
+from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.engines import INTERFERES, OK
 from tol3d.gearing.engines.gaps import Gaps
-from tol3d.gearing.measures import measure_backlash
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.backlash import measure_backlash
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import (
     Backlash,
     Contributor,

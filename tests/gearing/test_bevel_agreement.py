@@ -21,10 +21,10 @@ from oracles.plain import plain_bevel
 from scipy.spatial.transform import Rotation
 
 from tol3d import Scene
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import OK, Engine
-from tol3d.gearing.measures import measure_backlash
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.backlash import measure_backlash
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Backlash, GearPart, Mesh, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, pitch_angles
 from tol3d.gears.flank import Flank

@@ -14,12 +14,12 @@ from oracles.thickness import thickness_of
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.measures import measure_backlash, read_backlash
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.backlash import measure_backlash, read_backlash
+from tol3d.gearing.meshing.mesh import Meshing
+from tol3d.gearing.meshing.seats import geometric_values, seated
 from tol3d.gearing.model import Backlash, Measure, Model, Positions, Reading, model_from_scene
-from tol3d.gearing.seats import geometric_values, seated
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank
 from tol3d.system.positions import Take

@@ -14,8 +14,8 @@ from shipped import shipped
 from tol3d import load_scene
 from tol3d.distributions import Distribution
 from tol3d.gearing import effects
-from tol3d.gearing.build import build
-from tol3d.gearing.displacements import displacements
+from tol3d.gearing.builds.build import build
+from tol3d.gearing.builds.displacements import displacements
 from tol3d.gearing.effects import (
     AxesOffset,
     AxisOffset,

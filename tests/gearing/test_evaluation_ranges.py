@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from oracles.deviated_flanks import DeviatedGear, DeviatedPair, active_rolls, between
 
 from tol3d import load_scene
+from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gears import SpurGear

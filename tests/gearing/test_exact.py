@@ -31,13 +31,13 @@ from places import ROOT, TESTS
 from scipy.spatial.transform import Rotation
 
 from tol3d.errors import GeometryError
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, MeshReading
 from tol3d.gearing.engines import exact as engines_exact
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import Gaps
-from tol3d.gearing.measures import measure_backlash, read_backlash
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.backlash import measure_backlash, read_backlash
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Backlash, Reading
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
 from tol3d.gears.flank import Flank

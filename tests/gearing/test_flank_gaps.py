@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from engine_gaps import FlankGap, GearRows, flank_gap
 from oracles.random_builds import Builds, Spread, random_builds
 
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.exact.flank_gaps import FlankGap, GearRows, flank_gap
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, InternalPair, SpurGear, SpurPair
 
 ALPHA = math.radians(20)

@@ -17,10 +17,10 @@ from oracles.train import at_height, lean, seen_backward, turned
 from thinned import thinned
 
 import tol3d
-from tol3d.gearing.coefficients import coefficients_of
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
 from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.gearing.slopes.coefficients import coefficients_of
 from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem

@@ -24,14 +24,14 @@ from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, Run, SceneError, load_scene, replay, run_scene
 from tol3d.execution.pools import Execution
-from tol3d.gearing.display import seated_build
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.links import Reducer
 from tol3d.gearing.model import model_from_scene
 from tol3d.gearing.model.layout import layout_of
 from tol3d.gearing.model.links import Link, freed_turn, load_path_between, turns_of
 from tol3d.gearing.presenting.whole_trains import whole_trains
-from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.shown.display import seated_build
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.study.versions import installed_versions
 from tol3d.system.trials import Trials
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tol3d import Overrides, run_scene
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.fcl import FclEngine
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Model, Reading
 from tol3d.gearing.stack_up import stack_of
 

@@ -18,15 +18,15 @@ from places import SCENES
 from scipy.optimize import linprog
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.meshing.seats import geometric_values, seated
 from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.model.measure import ParallelStage
-from tol3d.gearing.model.measures.lost_motion import network_stage
+from tol3d.gearing.model.mesh_measures import reader_like
 from tol3d.gearing.model.networks import Network, network_path
-from tol3d.gearing.model.readings import reader_like
+from tol3d.gearing.model.train_measures import network_stage
 from tol3d.gearing.roads.analytic import analytic_play
-from tol3d.gearing.seats import geometric_values, seated
-from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]

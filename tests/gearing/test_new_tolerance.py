@@ -15,20 +15,19 @@ import numpy as np
 import pytest
 
 from tol3d import Overrides, Run, Scene, load_scene, run_scene
-from tol3d.gearing.build import build
-from tol3d.gearing.displacements import Displacement, displacements
-from tol3d.gearing.displacements.slots import FLANK_OFFSET
+from tol3d.gearing.builds.build import build
+from tol3d.gearing.builds.displacements import Displacement, displacements
+from tol3d.gearing.builds.rates import build_rates
+from tol3d.gearing.builds.slots import FLANK_OFFSET
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
-from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading, model_from_scene
 from tol3d.gearing.model.nominal import Nominal
-from tol3d.gearing.rates import build_rates
-from tol3d.gearing.sensitivity import sensitivities
-from tol3d.gearing.slopes import mean_slopes
+from tol3d.gearing.slopes.coefficients import mean_slopes
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import Term, closed_form, stack_of
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh
 from tol3d.gearing.stack_up.terms import NOTHING, Contribution, contributes
@@ -213,7 +212,7 @@ def test_an_effect_that_a_road_does_not_know_is_named(tmp_path: Path) -> None:
     model = model_from_scene(coated(tmp_path))
     first, *others = model.contributors
     model = replace(model, contributors=(replace(first, effect=Forgotten()), *others))
-    with pytest.raises(TypeError, match=r"displacements/ has no file for the effect Forgotten"):
+    with pytest.raises(TypeError, match=r"displacements.py has no function for the effect Forgotten"):
         build(model, np.zeros((1, model.component_count)))
-    with pytest.raises(TypeError, match=r"stack_up/terms/ has no file for the effect Forgotten"):
+    with pytest.raises(TypeError, match=r"stack_up/terms.py has no function for the effect Forgotten"):
         stack_of(model, model.meshes[0], Reading())

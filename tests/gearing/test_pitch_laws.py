@@ -7,8 +7,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import kstest
 
-from tol3d.gearing.normal_pitch_draw import NormalPitchDraw
-from tol3d.gearing.pitch_draw import Pattern, PitchDraw, PitchLimits, RandomWalk, RunOutAndRandom
+from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
+from tol3d.gearing.draws.pitch_draw import Pattern, PitchDraw, PitchLimits, RandomWalk, RunOutAndRandom
 
 Array = NDArray[np.float64]
 

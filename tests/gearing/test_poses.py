@@ -10,7 +10,7 @@ from oracles import poses
 from scipy.spatial.transform import Rotation
 
 from tol3d.distributions import Uniform
-from tol3d.gearing.build import Build, build
+from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.model import AxisOffset, AxisTilt, Contributor, Effect, Model, Planar, Scalar, TurningOffset
 from tol3d.numerics import frames
 

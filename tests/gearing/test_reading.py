@@ -21,7 +21,7 @@ from tol3d.analyses.shim import ShimQuestion, shim_plan
 from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.engines.fcl import FclEngine
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Backlash, Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT, SpurPair, one_tooth_acts, one_tooth_share
 from tol3d.gears.one_tooth import Owner

@@ -17,9 +17,9 @@ from oracles.involute_gear import InvoluteGear
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.gearing.build import Build, build
+from tol3d.gearing.builds.build import Build, build
 from tol3d.gearing.engines import OK
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Model, Reading, model_from_scene
 from tol3d.gears import LEFT, RIGHT
 from tol3d.gears.flank import Flank

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OUT_OF_RANGE
 from tol3d.gearing.engines.fcl import FclEngine
-from tol3d.gearing.meshing import Meshing
+from tol3d.gearing.meshing.mesh import Meshing
 from tol3d.gearing.model import Reading
-from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import stack_of
 from tol3d.gearing.system import strips_of
 from tol3d.system.trials import Trials

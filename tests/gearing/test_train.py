@@ -20,9 +20,9 @@ from oracles.train import OnShaft, at_height, lean, seen_backward, turned
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.engines import Engine
-from tol3d.gearing.engines.lazy import exact_engine, fcl_engine
+from tol3d.gearing.engines.gaps import exact_engine, fcl_engine
 from tol3d.gearing.model import LostMotion, Model, Reading, model_from_scene
 from tol3d.gearing.system import strips_of
 from tol3d.gears.flank import Flank

@@ -16,14 +16,13 @@ from oracles.train import robot_lost_motion, table_lost_motion
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.gearing.breakdowns import breakdowns_of
-from tol3d.gearing.build import build
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.builds.build import build
+from tol3d.gearing.engines.gaps import STATUSES, exact_engine
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
-from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.play.play import breakdowns_of
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import closed_form, stack_of
-from tol3d.gearing.statuses import STATUSES
-from tol3d.gearing.train_sections import train_sections
+from tol3d.gearing.summary.train_sections import train_sections
 from tol3d.study.breakdowns import merged_terms, pooled_terms
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.trials import Trials

@@ -18,7 +18,7 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest
 
 from tol3d import load_scene
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.model.shafts import Carried
 from tol3d.system.stated import nominal_build

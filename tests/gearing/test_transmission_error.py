@@ -26,9 +26,9 @@ from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, Engine
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionError, model_from_scene
-from tol3d.gearing.model.readings import default_reading
-from tol3d.gearing.neglected import neglected
-from tol3d.gearing.sensitivity import sensitivities
+from tol3d.gearing.model.mesh_measures import default_reading
+from tol3d.gearing.roads.neglected import neglected
+from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
 from tol3d.system.positions import Positions

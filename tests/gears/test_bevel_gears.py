@@ -16,6 +16,7 @@ from oracles.bevel_brute_force import BevelMesh, nominal_shafts
 from oracles.brute_force import zoomed_minimum
 from oracles.plain import plain_bevel
 from oracles.poses import pose
+from oracles.spherical_foot import nearest_on_flank
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize
 
@@ -38,7 +39,6 @@ from tol3d.gears.spherical_involute import (
     flank_normals,
     in_plane_angle,
     involute_azimuth,
-    nearest_on_flank,
     polar_angle,
 )
 

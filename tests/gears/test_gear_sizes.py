@@ -16,9 +16,9 @@ from oracles.involute_gear import InvoluteGear
 from thinned import thinned
 
 from tol3d import load_scene
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines.fcl import FclEngine
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import GearPart, Mesh, Model, model_from_scene
 from tol3d.gears import LEFT, RIGHT, Flank, SpurGear, SpurPair
 from tol3d.simulate import run_scene, simulation_of

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from oracles.bevel_brute_force import BevelMesh, BevelNumbers
 from oracles.brute_force import Mesh as SearchedSpurs
 from oracles.involute_gear import InvoluteGear
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.model import GearPart, Mesh, Model
 from tol3d.gears import BevelGear, BevelPair, InternalPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank

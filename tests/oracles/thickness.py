@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
 from tol3d.gearing.model import Model
 from tol3d.gears import SpurGear
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from engine_gaps import GearRows, flank_gap
 from numpy.typing import NDArray
 from planetary_sets import random_deviations, reducer_3k
 from scipy.optimize import linprog
 
-from tol3d.gearing.engines.exact.flank_gaps import GearRows, flank_gap
 from tol3d.gears import LEFT, RIGHT, InternalGear, InternalPair, SpurGear, SpurPair
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.model.deviated import Deviated

@@ -10,7 +10,7 @@ from places import SCENES
 
 from tol3d import Overrides, run_scene
 from tol3d.errors import InputError
-from tol3d.gearing.placed import PlacedGear
+from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, InternalGear, SpurGear
 from tol3d.planetary.exact.shown import ShownSet
 from tol3d.planetary.presenting import PRESENTER

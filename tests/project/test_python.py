@@ -18,7 +18,7 @@ from fixtures import Command
 from places import ROOT
 
 import tol3d
-from tol3d.gearing.placed import DISPLAY_DEFLECTION
+from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
 from tol3d.runs.frame import MissingPackageError
 from tol3d.runs.run import SUMMARY, Run
 from tol3d.scene.bundled import bundled_scenes

@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.exact_play import Side
-from tol3d.records.pair import RigPair, Specimen
+from tol3d.records.pair import RigPair, Side, Specimen
 
 Array = NDArray[np.float64]
 CONTACT_RATIO = 1.6

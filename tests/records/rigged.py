@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from tol3d.records.csv_file import Block
-from tol3d.records.exact_play import Side, angular_backlash
 from tol3d.records.findings import Identified, Settings
 from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
 from tol3d.records.reading import Pass, Senses, passes_of
 from tol3d.records.rig import Rig, measured
 

@@ -15,10 +15,9 @@ from scipy import stats
 
 from tol3d.records.background import expected_variance, likely_slopes
 from tol3d.records.csv_file import Block
-from tol3d.records.exact_play import Side
 from tol3d.records.findings import Identified, Settings
 from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
 from tol3d.records.prediction import Figure
 from tol3d.records.reading import Pass, Senses, passes_of
 from tol3d.records.rig import Rig, measured

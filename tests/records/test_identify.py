@@ -12,14 +12,13 @@ from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_
 
 from tol3d.errors import InputError
 from tol3d.records.alignment import hidden_shift
+from tol3d.records.cautions import refuse_other_gear
 from tol3d.records.csv_file import Block
-from tol3d.records.curve import curve_of
-from tol3d.records.exact_play import Side, angular_backlash
 from tol3d.records.findings import Identified, Settings
+from tol3d.records.identified_picture import curve_of
 from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
 from tol3d.records.reading import Pass, Senses, passes_of
-from tol3d.records.refusals import refuse_other_gear
 from tol3d.records.rig import Rig, measured
 
 ENCODERS = Rig(samples=180, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=5 * ARCSEC)

@@ -12,14 +12,12 @@ from scipy.optimize import brentq
 
 from tol3d import load_scene, run_scene
 from tol3d.records.csv_file import Block
-from tol3d.records.exact_play import Side
 from tol3d.records.findings import Settings
 from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC
+from tol3d.records.pair import ARCSEC, Side
 from tol3d.records.reading import Senses, passes_of
 from tol3d.records.rig import Rig, measured
-from tol3d.records.scene_mesh import SceneMesh
-from tol3d.records.simulated_unit import SimulatedUnit
+from tol3d.records.scene_mesh import SceneMesh, SimulatedUnit
 from tol3d.simulate import simulation_of
 
 SIDES: tuple[Side, ...] = ("drive", "back")

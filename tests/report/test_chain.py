@@ -23,7 +23,7 @@ from printing import printed, row_of
 from tol3d.gearing.presenting.chain import chain_figure
 from tol3d.gearing.presenting.shown_stage import shafts_along, stages_of, sums_of, trains_of
 from tol3d.gearing.presenting.train_tables import train_report
-from tol3d.gearing.summary_types import TrainSummary
+from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report import picture
 from tol3d.report.canvas import new_figure, plain_axes
 from tol3d.report.compare import Compared

@@ -6,10 +6,9 @@ import pyvista as pv
 from places import SCENES
 from scipy.spatial import cKDTree
 
-from tol3d.gearing.display import seated_build
-from tol3d.gearing.placed import CONE_DEFLECTION, DISPLAY_DEFLECTION
-from tol3d.gearing.presenting.gap_section import GapSection, gap_section
-from tol3d.gearing.presenting.panels import _as_seen
+from tol3d.gearing.presenting.panels import GapSection, _as_seen, gap_section
+from tol3d.gearing.shown.display import seated_build
+from tol3d.gearing.shown.placed import CONE_DEFLECTION, DISPLAY_DEFLECTION
 from tol3d.gears import BevelPair
 from tol3d.report.drawn_solids import poly_data
 from tol3d.runs.run import Run

@@ -28,9 +28,8 @@ from tol3d import load_scene
 from tol3d.analyses.compensation import CompensationQuestion, compensation
 from tol3d.analyses.compensation_table import swing_table
 from tol3d.errors import InputError
-from tol3d.gearing.display import seated_build
-from tol3d.gearing.magnified import OPEN_SHARE
-from tol3d.gearing.placed import DISPLAY_DEFLECTION
+from tol3d.gearing.shown.display import seated_build
+from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION, OPEN_SHARE
 from tol3d.gearing.system import gear_model
 from tol3d.gears import LEFT, RIGHT, SpurGear, SpurPair
 from tol3d.report import (

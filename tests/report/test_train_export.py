@@ -14,9 +14,9 @@ from rendering import renders
 
 from tol3d import Run
 from tol3d.errors import InputError
-from tol3d.gearing.display import seated_build
-from tol3d.gearing.placed import DISPLAY_DEFLECTION
 from tol3d.gearing.presenting.whole_trains import HOUSING_COLOUR, WholeTrain, whole_trains
+from tol3d.gearing.shown.display import seated_build
+from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
 from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
 from tol3d.simulate import run_scene

@@ -7,7 +7,7 @@ import pytest
 from gear_trials import model_of_scene
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model, model_from_scene
 
 SCENE = """

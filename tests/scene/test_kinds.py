@@ -338,25 +338,25 @@ def test_a_summary_is_read_by_the_kinds_of_its_measures() -> None:
 # new kinds of gears -------------------------------------------------------------------------------
 
 NEW_FILES = {
-    "tol3d/gearing/grammar/parts/pulley.py": (
+    "tol3d/gearing/grammar/pulley.py": (
         '"""A pulley."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.part import PartSpec\n\n\n'
         'class PulleySpec(PartSpec):\n    """A pulley."""\n\n    words: ClassVar[str] = "a pulley"\n\n'
         '    kind: Literal["pulley"]\n'
     ),
     "tol3d/gearing/grammar/tolerances/groove.py": (
         '"""A groove."""\n\nfrom typing import Literal\n\n'
-        "from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec\n\n\n"
+        "from tol3d.gearing.grammar.tolerances.gears import ToothThicknessSpec\n\n\n"
         'class GrooveSpec(ToothThicknessSpec):\n    """A groove."""\n\n    kind: Literal["groove"]\n'
     ),
-    "tol3d/gearing/grammar/moves/belt.py": (
+    "tol3d/gearing/grammar/belt.py": (
         '"""A belt."""\n\nfrom typing import ClassVar, Literal\n\nfrom tol3d.scene.move import MoveSpec\n'
         "from tol3d.scene.reference import Reference\n\n\n"
         'class BeltSpec(MoveSpec):\n    """A belt."""\n\n    words: ClassVar[str] = "a belt"\n\n'
         '    kind: Literal["belt"]\n\n    def references(self) -> tuple[Reference, ...]:\n        return ()\n'
     ),
-    "tol3d/gearing/grammar/measures/slip.py": (
+    "tol3d/gearing/grammar/slip.py": (
         '"""Slip."""\n\nfrom typing import Literal\n\n'
-        "from tol3d.gearing.grammar.measures.normal_backlash import NormalBacklashSpec\n\n\n"
+        "from tol3d.gearing.grammar.measures import NormalBacklashSpec\n\n\n"
         'class SlipSpec(NormalBacklashSpec):\n    """Slip."""\n\n    kind: Literal["slip"]\n'
     ),
 }

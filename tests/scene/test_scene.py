@@ -23,11 +23,9 @@ from scene_schema import judged
 from tol3d import Scene, load_scene
 from tol3d.distributions import Rayleigh
 from tol3d.errors import SceneError
-from tol3d.gearing.grammar.measures.normal_backlash import NormalBacklashSpec
-from tol3d.gearing.grammar.moves.mesh import MeshSpec
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.parts.spur_gear import SpurGearSpec
-from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.grammar.measures import GearStudyOptions, NormalBacklashSpec
+from tol3d.gearing.grammar.moves import MeshSpec
+from tol3d.gearing.grammar.parts import GearSpec, SpurGearSpec
 from tol3d.gearing.mechanism import GEARING
 from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, read_scene

@@ -12,14 +12,9 @@ from scene_schema import judged
 
 from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
-from tol3d.gearing.grammar.measures.lost_motion import LostMotionSpec
-from tol3d.gearing.grammar.measures.mesh_measure import MeshMeasureSpec
-from tol3d.gearing.grammar.measures.train_measure import TrainMeasureSpec
-from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
-from tol3d.gearing.grammar.moves.train import TrainSpec
-from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, gears_on
-from tol3d.gearing.grammar.parts.arm import ArmSpec
-from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
+from tol3d.gearing.grammar.measures import LostMotionSpec, MeshMeasureSpec, TrainMeasureSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, TrainSpec, meshes_of
+from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftReference, ShaftSpec, gears_on
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.kinds import all_kinds
 from tol3d.scene.reference import any_of

@@ -12,7 +12,7 @@ from gear_trials import drawn_trials, gear_columns
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Backlash, Model, Reading, ToothThickness, model_from_scene
 
 ALPHA = math.radians(20.0)

@@ -23,7 +23,7 @@ from oracles.train import (
 from places import SCENES as FOLDER
 
 from tol3d import Run, load_scene
-from tol3d.gearing.grammar.parts.arm import ArmSpec
+from tol3d.gearing.grammar.parts import ArmSpec
 
 SCENES = ("robot_shoulder", "robot_shoulder_swing", "three_stage_train")
 ALPHA = math.radians(20.0)

@@ -28,7 +28,7 @@ from thinned import thinned
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.distributions import Constant
 from tol3d.gearing.engines.exact import ExactEngine
-from tol3d.gearing.engines.lazy import exact_engine
+from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model import Model, Scalar, model_from_scene
 from tol3d.gearing.roads.geometric import GeometricRoad
 from tol3d.gearing.stack_up.stack import Stack

@@ -16,7 +16,7 @@ from vectors import vector
 
 from tol3d import Overrides, Run, run_scene
 from tol3d.gearing.engines import STATUS_TEXT
-from tol3d.gearing.statuses import STATUSES
+from tol3d.gearing.engines.gaps import STATUSES
 from tol3d.report import comparison_report, run_report
 from tol3d.report.compare import difference_of
 from tol3d.runs.worst import worst_trial

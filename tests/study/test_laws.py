@@ -27,7 +27,7 @@ import tol3d
 from tol3d import InputError, Overrides, Run, SceneError, load_scene, open_run, run_scene
 from tol3d.distributions import DistributionSpec
 from tol3d.files import Files
-from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.report.check import check_report
 from tol3d.scene.options import StudyOptions
 from tol3d.simulate import simulation_of

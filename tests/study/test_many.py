@@ -11,7 +11,7 @@ from gear_trials import drawn_trials, simulated
 from places import SPUR_PAIR
 
 from tol3d import load_scene
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.model import Model, model_from_scene
 from tol3d.gearing.system import GearSystem

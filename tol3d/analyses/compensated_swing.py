@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.robots import Robots, State
-from tol3d.gearing.measures import moved
+from tol3d.gearing.meshing.backlash import moved
 from tol3d.gearing.model import LostMotion, Measure, Model, Train
-from tol3d.gearing.model.measures import load_changes, over_swing
+from tol3d.gearing.model.train_measures import load_changes, over_swing
 from tol3d.gearing.model.trains import gravity_torque, loaded_flank
 from tol3d.gearing.stack_up import first_order
 from tol3d.gearing.system import gear_model

@@ -18,12 +18,12 @@ from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_err
 from tol3d.analyses.correction import Correction, at_shaft, corrections_of
 from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
-from tol3d.gearing.breakdowns import stages_of
 from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.measure import AnyStage
-from tol3d.gearing.model.measures import lost_motion
-from tol3d.gearing.model.readings import reader_like, refuse_idle_teeth
+from tol3d.gearing.model.mesh_measures import reader_like, refuse_idle_teeth
+from tol3d.gearing.model.train_measures import lost_motion
+from tol3d.gearing.play.play import stages_of
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.machine.system import MachineSystem

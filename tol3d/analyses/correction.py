@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from tol3d.analyses.robots import Robots
-from tol3d.gearing.breakdowns import breakdowns_of, stages_of
+from tol3d.gearing.engines.gaps import STATUSES
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.gearing.model.measure import AnyStage, ParallelStage
+from tol3d.gearing.play.play import breakdowns_of, stages_of
 from tol3d.gearing.stack_up import closed_form
-from tol3d.gearing.statuses import STATUSES
-from tol3d.gearing.summary_types import Ends
+from tol3d.gearing.summary.train_sections import train_sections
+from tol3d.gearing.summary.types import Ends
 from tol3d.gearing.system import gear_model
-from tol3d.gearing.train_sections import train_sections
 from tol3d.runs.summary.values import made
 from tol3d.study.breakdowns import pooled_terms
 from tol3d.study.simulation import Simulation

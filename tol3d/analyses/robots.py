@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Measure
-from tol3d.gearing.model.drive import Drive
+from tol3d.gearing.model.links import Drive
 from tol3d.gearing.model.measure import AnyStage
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array

@@ -16,10 +16,10 @@ from tol3d.analyses.shim_choice import Shim, measure_of, mesh_of, shims_of, with
 from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Minimum, Shimmed
 from tol3d.analyses.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, thickness_text
 from tol3d.errors import InputError, SceneError
-from tol3d.gearing.grammar.tolerances import ToleranceSpec
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
 from tol3d.scene import Scene
+from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.simulate import Execution, Overrides, run_scene, simulation_of, workers_for
 from tol3d.study.overrides import AS_WRITTEN
 from tol3d.study.simulation import Simulation

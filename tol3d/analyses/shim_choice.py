@@ -16,7 +16,7 @@ from tol3d.distributions.uniform import UniformSpec
 from tol3d.errors import InputError
 from tol3d.gearing.grammar.measures import NormalBacklashSpec
 from tol3d.gearing.grammar.moves import BevelMeshSpec
-from tol3d.gearing.grammar.tolerances import ShimSpec
+from tol3d.gearing.grammar.tolerances.gears import ShimSpec
 from tol3d.gearing.model import Mesh
 from tol3d.scene import Scene
 from tol3d.scene.edit import with_tolerances

@@ -36,8 +36,7 @@ from tol3d.cli.rig_options import (
 )
 
 if TYPE_CHECKING:
-    from tol3d.records.exact_play import Unit
-    from tol3d.records.pair import Specimen
+    from tol3d.records.pair import Specimen, Unit
     from tol3d.records.quantity import Kind
     from tol3d.study.simulation import Simulation
 
@@ -65,11 +64,11 @@ def identify(
 ) -> None:
     """Identify eccentricities, play and the backlash of the whole long period from two-sided transmission error."""
     from tol3d.records.findings import Settings
-    from tol3d.records.identified_table import identified_report
     from tol3d.records.identify import identify as identified
     from tol3d.records.output import refuse_others, write_identified
     from tol3d.records.quantity import stated
     from tol3d.records.scene_mesh import SceneMesh
+    from tol3d.records.tables import identified_report
 
     settings = Settings(
         unit=unit,
@@ -123,8 +122,7 @@ def rig(
 ) -> None:
     """Write what a synthetic transmission error rig would measure of a scene's pair: drive.csv and back.csv."""
     from tol3d.records.quantity import stated
-    from tol3d.records.rig import Rig
-    from tol3d.records.rig_files import write_both
+    from tol3d.records.rig import Rig, write_both
 
     simulation = _simulation(scene_path(scene), trust_parts=trust_parts, run_builders=run_builders)
     own = Rig(
@@ -171,10 +169,10 @@ def plan_rig(
 ) -> None:
     """Predict the 95 % intervals that a rig would find, over its turns, rows and encoders: before it is built."""
     from tol3d.records.folder import write_texts
-    from tol3d.records.plan_table import plan_report, plan_table
     from tol3d.records.planning import plan_rig as planned
     from tol3d.records.quantity import numbers, stated
     from tol3d.records.rig import Rig
+    from tol3d.records.tables import plan_report, plan_table
 
     own = Rig(
         samples=samples,

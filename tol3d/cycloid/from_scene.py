@@ -19,12 +19,12 @@ from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
 from tol3d.cycloid.reducer.trials import Reading, RVMeasure
 from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.errors import GeometryError
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.gearing.model.implausible_teeth import implausible_teeth
-from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
+from tol3d.gearing.grammar.measures import GearStudyOptions
+from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.gearing.model.from_scene import implausible_teeth
+from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.gears.cylindrical_pair import SAME_LENGTH
+from tol3d.gears.pair import SAME_LENGTH
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of

@@ -1,8 +1,10 @@
 """Gears in mesh and the trains that they make, as a mechanism."""
 
-from typing import Final
+from types import ModuleType
+from typing import Any, Final
 
-from tol3d.gearing.grammar import measures, moves, parts, tolerances
+from tol3d.gearing import grammar
+from tol3d.gearing.grammar import tolerances
 from tol3d.gearing.grammar.checks import (
     bearings_off_shafts,
     carried_again,
@@ -11,18 +13,30 @@ from tol3d.gearing.grammar.checks import (
     implausible_faces,
     shafts_thicker_than_hubs,
 )
+from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.published import PublishedTrains
-from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.grammar import specs_in
+from tol3d.scene.measure import MeasureEntry
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.part import PartSpec
 from tol3d.scene.temperature import TemperatureSpec
+from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.system.mechanism import Mechanism
+
+
+def _kinds(base: type[Entry], place: ModuleType = grammar) -> tuple[type[Any], ...]:
+    """The kinds of a section that the files of a folder define, by their words: a new file may bring some."""
+    found = (spec for spec in specs_in(place) if issubclass(spec, base))
+    return tuple(sorted(found, key=lambda spec: str(kind_of(spec))))
+
 
 GEARING: Final = Mechanism(
     name="gearing",
-    parts=specs_in(parts),
-    tolerances=(*specs_in(tolerances), TemperatureSpec),
-    moves=specs_in(moves),
-    measures=specs_in(measures),
+    parts=_kinds(PartSpec),
+    tolerances=(*_kinds(ToleranceEntry, tolerances), TemperatureSpec),
+    moves=_kinds(MoveSpec),
+    measures=_kinds(MeasureEntry),
     checks=(carried_again, forms_of_two_shapes),
     warnings=(implausible_displacements, implausible_faces, bearings_off_shafts, shafts_thicker_than_hubs),
     options=GearStudyOptions,
@@ -30,7 +44,7 @@ GEARING: Final = Mechanism(
     engines=("exact", "fcl"),
     witness="fcl",
     system="tol3d.gearing.system:gear_system",
-    summary="tol3d.gearing.summary_types:SUMMARY_KINDS",
+    summary="tol3d.gearing.summary.types:SUMMARY_KINDS",
     presenter="tol3d.gearing.presenting",
     requires=("python-fcl", "cadquery"),
 )

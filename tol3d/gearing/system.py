@@ -9,24 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.gearing.breakdowns import breakdowns_of
-from tol3d.gearing.descriptions import description
 from tol3d.gearing.engines import Engine
-from tol3d.gearing.engines.lazy import exact_engine, exact_is_compiled, fcl_engine
-from tol3d.gearing.interference import interferences
-from tol3d.gearing.linked import link_contributors
+from tol3d.gearing.engines.gaps import STATUSES, exact_engine, exact_is_compiled, fcl_engine
+from tol3d.gearing.meshing.seats import Seats, all_seat_keys, seated
 from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
 from tol3d.gearing.model.contributor import gear_contributor
 from tol3d.gearing.model.measure import gear_measure, gear_measures
-from tol3d.gearing.neglected import neglected, of_gaps
-from tol3d.gearing.regressors import acting, position_column, regress, regressor_key
+from tol3d.gearing.play.linked import link_contributors
+from tol3d.gearing.play.play import breakdowns_of
 from tol3d.gearing.roads.analytic import AnalyticRoad
-from tol3d.gearing.roads.geometric import GeometricRoad
-from tol3d.gearing.roads.witness import FLANKS_OF_A_BACKLASH, FclRoad
-from tol3d.gearing.seats import Seats, all_seat_keys, seated
+from tol3d.gearing.roads.geometric import FLANKS_OF_A_BACKLASH, FclRoad, GeometricRoad
+from tol3d.gearing.roads.interference import interferences
+from tol3d.gearing.roads.neglected import neglected, of_gaps
+from tol3d.gearing.roads.regressors import acting, position_column, regress, regressor_key
 from tol3d.gearing.stack_up import closed_form, reference_form
-from tol3d.gearing.statuses import STATUSES
-from tol3d.gearing.train_sections import train_sections
+from tol3d.gearing.summary.train_sections import description, train_sections
+from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.solids import FlankStrips, measuring_strips
 from tol3d.system import contributor as system_contributor
@@ -40,7 +38,6 @@ from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
 from tol3d.system.trials import Trials
 
-Array = NDArray[np.float64]
 Strips = Mapping[str, FlankStrips]
 
 EXACT: Final = "exact"

@@ -12,9 +12,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.spherical_involute import (
@@ -26,8 +23,32 @@ from tol3d.gears.spherical_involute import (
 )
 from tol3d.gears.toothed_gear import PRESSURE_ANGLES, ToothedGear
 from tol3d.gears.undercut import RACK_ADDENDUM, crown_rack_undercut_angle
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
+
+def pitch_angles(pinion_teeth: int, wheel_teeth: int, shaft_angle: float) -> tuple[float, float]:
+    """Pitch angles [rad] of pinion and wheel: tan(delta_1) = sin(Sigma)/(z_2/z_1 + cos(Sigma)).
+
+    Raises:
+        GeometryError: the shaft angle [rad] is not between 0 and 180 deg, or a pitch cone would be flat or hollow.
+
+    >>> [round(math.degrees(angle), 4) for angle in pitch_angles(17, 43, math.radians(90))]
+    [21.5713, 68.4287]
+    """
+    degrees = math.degrees(shaft_angle)
+    if not 0.0 < shaft_angle < math.pi:
+        raise GeometryError(f"shaft_angle: expected more than 0 and less than 180 deg, got {degrees:g} deg")
+    sin, cos = math.sin(shaft_angle), math.cos(shaft_angle)
+    pinion = math.atan2(sin, wheel_teeth / pinion_teeth + cos)
+    wheel = math.atan2(sin, pinion_teeth / wheel_teeth + cos)
+    for name, angle in (("driver", pinion), ("driven", wheel)):
+        if angle >= math.pi / 2:
+            raise GeometryError(
+                f"shaft_angle {degrees:g} deg: with {pinion_teeth} and {wheel_teeth} teeth the {name} gear's pitch "
+                f"angle would be {math.degrees(angle):.4f} deg, expected less than 90 deg"
+            )
+    return pinion, wheel
+
 
 PITCH_ANGLES: Final = (0.01, 89.99)  # deg
 LONGEST_FACE = 0.9  # of the outer cone distance; common practice stops at a third

@@ -11,20 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
-from tol3d.gears.bevel_gear import BevelGear
+from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.flank import Flank
-from tol3d.gears.pair import CONTACT_MARGIN, Displaced, candidate_teeth
-from tol3d.gears.pitch_angles import pitch_angles
+from tol3d.gears.pair import CONTACT_MARGIN, Displaced, RollingPair
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
-
-SAME_LENGTH = 1e-9  # relative; two modules written alike are equal in this sense
 SAME_ANGLE = 1e-9  # rad; over 100 mm a ten-thousandth of a micrometre
 SAME_SHIFT = 1e-9  # modules
 
 
 @dataclass(frozen=True)
-class BevelPair:
+class BevelPair(RollingPair):
     """Pinion (driver) and wheel (driven) with their apexes in one point and their axes at a shaft angle [rad].
 
     World: the common apex is the origin, the driver's axis +z, the pitch line lies in the half plane y = 0, x > 0.
@@ -44,12 +41,7 @@ class BevelPair:
     shaft_angle: float
 
     def __post_init__(self) -> None:
-        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
-            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
-            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
-                raise GeometryError(
-                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
-                )
+        self._refuse_unlike()
         self._refuse_cones_that_do_not_roll()
         total = self.pinion.profile_shift + self.wheel.profile_shift
         if not abs(total) <= SAME_SHIFT:
@@ -75,16 +67,6 @@ class BevelPair:
                 f"the outer cone distances would be {self.pinion.outer_cone_distance:.4f} and "
                 f"{self.wheel.outer_cone_distance:.4f} mm"
             )
-
-    @property
-    def ratio(self) -> float:
-        """z2 / z1."""
-        return self.wheel.teeth / self.pinion.teeth
-
-    @property
-    def long_period_turns(self) -> int:
-        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
-        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
 
     @property
     def working_pressure_angle(self) -> float:
@@ -296,10 +278,6 @@ class BevelPair:
         lowest, highest = self.active_azimuths
         margin = 2 * CONTACT_MARGIN * self.pinion.angular_pitch
         return lowest - margin, highest + margin
-
-    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Pinion teeth that may touch on that flank: see gears.pair."""
-        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:
         """The wheel's tooth that each of those pinion flanks meets: -k on the right flank, -k - 1 on the left."""

@@ -10,14 +10,12 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
 from tol3d.gears.involute import involute
 from tol3d.gears.toothed_gear import ToothedGear
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 ISO53_ROOT_FILLET: Final = 0.38  # of the module; fillet of the standard basic rack, ISO 53:1998, profile A
 FULL_ROUND_MARGIN: Final = 1e-9  # mm; two fillets of a space may touch, not overlap
@@ -119,10 +117,6 @@ class CylindricalGear(ToothedGear):
     def thickness_at(self, radius: float) -> float:
         """Tooth thickness as an arc [mm] on the circle of that radius (radial flank below the base)."""
         return 2 * radius * (self.base_half_angle - self.iso_sign * involute(self.pressure_angle_at(radius)))
-
-    def space_at(self, radius: float) -> float:
-        """Space width as an arc [mm] on the circle of that radius."""
-        return radius * self.angular_pitch - self.thickness_at(radius)
 
     @property
     def tip_thickness(self) -> float:

@@ -7,37 +7,23 @@ for internal gears with their teeth, radii and centre distance counted negative.
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.flank import Flank
 from tol3d.gears.involute import inverse_involute, involute
-from tol3d.gears.pair import CONTACT_MARGIN, candidate_teeth
-
-Array = NDArray[np.float64]
-
-SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in this sense
+from tol3d.gears.pair import CONTACT_MARGIN, Displaced, RollingPair
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)
-class CylindricalPair:
+class CylindricalPair(RollingPair):
     """Pinion (driver) and wheel (driven) at a centre distance [mm], which is positive."""
 
     pinion: CylindricalGear
     wheel: CylindricalGear
     centre_distance: float
-
-    def _refuse_unlike(self) -> None:
-        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
-            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
-            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
-                raise GeometryError(
-                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
-                )
 
     @property
     def iso_sign(self) -> int:
@@ -48,16 +34,6 @@ class CylindricalPair:
     def base_radii(self) -> float:
         """r_b1 + r_b2 [mm], an internal gear's counted negative."""
         return self.pinion.iso_sign * self.pinion.base_radius + self.wheel.iso_sign * self.wheel.base_radius
-
-    @property
-    def ratio(self) -> float:
-        """z2 / z1."""
-        return self.wheel.teeth / self.pinion.teeth
-
-    @property
-    def long_period_turns(self) -> int:
-        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
-        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
 
     @cached_property
     def working_pressure_angle(self) -> float:
@@ -178,6 +154,17 @@ class CylindricalPair:
         margin = CONTACT_MARGIN * self.pinion.angular_pitch
         return lowest - margin, highest + margin
 
-    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Pinion teeth that may touch on that flank: see gears.pair."""
-        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
+    def _refuse_short_contact(self) -> None:
+        if self.contact_ratio < 1.0:
+            raise GeometryError(
+                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
+                f"{self.centre_distance:g} mm: the teeth lose touch"
+            )
+
+    def _along(self, working: Array, displaced: Displaced) -> Array:
+        """Half of what the teeth leave of the line of action [mm], (rows,), at working pressure angles [rad]."""
+        half_angles = sum(
+            gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
+            for k, gear in enumerate((self.pinion, self.wheel))
+        )
+        return np.asarray(half_angles - self.base_radii * (np.tan(working) - working))

@@ -19,8 +19,7 @@ from tol3d.gears.internal_mesh import InternalMesh
 from tol3d.gears.pair import CONTACT_MARGIN, Displaced
 from tol3d.gears.radial_assembly import radially_assembled
 from tol3d.gears.spur_gear import SpurGear
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -143,11 +142,7 @@ class InternalPair(CylindricalPair):
         mesh = InternalMesh(self.ring, self.inner, self.centre_distance)
         start = self.inner.base_radius * math.hypot(1.0, mesh.inner_roll(self.ring.tip_roll))
         self.inner.refuse_undercut(start, "inner", f"at {2 * start:.4f} mm")
-        if self.contact_ratio < 1.0:
-            raise GeometryError(
-                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
-                f"{self.centre_distance:g} mm: the teeth lose touch"
-            )
+        self._refuse_short_contact()
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
@@ -182,11 +177,7 @@ class InternalPair(CylindricalPair):
         direction = np.arctan2(to_mesh[:, 1], to_mesh[:, 0])
         distance = np.sqrt(to_mesh[:, 0] ** 2 + to_mesh[:, 1] ** 2)
         working = np.arccos(np.minimum(-self.base_radii / distance, 1.0))
-        half_angles = sum(
-            gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
-            for k, gear in enumerate((self.pinion, self.wheel))
-        )
-        along = half_angles - self.base_radii * (np.tan(working) - working)
+        along = self._along(working, displaced)
         turned = self.pinion.base_radius * (driver_angle - direction) - flank * along
         mate = 1 if flank == 1 else 0
         return np.asarray(

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.pair import GearPair
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Owner = Literal["driver", "driven"]
 
 ROUNDING = 1e-9  # pitches; a flank that so nearly ends where it is looked at does not end there

@@ -2,14 +2,16 @@
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.errors import GeometryError
 from tol3d.gears.flank import Flank
+from tol3d.gears.toothed_gear import ToothedGear
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 
@@ -21,67 +23,54 @@ class Gear(Protocol):
     @property
     def teeth(self) -> int:
         """Number of teeth."""
-        ...
 
     @property
     def module(self) -> float:
         """m [mm]; of a bevel gear at the outer end."""
-        ...
 
     @property
     def pressure_angle(self) -> float:
         """alpha [rad] at the reference circle or on the pitch cone."""
-        ...
 
     @property
     def face_width(self) -> float:
         """b [mm]."""
-        ...
 
     @property
     def bore(self) -> float:
         """Diameter [mm] of the hole for the shaft; 0 means none."""
-        ...
 
     @property
     def angular_pitch(self) -> float:
         """2 pi / z [rad]."""
-        ...
 
     @property
     def base_radius(self) -> float:
         """Largest arm [mm] with which a turn about the axis moves a flank along its normal."""
-        ...
 
     @property
     def section_arm(self) -> float:
         """That arm [mm] in the section in which the gear is measured: the middle of its face."""
-        ...
 
     @property
     def thickness_radius(self) -> float:
         """Radius [mm] at which the tooth thickness is an arc, in that section."""
-        ...
 
     @property
     def section_thickness(self) -> float:
         """Arc [mm] of a tooth at that radius."""
-        ...
 
     @property
     def section_tip(self) -> float:
         """Arc [mm] at that radius by which a tooth may be thinner before its flanks meet at its tip."""
-        ...
 
     @property
     def pitch_angle(self) -> float:
         """delta [rad] of the pitch cone, 0 for a cylinder."""
-        ...
 
     @property
     def base_pitch(self) -> float:
         """Distance [mm] of neighbouring flanks along their normal, in that section."""
-        ...
 
     def perturbed(self, flank_turn: float, scale: float) -> Self:
         """The gear with its flanks turned out of their teeth [rad], and grown.
@@ -89,7 +78,6 @@ class Gear(Protocol):
         Raises:
             GeometryError: such a gear cannot be made.
         """
-        ...
 
 
 CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 1/sin(alpha_w) of a shift of the axes
@@ -116,67 +104,54 @@ class GearPair(Protocol):
     @property
     def pinion(self) -> Gear:
         """The driver."""
-        ...
 
     @property
     def wheel(self) -> Gear:
         """The driven gear."""
-        ...
 
     @property
     def long_period_turns(self) -> int:
         """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
-        ...
 
     @property
     def working_pressure_angle(self) -> float:
         """alpha_w [rad]."""
-        ...
 
     @property
     def working_radii(self) -> tuple[float, float]:
         """Radii [mm] of the rolling circles of pinion and wheel, in the middle of the face."""
-        ...
 
     @property
     def normal_backlash(self) -> float:
         """j_bn [mm] of the nominal pair, in the middle of the face; negative: the teeth interfere."""
-        ...
 
     @property
     def world_from_wheel(self) -> Array:
         """Rotation (3, 3) of the wheel's frame at rest in the world."""
-        ...
 
     @property
     def wheel_origin(self) -> Array:
         """Origin (3,) [mm] of that frame; a housing that grows scales it."""
-        ...
 
     @property
     def mesh_azimuths(self) -> tuple[float, float]:
         """Azimuth [rad] of the mesh in the frame at rest of pinion and wheel."""
-        ...
 
     @property
     def opening_off_mesh(self) -> tuple[float, float]:
         """Azimuth off the mesh [rad] in which a shift of the axis opens: pi, away from the mate; of a ring 0."""
-        ...
 
     @property
     def pinion_section(self) -> float:
         """Where on the pinion's face, from 0 to 1 along its z, the middle of the common face lies."""
-        ...
 
     @property
     def arm_spread(self) -> float:
         """By how much of itself the arm of a turn about the axis varies over the face: 0 on a cylinder."""
-        ...
 
     @property
     def view_from_world(self) -> Array:
         """Rotation (3, 3) to what one sees who looks at the heel of the teeth in mesh, the wheel on the right."""
-        ...
 
     def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
         """Smaller free distance [mm] between a tip and the mate's root.
@@ -185,49 +160,77 @@ class GearPair(Protocol):
             origins: (2, 3) [mm], where the frames of pinion and wheel lie in the world.
             scale: growth of both.
         """
-        ...
 
     @property
     def remedy(self) -> str:
         """What to do about teeth that interfere, with the numbers."""
-        ...
 
     def refuse_interference(self) -> None:
         """Raise a GeometryError unless tips clear roots and contact stays on both flanks."""
-        ...
 
     def driven_angle(self, driver_angle: Array) -> Array:
         """Wheel's turn [rad] with its space centred on the pinion's tooth."""
-        ...
 
     def touching_angle(self, driver_angle: Array, flank: Flank, displaced: Displaced) -> Array:
         """Wheel's turn [rad], (rows,), at which the flanks of that side of the pinion touch, nearly."""
-        ...
 
     @property
     def active_azimuths(self) -> tuple[float, float]:
         """Azimuths [rad] of a pinion's tooth, times sigma, between which it is on the path of contact."""
-        ...
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
         """Azimuths [rad] of a pinion's tooth, times sigma, between which it may touch: its path and a margin."""
-        ...
 
     def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[Teeth, NDArray[np.bool_]]:
         """Pinion teeth (rows, pairs) that may touch on that flank, and whether each may."""
-        ...
 
     def mating_teeth(self, driver_teeth: Teeth, flank: Flank) -> Teeth:
         """The wheel's tooth that each of those pinion flanks meets."""
-        ...
 
     def mating_flank(self, flank: Flank) -> Flank:
         """Which flank of the wheel that side of the pinion meets.
 
         A gear leaves its mate on its own right flanks by a turn in the positive sense, on its left ones by one back.
         """
-        ...
+
+
+SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in this sense
+
+
+@dataclass(frozen=True)
+class RollingPair:
+    """What pairs of any teeth share: one module and pressure angle, numbers of teeth, and which of them may touch."""
+
+    pinion: ToothedGear
+    wheel: ToothedGear
+
+    def _refuse_unlike(self) -> None:
+        for name, unit in (("module", "mm"), ("pressure_angle", "rad")):
+            first, second = getattr(self.pinion, name), getattr(self.wheel, name)
+            if not math.isclose(first, second, rel_tol=SAME_LENGTH):
+                raise GeometryError(
+                    f"the gears of a pair need the same {name}, got {first:g} {unit} and {second:g} {unit}"
+                )
+
+    @property
+    def ratio(self) -> float:
+        """z2 / z1."""
+        return self.wheel.teeth / self.pinion.teeth
+
+    @property
+    def long_period_turns(self) -> int:
+        """Turns of the pinion until the same teeth meet again in the same places: z2 / gcd(z1, z2)."""
+        return self.wheel.teeth // math.gcd(self.pinion.teeth, self.wheel.teeth)
+
+    @property
+    def touching_azimuths(self) -> tuple[float, float]:
+        """See GearPair."""
+        raise NotImplementedError
+
+    def candidate_teeth(self, driver_angle: Array, flank: Flank) -> tuple[Teeth, NDArray[np.bool_]]:
+        """Pinion teeth that may touch on that flank."""
+        return candidate_teeth(self.touching_azimuths, self.pinion.angular_pitch, driver_angle, flank)
 
 
 def candidate_teeth(

@@ -9,13 +9,10 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.internal_mesh import InternalMesh
-from tol3d.gears.tooth_outline import tooth_half_angle
-
-Array = NDArray[np.float64]
+from tol3d.gears.internal_mesh import InternalMesh, tooth_half_angle
+from tol3d.numerics.arrays import Array
 
 PHASES: Final = 4  # from a tooth to a space on the line of centres; what lies beyond is the mirror image
 SIDE_POINTS: Final = 24  # of one side of a tooth: chords leave it by a few um of a module of 1 mm

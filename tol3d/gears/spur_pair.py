@@ -14,8 +14,7 @@ from tol3d.gears.cylindrical_pair import CylindricalPair
 from tol3d.gears.flank import Flank
 from tol3d.gears.pair import Displaced
 from tol3d.gears.spur_gear import SpurGear
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -99,11 +98,7 @@ class SpurPair(CylindricalPair):
                     f"but its involute begins at {2 * gear.form_radius:.4f} mm; "
                     "lower addendum or root_fillet, or add profile_shift"
                 )
-        if self.contact_ratio < 1.0:
-            raise GeometryError(
-                f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
-                f"{self.centre_distance:g} mm: the teeth lose touch"
-            )
+        self._refuse_short_contact()
 
     @property
     def mirrored(self) -> "SpurPair":
@@ -131,11 +126,7 @@ class SpurPair(CylindricalPair):
         direction = np.arctan2(centre_line[:, 1], centre_line[:, 0])
         distance = np.sqrt(centre_line[:, 0] ** 2 + centre_line[:, 1] ** 2)
         working = np.arccos(np.minimum(self.base_radii / distance, 1.0))
-        half_angles = sum(
-            gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
-            for k, gear in enumerate((self.pinion, self.wheel))
-        )
-        along = half_angles - self.base_radii * (np.tan(working) - working)
+        along = self._along(working, displaced)
         turned = flank * along - self.pinion.base_radius * (driver_angle - direction)
         mate = 0 if flank == 1 else 1
         return np.asarray(

@@ -7,8 +7,8 @@ from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.gearing.grammar.parts import BearingSpec
-from tol3d.gearing.grammar.tolerances import BearingClearanceSpec
-from tol3d.gearing.grammar.tolerances.mesh_tolerance import MeshToleranceSpec
+from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import MeshToleranceSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.machine.system import MachineSystem
 from tol3d.scene import Scene

@@ -6,8 +6,8 @@ from typing import Final
 
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.gearing.model import LostMotion, Measure, Model
-from tol3d.gearing.model.measures import lost_motion
-from tol3d.gearing.model.readings import reader_like
+from tol3d.gearing.model.mesh_measures import reader_like
+from tol3d.gearing.model.train_measures import lost_motion
 from tol3d.machine.grammar.open_chain import OpenChainSpec, flank_name, turn_name
 from tol3d.machine.open_chains import loaded_sides
 from tol3d.scene import Scene

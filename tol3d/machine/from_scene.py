@@ -16,8 +16,8 @@ from tol3d.distributions.constant import Constant
 from tol3d.gearing.effects import NOTHING, LinkDeviation
 from tol3d.gearing.grammar.checks import off_shaft
 from tol3d.gearing.grammar.parts import ShaftSpec
+from tol3d.gearing.grammar.tolerances.bearing_clearance import Lever
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
-from tol3d.gearing.grammar.tolerances.lever import Lever
 from tol3d.gearing.mechanism import GEARING
 from tol3d.gearing.model import Contributor, Model
 from tol3d.gearing.system import GearSystem, gear_system

@@ -11,7 +11,7 @@ from tol3d.assembly.zones import ZoneDraw
 from tol3d.gearing.effects import Effect, LinkDeviation
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
 from tol3d.gearing.model.measure import Measure
-from tol3d.gearing.regressors import slopes_by_bores
+from tol3d.gearing.roads.regressors import slopes_by_bores
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.joined import Joined, is_hidden
 from tol3d.numerics.arrays import Array

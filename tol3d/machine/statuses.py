@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.model.statuses import STATUSES as OF_ASSEMBLIES
 from tol3d.assembly.model.statuses import WITH_CLEARANCES as OF_CLEARANCES
 from tol3d.assembly.model.statuses import WITH_LOOPS as OF_LOOPS
-from tol3d.gearing.statuses import STATUSES as OF_GEARS
+from tol3d.gearing.engines.gaps import STATUSES as OF_GEARS
 from tol3d.system.statuses import Statuses
 
 

@@ -13,8 +13,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.linked import DEAR
 from tol3d.gearing.model.measure import Measure
+from tol3d.gearing.play.linked import DEAR
 from tol3d.machine.joined import Joined
 from tol3d.numerics.arrays import Array
 from tol3d.system.road import Road

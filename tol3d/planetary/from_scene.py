@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from tol3d.assembly.grammar.zone import ProcessLawSpec
-from tol3d.gearing.grammar.study import GearStudyOptions
-from tol3d.gearing.model.implausible_teeth import implausible_teeth
+from tol3d.gearing.grammar.measures import GearStudyOptions
+from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.planetary.exact.shown import Made, made_gears
 from tol3d.planetary.grammar.measures import (
     PlanetaryFreeTurnSpec,

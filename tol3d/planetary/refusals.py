@@ -5,10 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from tol3d.errors import GeometryError
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.parts.internal_gear import InternalGearSpec
-from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear, cylindrical_pair
-from tol3d.gears.cylindrical_pair import SAME_LENGTH
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.model.pairs import cylindrical_gear, cylindrical_pair
+from tol3d.gears.pair import SAME_LENGTH
 from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
 from tol3d.planetary.model.planetary_set import PlanetarySet, Spring

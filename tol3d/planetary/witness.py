@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 
 from tol3d.gearing.engines.fcl import OUT_OF_REACH, SLACK, Found, read_strips
-from tol3d.gearing.placed import PlacedGear
-from tol3d.gearing.roads.witness import ALLOWANCE
+from tol3d.gearing.roads.geometric import ALLOWANCE
+from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.gears.involute import involute
 from tol3d.numerics.arrays import Array

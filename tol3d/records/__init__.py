@@ -8,7 +8,7 @@
     findings     all of it                  identify.py                 identify         (findings.py: Identified)
     cautions     what may spoil them        cautions.py                 cautions
 
-`exact_play.py` is the geometry, without the assumption of small eccentricities; `rig.py` makes measured files of it,
+`pair.py` is the geometry, without the assumption of small eccentricities; `rig.py` makes measured files of it,
 `planning.py` predicts how well a rig of that kind identifies.
 """
 

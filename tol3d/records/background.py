@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, stats
 
-from tol3d.records.exact_play import Side
-from tol3d.records.pair import ARCSEC, TURN, RigPair
+from tol3d.numerics.arrays import Array
+from tol3d.records.pair import ARCSEC, TURN, RigPair, Side
 from tol3d.records.terms import Points, Terms, columns
 
-Array = NDArray[np.float64]
 Kind = Literal["common", "opposite"]
 
 MOST_ORDERS: Final = 12  # of a gear; a third of its teeth at most, over which steps from tooth to tooth are no waves

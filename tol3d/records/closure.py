@@ -10,18 +10,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.alignment import Aligned
-from tol3d.records.bins import Bins
-from tol3d.records.ends import WINDOW, Ends
-from tol3d.records.exact_play import Side, driven_angle
+from tol3d.records.bins import WINDOW, Bins, Ends
 from tol3d.records.fit import Fit
-from tol3d.records.pair import ARCSEC, Specimen
+from tol3d.records.pair import ARCSEC, Side, Specimen, driven_angle
 from tol3d.records.prediction import Figure, quantile_of
 from tol3d.records.terms import Points, columns
 
-Array = NDArray[np.float64]
 Closing = Literal["drive", "back", "backlash"]
 
 OPEN: Final = 3.0  # standard errors from which on a side does not close

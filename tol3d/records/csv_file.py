@@ -10,12 +10,10 @@ from typing import Final
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pc
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 from tol3d.records.quantity import ANGLES, TORQUES
-
-Array = NDArray[np.float64]
 
 NAMED: Final = re.compile(r"\s*(?P<name>[^\[\]()]+?)\s*(?:[\[(]\s*(?P<unit>[^\])]*?)\s*[\])])?\s*")
 BLOCK_BYTES: Final = 2**21  # 75 000 rows of two angles; pyarrow reads up to 32 blocks ahead
@@ -109,9 +107,7 @@ def _opened(header: Header) -> pc.CSVStreamingReader:
         ),
         parse_options=pc.ParseOptions(delimiter=header.delimiter),
         convert_options=pc.ConvertOptions(
-            column_types=columns,
-            include_columns=list(columns),
-            decimal_point="," if header.decimal_comma else ".",
+            column_types=columns, include_columns=list(columns), decimal_point="," if header.decimal_comma else "."
         ),
     )
 

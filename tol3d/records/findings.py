@@ -6,22 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.records.alignment import Aligned, HiddenShift
 from tol3d.records.closure import Closing, closures
-from tol3d.records.exact_play import Side
 from tol3d.records.fit import Fit
-from tol3d.records.one_sided import OneSided
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
-from tol3d.records.prediction import BacklashModel, Extreme, Figure, length_and_phase
+from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
+from tol3d.records.prediction import BacklashModel, Extreme, Figure, OneSided, length_and_phase
 from tol3d.records.reading import Pass, Senses
 from tol3d.records.spectrum import Spectrum
 from tol3d.records.terms import ECCENTRIC, encoder_names
 from tol3d.records.whole_backlash import ToothPart, WholeBacklash
-
-Array = NDArray[np.float64]
 
 ENCODER_ERROR: Final = 20 * ARCSEC  # once per turn, that a rig's encoders and couplings may have
 

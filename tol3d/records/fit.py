@@ -12,15 +12,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.background import Background, background_of
 from tol3d.records.bins import Bins
-from tol3d.records.exact_play import Side, driven_angle
-from tol3d.records.pair import RigPair, Specimen
+from tol3d.records.pair import RigPair, Side, Specimen, driven_angle
 from tol3d.records.terms import ECCENTRIC, Points, Terms, columns
-
-Array = NDArray[np.float64]
 
 MOST_ROUNDS = 8  # of Gauss-Newton with first-order columns; each gains a factor e/a
 STEP_XTOL = 1e-12  # rad, of the fitted curve; a millionth of an arc second
@@ -151,7 +148,7 @@ def specimen_of(pair: RigPair, eccentric: Array, constant_part: float, offset: f
 def inverse_normal(matrix: Array) -> Array:
     """Inverse of the normal matrix (terms, terms) of weighted columns (n, terms), by columns of length one.
 
-    These have condition numbers of ten or so (refusals.py refuses others), whose square costs two digits. By einsum:
+    These have condition numbers of ten or so (cautions.py refuses others), whose square costs two digits. By einsum:
     for a few columns BLAS spends more on its threads than on the product.
     """
     lengths = np.sqrt(np.einsum("ni,ni->i", matrix, matrix))

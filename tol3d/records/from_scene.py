@@ -14,20 +14,19 @@ import math
 from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.gearing.build import build
+from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.shafts import Mesh
 from tol3d.gearing.system import GearSystem
+from tol3d.numerics.arrays import Array
 from tol3d.records.pair import RigPair, Specimen
 
 if TYPE_CHECKING:
     from tol3d.gears import SpurGear, SpurPair
     from tol3d.system.system import System
 
-Array = NDArray[np.float64]
 
 DIGITS: Final = 15  # of numbers in a written scene
 POSITIONS: Final = 72  # a turn of the driver, in a written scene
@@ -69,14 +68,6 @@ def mesh_of(model: Model, name: str | None) -> Mesh:
 
 def _is_external(mesh: Mesh) -> bool:
     return mesh.pair.arm_spread == 0.0 and mesh.driven_flank == mesh.working_flank
-
-
-def specimen_of_scene(model: Model, mesh: Mesh) -> Specimen:
-    """The pair with every contributor at its mean; random directions have none, and no eccentricity is left of them.
-
-    Where shafts lie in the bores of a housing, these are nominal.
-    """
-    return specimen_of_build(model, mesh, mean_row(model))
 
 
 def specimen_of_build(model: Model, mesh: Mesh, deviations: Array) -> Specimen:

@@ -7,32 +7,29 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.records.alignment import Aligned, HiddenShift, hidden_shift
-from tol3d.records.cautions import cautions, refuse_hidden_shift
-from tol3d.records.exact_play import Side
-from tol3d.records.findings import Identified, Settings
-from tol3d.records.fit import Fit, Measured, fitted, measured_of
-from tol3d.records.one_sided import one_sided
-from tol3d.records.pair import ARCSEC, TURN, RigPair
-from tol3d.records.pooling import Pool
-from tol3d.records.prediction import BacklashModel, quantile_of
-from tol3d.records.reading import Pass, Senses, read_side, senses_of
-from tol3d.records.refusals import (
+from tol3d.numerics.arrays import Array
+from tol3d.records.alignment import Aligned, HiddenShift, Pool, hidden_shift
+from tol3d.records.cautions import (
     LARGEST_CONDITION,
+    cautions,
     condition_of,
+    refuse_hidden_shift,
     refuse_impossible_backlash,
     refuse_other_gear,
     refuse_too_few_turns,
     refuse_wrong_units,
 )
+from tol3d.records.findings import Identified, Settings
+from tol3d.records.fit import Fit, Measured, fitted, measured_of
+from tol3d.records.pair import ARCSEC, TURN, RigPair, Side
+from tol3d.records.prediction import BacklashModel, one_sided, quantile_of
+from tol3d.records.reading import Pass, Senses, read_side, senses_of
 from tol3d.records.spectrum import spectrum_of
 from tol3d.records.terms import ECCENTRIC, ENCODERS, Terms
 from tol3d.records.whole_backlash import ToothPart, tooth_part, whole_backlash
 
-Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
 ROWS_A_TOOTH: Final = 5.0  # from which on tooth mesh and its second harmonic are fitted along
@@ -42,11 +39,7 @@ SAME_TORQUE: Final = 0.02  # of the largest torque; two levels nearer than that 
 
 
 def identify(
-    pair: RigPair,
-    drive: Sequence[Path],
-    back: Sequence[Path],
-    settings: Settings,
-    tell: Tell = lambda text: None,
+    pair: RigPair, drive: Sequence[Path], back: Sequence[Path], settings: Settings, tell: Tell = lambda text: None
 ) -> Identified:
     """Find eccentricities, play and the backlash over the long period.
 

@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Final
 
 from tol3d.errors import InputError
-from tol3d.records.curve import curve_of
 from tol3d.records.findings import Identified
 from tol3d.records.folder import begins_with, write_texts
 from tol3d.records.from_scene import scene_text
-from tol3d.records.identified_picture import draw_backlash, draw_residual
+from tol3d.records.identified_picture import curve_of, draw_backlash, draw_residual
 from tol3d.records.scene_mesh import SceneMesh
 from tol3d.records.summary import IdentifiedSummary, summary_of
 from tol3d.report.page import Page

@@ -9,17 +9,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.records.exact_play import Side, driven_angle
+from tol3d.numerics.arrays import Array
+from tol3d.records.cautions import LARGEST_CONDITION, condition_of
 from tol3d.records.identify import ROWS_A_TOOTH, told_apart_twice
-from tol3d.records.pair import TURN, RigPair, Specimen
+from tol3d.records.pair import TURN, RigPair, Side, Specimen, driven_angle
 from tol3d.records.prediction import BacklashModel, Figure, length_and_phase, quantile_of
-from tol3d.records.refusals import LARGEST_CONDITION, condition_of
 from tol3d.records.rig import Rig
 from tol3d.records.terms import ECCENTRIC, ENCODERS, Points, Terms, columns, difference_columns
-
-Array = NDArray[np.float64]
 
 MOST_POSITIONS = 500  # a turn of the driver at which columns are evaluated; more rows are weights of these
 SIDES: tuple[Side, ...] = ("drive", "back")

@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import InputError
-from tol3d.records.bins import Bins, BinSums
+from tol3d.numerics.arrays import Array
+from tol3d.records.bins import Bins, BinSums, Ends, EndSums
 from tol3d.records.csv_file import Block, blocks_of, line_of
-from tol3d.records.ends import Ends, EndSums
 from tol3d.records.pair import TURN, RigPair
 
-Array = NDArray[np.float64]
 Progress = Callable[[int], None]
 
 MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own play stay below it

@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.bins import bins_a_turn
-from tol3d.records.exact_play import Side
 from tol3d.records.fit import Fit, Measured
+from tol3d.records.pair import Side
 from tol3d.records.terms import columns
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

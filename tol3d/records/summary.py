@@ -7,11 +7,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from tol3d.records.exact_play import Side
 from tol3d.records.findings import Identified
-from tol3d.records.one_sided import OneSided
-from tol3d.records.pair import ARCSEC, TURN
-from tol3d.records.prediction import Figure
+from tol3d.records.pair import ARCSEC, TURN, Side
+from tol3d.records.prediction import Figure, OneSided
 from tol3d.records.scene_mesh import SceneMesh
 
 Unit = Literal["um", "deg", "arcsec", "arcsec/(N m)"]

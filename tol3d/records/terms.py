@@ -13,10 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.exact_play import Side
-from tol3d.records.pair import RigPair
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
+from tol3d.records.pair import RigPair, Side
 
 ECCENTRIC = ("x1", "y1", "x2", "y2")  # e cos(theta), e sin(theta) of driver and driven gear [mm]
 CONSTANTS = ("offset", "constant part")  # of both sides; of the back side more than that [rad]

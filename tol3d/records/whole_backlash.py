@@ -14,11 +14,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.numerics.arrays import Array
 from tol3d.records.fit import Fit, times
 from tol3d.records.prediction import CONFIDENCE, BacklashModel, Extreme, Figure
 from tol3d.records.terms import difference_columns
-
-Array = NDArray[np.float64]
 
 MOST_CELLS_A_TOOTH: Final = 32  # of the driver
 FEWEST_CELLS_A_TOOTH: Final = 2

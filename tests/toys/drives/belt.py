@@ -10,9 +10,8 @@ from pydantic import Field
 
 from tol3d.gearing.effects import LinkDeviation
 from tol3d.gearing.grammar.moves import LinkSpec
-from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
-from tol3d.gearing.grammar.tolerances.link_tolerance import LinkToleranceSpec
+from tol3d.gearing.grammar.parts import ShaftReference
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import LinkToleranceSpec, Meaning
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.scene import Scene
 from tol3d.scene.name import Name

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from tol3d.gearing.grammar.moves import LinkSpec
-from tol3d.gearing.grammar.tolerances.link_tolerance import LinkToleranceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import LinkToleranceSpec
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.scene import Scene
 from tol3d.scene.part import Length

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 
-from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.gearing.grammar.parts import TurningSpec
 from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.presenting import GearPresenter

@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.gearing.grammar.parts import TurningSpec
 from tol3d.scene.part import Length, PartSpec
 from tol3d.units import Of, Quantity
 

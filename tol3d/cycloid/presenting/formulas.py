@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tol3d.cycloid.summary_types import CycloidOfRun, CycloidStageSummary
-from tol3d.gearing.summary_types import TrainsOfRun
+from tol3d.gearing.summary.types import TrainsOfRun
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
 from tol3d.runs.summary.run import RunSummary
 

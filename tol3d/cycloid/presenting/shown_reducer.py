@@ -14,11 +14,11 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import SeatedReducer, ShownReducer, carrier_angles, swung, turned
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.errors import InputError
-from tol3d.gearing.display import magnified_of
 from tol3d.gearing.links import LinkTrials, StatedLink
-from tol3d.gearing.placed import PlacedGear
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body
+from tol3d.gearing.shown.display import magnified_of
+from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World, built_body
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around

@@ -22,8 +22,7 @@ from tol3d.cycloid.grammar.tolerances import (
 from tol3d.cycloid.reducer.deviated import Acts, Effect
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.distributions import Distribution
-from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
-from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, ToothThicknessSpec
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of

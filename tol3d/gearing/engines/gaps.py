@@ -1,16 +1,21 @@
 """What an engine offers: signed gaps of candidate tooth pairs, with contact points and normals."""
 
+import importlib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
-from tol3d.gearing.model import Mesh, Reading
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.engines.status import INTERFERES, STATUS_TEXT
+from tol3d.gearing.model import Mesh, Model, Reading
 from tol3d.gears import Flank
+from tol3d.numerics.arrays import Array
+from tol3d.solids import FlankStrips
+from tol3d.system.statuses import Statuses
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 
@@ -71,16 +76,13 @@ class Engine(Protocol):
 
     def depth(self, mesh: Mesh) -> float:
         """How deep an overlap [mm] of a mesh's flanks the engine can still measure."""
-        ...
 
     def last_step(self, mesh: Mesh) -> float:
         """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as known."""
-        ...
 
     @property
     def chord_error(self) -> float:
         """Largest distance [mm] between its flanks and the mathematical ones."""
-        ...
 
     def gaps(
         self,
@@ -104,7 +106,6 @@ class Engine(Protocol):
             wanted: (trials, pairs); the others stay nan.
             section: of the driver's flank take the section in the middle of the common face, not the whole.
         """
-        ...
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,6 @@ class ReadingEngine(Engine, Protocol):
 
     def build(self, deviations: Array) -> Build:
         """Builds of the trials with these deviations (trials, components), as build.build makes them."""
-        ...
 
     def read(
         self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array, turning: frozenset[str] = frozenset()
@@ -150,7 +150,6 @@ class ReadingEngine(Engine, Protocol):
             driver_angle: (rows,) [rad].
             turning: names of the gears whose free turn is wanted.
         """
-        ...
 
     def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
         """Where the driven gear rests on the drive and on the back side, by one contact each; gap and turns are nan.
@@ -160,4 +159,32 @@ class ReadingEngine(Engine, Protocol):
             mesh, reading: which gears, and where on them; its flank does not matter.
             driver_angle: (positions,) [rad], the same of every trial; contacts are those of the first.
         """
-        ...
+
+
+EXACT = "tol3d.gearing.engines.exact"
+FCL = "tol3d.gearing.engines.fcl"
+
+
+def exact_engine(model: Model) -> ReadingEngine:
+    """The exact engine of a model."""
+    engine: ReadingEngine = importlib.import_module(EXACT).ExactEngine(model)
+    return engine
+
+
+def exact_is_compiled(model: Model) -> bool:
+    """Whether the exact engine's kernels for a model were compiled on this machine before."""
+    return bool(importlib.import_module(EXACT).ExactEngine(model).kept)
+
+
+def fcl_engine(model: Model, strips: Mapping[str, FlankStrips]) -> Engine:
+    """FCL on the measuring strips of every gear, by its name."""
+    engine: Engine = importlib.import_module(FCL).FclEngine(model, strips)
+    return engine
+
+
+STATUSES: Final = Statuses(
+    texts=tuple(STATUS_TEXT[code] for code in range(len(STATUS_TEXT))),
+    lacking=frozenset((STATUS_TEXT[INTERFERES],)),
+    words={"interferes": "jam", "no contact": "find no contact", "out of range": "are out of range"},
+    states={"interferes": "jammed", "no contact": "without contact"},
+)

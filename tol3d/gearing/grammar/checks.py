@@ -4,15 +4,11 @@ from collections.abc import Iterator
 from typing import Final
 
 from tol3d.gearing.grammar.moves import GearMeshSpec
-from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, ShaftSpec, carried, gears_on
-from tol3d.gearing.grammar.parts.gear import BoredGearSpec
-from tol3d.gearing.grammar.tolerances.axes_offset import AxesOffsetSpec
-from tol3d.gearing.grammar.tolerances.axial_shift import AxialShiftSpec
+from tol3d.gearing.grammar.parts import BearingSpec, BoredGearSpec, GearSpec, ShaftSpec, carried, gears_on
+from tol3d.gearing.grammar.tolerances.axes import AxesOffsetSpec, CentreDistanceSpec
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
-from tol3d.gearing.grammar.tolerances.centre_distance import CentreDistanceSpec
-from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
-from tol3d.gearing.grammar.tolerances.profile_form import ProfileFormSpec
-from tol3d.gearing.grammar.tolerances.run_out import RunOutSpec
+from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
+from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec, EccentricitySpec, RunOutSpec
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, farthest
 from tol3d.scene.place import KeyPath

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Final, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.gearing.grammar.moves.train import TrainSpec
+from tol3d.gearing.grammar.moves import TrainSpec
 from tol3d.scene.name import Name, Remark
 from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.builds.flank_offsets import deviates
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, Engine, Gaps
-from tol3d.gearing.flank_margin import margin_of
-from tol3d.gearing.flank_offsets import deviates
 from tol3d.gearing.model import Mesh, Model, Reading
+from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gears import Displaced, Flank, driver_teeth_at_one_tooth
 from tol3d.gears.flank import opposite
 from tol3d.gears.pair import candidate_teeth
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Status = NDArray[np.int8]
 
 LAST_ERROR = 0.8e-6  # modules; what the last step may miss where contact jumps along a face on which the arm varies

@@ -3,9 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tol3d.distributions import DeviationLaw
 from tol3d.gearing.effects import Effect
 from tol3d.system import contributor as system_contributor
@@ -13,7 +10,6 @@ from tol3d.system.contributor import column_names
 from tol3d.system.draw import Draw
 from tol3d.units import RAD_PER_ARCMIN
 
-Array = NDArray[np.float64]
 Unit = Literal["um", "mrad", "K", "arcmin"]
 
 INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arcmin": RAD_PER_ARCMIN}

@@ -2,24 +2,25 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Final
 
+import tol3d.gearing.model.train_measures  # noqa: F401  (registers its kinds)
 from tol3d.errors import SceneError
+from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
-from tol3d.gearing.grammar.study import GearStudyOptions
+from tol3d.gearing.grammar.tolerances.gears import ToothThicknessSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.brought import NOTHING, Brought, brought_into, with_shared_shafts
-from tol3d.gearing.model.implausible_teeth import implausible_teeth
 from tol3d.gearing.model.layout import Layout, layout_of
 from tol3d.gearing.model.links import links_between_shafts, links_of
 from tol3d.gearing.model.measure import Measure
-from tol3d.gearing.model.measures import measure_of
-from tol3d.gearing.model.mesh import Mesh
+from tol3d.gearing.model.mesh_measures import measure_of
 from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import assembly_warning, internal, pair_of, undercut_warning
 from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
-from tol3d.gearing.model.shafts import Arm, Train
+from tol3d.gearing.model.shafts import Arm, Mesh, Train
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,
@@ -34,6 +35,35 @@ from tol3d.gearing.model.trains import (
 )
 from tol3d.gears import LEFT, RIGHT, Gear
 from tol3d.scene import Scene
+from tol3d.scene.implausible import Implausible, farthest, warned
+from tol3d.scene.place import KeyPath
+
+THICKNESS: Final = Implausible(0.1, "write how much thicker than nominal the tooth is, and look at the unit")
+
+
+def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
+    """Warnings of tooth thicknesses off by more than a tenth.
+
+    Args:
+        scene: with the tolerances.
+        gears: by their names, nominal; tolerances of others are left out.
+
+    Raises:
+        SceneError: a tooth is thinned until its flanks meet at the tip, or beyond.
+    """
+    for name, spec in scene.of(ToothThicknessSpec).items():
+        if (gear := gears.get(spec.of)) is None:
+            continue
+        law = spec.distribution.resolve(scene.files)
+        arc = gear.thickness_radius / gear.section_arm if spec.measured == "normal" else 1.0
+        path: KeyPath = ("tolerances", name, "distribution")
+        thinnest, left = law.extremes[0] * arc, gear.section_thickness
+        if -thinnest >= gear.section_tip:
+            words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
+            words += f"{gear.section_tip:.4g} mm, where their flanks meet at the tip, got {thinnest:.4g} mm"
+            raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
+        if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, farthest(law) * arc):
+            yield warned(path, sentence)
 
 
 def model_from_scene(scene: Scene) -> Model:

@@ -13,29 +13,28 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.model.drive import Drive, drives_of, periods_of
 from tol3d.gearing.model.links import (
+    Drive,
     Link,
     LoadPath,
     back_to_root,
     carriers,
+    drives_of,
     first_drivers,
     freed_turn,
     links_between_shafts,
     load_path_between,
     onwards,
+    periods_of,
     turned_by,
     upstream,
 )
-from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.networks import network_path
-from tol3d.gearing.model.shafts import Carried, Shaft
-
-Array = NDArray[np.float64]
+from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -107,10 +106,6 @@ class Layout:
     def seating(self, mesh: str) -> Closing:
         """How the driven gear of a mesh lies in it."""
         return self.closed.get(mesh, PLACES)
-
-    def drive_of(self, mesh: str) -> Drive:
-        """The tree that a mesh belongs to."""
-        return next(drive for drive in self.drives if mesh in drive.moves)
 
     def behind(self, shaft: str) -> tuple[Link, ...]:
         """The links from a shaft back to its root; the first of parallel load paths."""

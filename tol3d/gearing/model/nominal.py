@@ -10,8 +10,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.model.mesh import Mesh
-from tol3d.gearing.model.shafts import Carried
+from tol3d.gearing.model.shafts import Carried, Mesh
 from tol3d.gears import BevelPair, SpurGear, SpurPair
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec

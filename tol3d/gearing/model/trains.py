@@ -9,12 +9,11 @@ import numpy as np
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.moves import GearMeshSpec, LinkSpec, TrainSpec, meshes_of
 from tol3d.gearing.grammar.parts import ArmSpec, BearingSpec, GearSpec, ShaftSpec
-from tol3d.gearing.grammar.tolerances import ReducerBacklashSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.layout import Layout, misfit
-from tol3d.gearing.model.mesh import Mesh
 from tol3d.gearing.model.shaft_trees import ratio_text
-from tol3d.gearing.model.shafts import Arm, Carried, Shaft, Train, Vector
+from tol3d.gearing.model.shafts import Arm, Carried, Mesh, Shaft, Train, Vector
 from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath

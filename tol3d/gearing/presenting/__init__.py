@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from tol3d.gearing.summary_types import TrainsOfRun
+from tol3d.gearing.summary.types import TrainsOfRun
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from tol3d.simulate import Replay
     from tol3d.study.simulation import Simulation
 
-DISPLAY: Final = "tol3d.gearing.display"
+DISPLAY: Final = "tol3d.gearing.shown.display"
 
 
 class GearPresenter:

@@ -9,7 +9,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch, Patch, Polygon
 
-from tol3d.gearing.presenting.chain_bars import draw_bars, draw_shares, highest_bar
+from tol3d.gearing.presenting.chain_bars import (
+    draw_bars,
+    draw_shares,
+    draw_sums,
+    height_of_sums,
+    highest_bar,
+    sum_lines,
+)
 from tol3d.gearing.presenting.chain_grid import (
     ARM,
     CAPTIONS,
@@ -26,10 +33,9 @@ from tol3d.gearing.presenting.chain_grid import (
     published_colours,
     rows_of,
 )
-from tol3d.gearing.presenting.chain_sum import draw_sums, height_of_sums, sum_lines
 from tol3d.gearing.presenting.link_symbol import draw_link, draw_text
 from tol3d.gearing.presenting.shown_stage import ShownStage, stages_of, trains_of, whole_ratio_text
-from tol3d.gearing.summary_types import TrainSummary
+from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
 from tol3d.report.column import seated_text
 from tol3d.report.label import legible, wrapped

@@ -13,14 +13,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from numpy.typing import NDArray
 
 from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import ShownStage, shafts_along
-from tol3d.gearing.summary_types import TrainSummary
+from tol3d.gearing.summary.types import TrainSummary
+from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import GREY, PUBLISHED_COLOURS
-
-Array = NDArray[np.float64]
 
 NO_CAPTIONS: Final[Mapping[float, str]] = {}
 WIDTH: Final = 15.0

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from tol3d.gearing.coefficients import DISAGREES, ONE_SIDED, Coefficient, coefficients_by_value, of_one_value
 from tol3d.gearing.model import Backlash, Measure, Model
+from tol3d.gearing.slopes.coefficients import DISAGREES, ONE_SIDED, Coefficient, coefficients_by_value, of_one_value
 from tol3d.report.number import degrees_text, percent_cell
 from tol3d.report.page import Heading, PageItem, Row, Table, line, titled
 

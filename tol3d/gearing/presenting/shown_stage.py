@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
-from tol3d.gearing.summary_types import Ends, StageSummary, TrainMeasureSummary, TrainsOfRun, TrainSummary
+from tol3d.gearing.summary.types import Ends, StageSummary, TrainMeasureSummary, TrainsOfRun, TrainSummary
 from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
 from tol3d.runs.summary.measure import MeasureSummary

@@ -11,14 +11,13 @@ from importlib import import_module
 from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.gearing.display import SeatedBuild
-from tol3d.gearing.linked import link_contributors
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.model import Model
-from tol3d.gearing.presenting.gear_display import GearDisplay
-from tol3d.gearing.presenting.moved_gears import TURN, whole_train
+from tol3d.gearing.play.linked import link_contributors
+from tol3d.gearing.presenting.gear_display import TURN, GearDisplay, whole_train
+from tol3d.gearing.shown.display import SeatedBuild
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, World
 from tol3d.report.motion import Motion
 from tol3d.report.page import PageItem
@@ -26,8 +25,6 @@ from tol3d.report.presenter import View, presenter_at
 from tol3d.runs.summary.run import RunSummary
 from tol3d.system.contributor import Contributor
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 TITLE_SIZE: Final = 13
 
@@ -53,11 +50,9 @@ class ShowsLinks(Protocol):
 
     def link_blocks(self, link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
         """What a link of a scene is, and what contributors act on it, before any trial."""
-        ...
 
     def link_sections(self, summary: RunSummary) -> Sequence[PageItem]:
         """Further tables of a run of a train; none where its summary has nothing of such links."""
-        ...
 
     def shown_link(self, link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
         """A link in the first of some trials.
@@ -67,7 +62,6 @@ class ShowsLinks(Protocol):
             seen: what it deviates by, and where its driver stands.
             world_from_driver: pose of the driver's shaft at 0, (4, 4).
         """
-        ...
 
 
 def shows(link: StatedLink) -> ShowsLinks | None:

@@ -15,7 +15,7 @@ from tol3d.gearing.presenting.shown_stage import (
     trains_of,
     whole_ratio_text,
 )
-from tol3d.gearing.summary_types import TrainSummary
+from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report.number import percent_text, tip_mm, value_text
 from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
 from tol3d.report.presenter import FurtherRow

@@ -10,18 +10,16 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.gearing.display import SeatedBuild, shows_shafts
 from tol3d.gearing.model import Arm, LostMotion, Model
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.placed import PlacedGear, SeatedMesh
 from tol3d.gearing.presenting.shaft_sizes import ShaftSizes, Span, arm_body
+from tol3d.gearing.shown.display import SeatedBuild, shows_shafts
+from tol3d.gearing.shown.placed import PlacedGear, SeatedMesh
 from tol3d.numerics import frames
+from tol3d.numerics.arrays import Array
 from tol3d.report.body import Arrow, Body, Surface, World
 from tol3d.solids import PosedBody, PosedGear, display_mesh
-
-Array = NDArray[np.float64]
 
 BODY_DEFLECTION: Final = 1 / 500  # of the diameter; forty facets round, their edges too blunt to be drawn
 

@@ -4,26 +4,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.gearing.breakdowns import staged_measures
-from tol3d.gearing.linked import Remembered, by_theory
+from tol3d.gearing.meshing.seats import driver_angles
 from tol3d.gearing.model import Backlash, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import gear_measures
-from tol3d.gearing.play import Play, SeatKey, seat_key
-from tol3d.gearing.seats import driver_angles
-from tol3d.gearing.stack_up import (
-    analytic_backlash,
-    analytic_transmission_error,
-    first_order,
-    per_normal_backlash,
-)
+from tol3d.gearing.play.linked import Remembered, by_theory
+from tol3d.gearing.play.play import Play, SeatKey, seat_key, staged_measures
+from tol3d.gearing.stack_up import analytic_backlash, analytic_transmission_error, first_order, per_normal_backlash
 from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
+from tol3d.numerics.arrays import Array
 from tol3d.system import measure as system_measure
 from tol3d.system.road import Answers
 from tol3d.system.trials import Trials
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

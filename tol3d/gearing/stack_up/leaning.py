@@ -13,17 +13,15 @@ from functools import lru_cache, partial
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.model import Contributor
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import GearPair
+from tol3d.numerics.arrays import Array
 from tol3d.samplers.sobol import Sobol
 from tol3d.samplers.stream import Stream
 from tol3d.system.closed_form import Share
 from tol3d.system.contributor import Contributor as AnyContributor
-
-Array = NDArray[np.float64]
 
 Change = Callable[[Mapping[str, Array]], Array]
 

@@ -1,6 +1,6 @@
 """Normal backlash of a pair of gears: the nominal one plus the first-order change by each deviation.
 
-The terms of each effect are in terms/; here they are added up. What is left out has a file for each kind of pair.
+The terms of each effect are in terms.py; here they are added up. What is left out is in backlash.py, by kind of pair.
 Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sections 2.1 and 3.1, where
 alpha_w = alpha and delta = 45 deg.
 """
@@ -11,13 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.model import Mesh, Model, Reading
-from tol3d.gearing.stack_up.neglect import Neglect
 from tol3d.gearing.stack_up.nominal_mesh import NominalMesh, Pair
-from tol3d.gearing.stack_up.term import Role
+from tol3d.gearing.stack_up.term import Neglect, Role
 from tol3d.gearing.stack_up.terms import contribution
 from tol3d.gearing.stack_up.tooth_pairs import ToothPairs, distinct, tooth_pairs
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 class Stack(NominalMesh[Pair]):

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, HELIX, SHAPES, SLOPE, UNIFORM
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import QUICK, kernel, part
 from tol3d.numerics.quick_waves import cos_and_sin
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 FAR = 0.1  # mm; a pair that takes so much less than the first one does not come before it by another look
@@ -32,7 +32,7 @@ class GearTeeth(NamedTuple):
         form, tip: rolls at which they begin and end [rad].
         face: width of the face [mm].
         wave_rate, wave_middle: phase of the waves of their form per roll, and the roll at which it is 0 [1; rad]; a
-            rate of 0 is a barrel, see effects/flank_deviation.py.
+            rate of 0 is a barrel, see FlankDeviation in effects.py.
     """
 
     base: float

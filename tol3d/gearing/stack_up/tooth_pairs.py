@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.effects import FORM, SHAPES, FlankDeviation
-from tol3d.gearing.flank_margin import margin_of
 from tol3d.gearing.model import Contributor, Mesh, Model, Reading
+from tol3d.gearing.model.flank_margin import margin_of
 from tol3d.gearing.stack_up.term import Role
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.flank import RIGHT
 from tol3d.gears.pair import CONTACT_MARGIN
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 NUMBERS_AT_ONCE: Final = 4_000_000

@@ -19,7 +19,6 @@ flanks that deviate add what the pair that touches first stands out by, see toot
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tol3d.gearing.model import Backlash, Model, TransmissionError
 from tol3d.gearing.stack_up.backlash import per_normal_backlash, stack_of
@@ -27,8 +26,7 @@ from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gearing.stack_up.term import Term
 from tol3d.gearing.stack_up.tooth_pairs import teeth_deviate
 from tol3d.gears import GearPair
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 def analytic_transmission_error(

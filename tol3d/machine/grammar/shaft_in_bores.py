@@ -7,7 +7,7 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.gearing.grammar.parts.shaft_reference import ShaftReference
+from tol3d.gearing.grammar.parts import ShaftReference
 from tol3d.scene.listed import listed
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name

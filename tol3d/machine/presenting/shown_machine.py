@@ -10,8 +10,8 @@ import numpy as np
 from tol3d.assembly.presenting.shown_assembly import RIGID, Placed, bodies, placed_in
 from tol3d.assembly.presenting.symbols import unnamed
 from tol3d.errors import RunError
-from tol3d.gearing.display import replayed_build, replayed_of, seated_build
 from tol3d.gearing.presenting.gear_display import GearDisplay
+from tol3d.gearing.shown.display import replayed_build, replayed_of, seated_build
 from tol3d.machine.system import MachineSystem
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import World

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.gearing.placed import PlacedGear
+from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.model.planetary_set import PlanetarySet

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tol3d.errors import InputError
-from tol3d.gearing.model.pairs.spur_pair import cylindrical_gear
-from tol3d.gearing.placed import PlacedGear
+from tol3d.gearing.model.pairs import cylindrical_gear
+from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import InternalGear, SpurGear
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
+from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name

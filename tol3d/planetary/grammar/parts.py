@@ -4,8 +4,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.parts.turning import TurningSpec
+from tol3d.gearing.grammar.parts import GearSpec, TurningSpec
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec

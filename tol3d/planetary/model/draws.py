@@ -12,10 +12,8 @@ from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
 from tol3d.distributions import DeviationLaw
-from tol3d.gearing.grammar.parts.gear import GearSpec
-from tol3d.gearing.grammar.tolerances.clocking import ClockingSpec
-from tol3d.gearing.grammar.tolerances.eccentricity import EccentricitySpec
-from tol3d.gearing.grammar.tolerances.tooth_thickness import ToothThicknessSpec
+from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.planetary.model.deviated import Acts

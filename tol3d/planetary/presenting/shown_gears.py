@@ -9,10 +9,10 @@ from typing import Final
 import numpy as np
 
 from tol3d.errors import InputError
-from tol3d.gearing.display import magnified_of
 from tol3d.gearing.links import LinkTrials, StatedLink
 from tol3d.gearing.presenting.shown_train import ShownLink
 from tol3d.gearing.presenting.whole_trains import gear_body, plain_body
+from tol3d.gearing.shown.display import magnified_of
 from tol3d.gears import LEFT, SpurGear
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import upright_pose

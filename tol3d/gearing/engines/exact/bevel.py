@@ -8,10 +8,18 @@ turns by (q - q_f)/sin(beta). See gears/spherical_involute.py for the plane and 
 import math
 from typing import NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
-from tol3d.gearing.engines.exact.numbers import NOWHERE, Foot, Nearest, Pose
-from tol3d.gearing.engines.exact.small_angles import arcsine, sine
+from tol3d.gearing.engines.exact.foot import (
+    PER_TURN,
+    TURN,
+    external,
+    flank_of,
+    foot,
+    grown,
+    line_of_action,
+    section,
+    turn_to,
+)
+from tol3d.gearing.engines.exact.numbers import NOWHERE, Facing, Foot, Nearest, Pose, arcsine, sine
 from tol3d.numerics.compiled import inlined, variant
 
 LEAST_RISE = 1e-9  # mm; a point within the base cone has no such plane
@@ -77,18 +85,9 @@ def in_mate(pose: Pose, x: float, y: float, z: float) -> tuple[float, float, flo
 
 
 @variant(foot, BevelTooth)
-def bevel_foot(
-    own: BevelTooth,
-    mate: BevelTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    q: float,
-    radius: float,
-) -> Foot:
+def bevel_foot(own: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, q: float, radius: float) -> Foot:
     """See foot.foot: the point at an in-plane angle [rad] and a cone distance [mm]."""
+    own_azimuth, mate_azimuth, sigma, offset = facing
     f = own_azimuth + sigma * (q * own.per_base - own.half)
     cos, sin = math.cos(f), math.sin(f)
     cos_q, sin_q = math.cos(q), math.sin(q)
@@ -149,15 +148,6 @@ def bevel_turn(mate: BevelTooth, gap: float, offset: float, at: Foot) -> float:
 
 
 @variant(line_of_action, BevelTooth)
-def bevel_line_of_action(
-    own: BevelTooth,
-    mate: BevelTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
-) -> Nearest:
+def bevel_line_of_action(own: BevelTooth, mate: BevelTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
     """Nothing is closed as soon as the apexes part."""
     return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
-from tol3d.gearing.displacements import Displacement, FlankOffsets, Growth, PivotShift, displacements
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.builds.displacements import Displacement, FlankOffsets, Growth, PivotShift, displacements
+from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact.sums import SCALE, SLOTS, write_builds
-from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Model
-
-Array = NDArray[np.float64]
+from tol3d.numerics.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,8 @@ millimetres. What is left out is of the order of (its slope)^2 times itself, 1e-
 import math
 from typing import Any, NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import flank_of, foot, grown, line_of_action, section, turn_to
-from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.foot import external, flank_of, foot, grown, line_of_action, section, turn_to
+from tol3d.gearing.engines.exact.numbers import CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.numerics.compiled import part, variant
 
@@ -30,7 +29,7 @@ class DeviatedTooth(NamedTuple):
         scale: by which the gear has grown.
         middle, per_length: of the profile's rolls, and one over their span [rad, 1/rad].
         per_face: one over the width of the whole face [1/mm].
-        waves: of the form, see effects/flank_deviation.py.
+        waves: of the form, see FlankDeviation in effects.py.
         level, slope, form, helix: of the flank [mm]; 0 where none is meant.
     """
 
@@ -194,26 +193,18 @@ def deviated_flank(tooth: DeviatedTooth, flanks: FlankOffsets, gear: int, place:
 
 
 @variant(foot, DeviatedTooth)
-def deviated_foot(
-    own: DeviatedTooth,
-    mate: DeviatedTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    roll: float,
-    z: float,
-) -> Foot:
+def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
     """See foot.foot: of the point that own flank has there, the gap is less by what the mate's stands out at the foot.
 
     A point d outside an involute lies on one that is turned by d/r_b, d/r_b of roll further on. As it rolls on by dt,
     its foot's roll goes back by r_b t dt over the foot's radius of curvature: both flanks are parallel where they are
     nearest, to the order of their slopes. A flank that slopes by s is nearer by s^2/2 of the gap.
     """
+    own_azimuth, mate_azimuth, sigma, offset = facing
     first = offset_at(own, roll, z)
     ahead = first.value * own.per_base
-    at = foot(plain(own), plain(mate), pose, own_azimuth - sigma * ahead, mate_azimuth, sigma, offset, roll + ahead, z)
+    before = Facing(own_azimuth - sigma * ahead, mate_azimuth, sigma, offset)
+    at = foot(plain(own), plain(mate), pose, before, roll + ahead, z)
     second = offset_at(mate, at.profile, at.face)
     out = second.value
     if at.profile > 0.0:
@@ -263,20 +254,15 @@ def deviated_turn(mate: DeviatedTooth, gap: float, offset: float, at: Foot) -> f
 
 @variant(line_of_action, DeviatedTooth)
 def deviated_line_of_action(
-    own: DeviatedTooth,
-    mate: DeviatedTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
+    own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """Of parallel involutes as of SpurTooth, but each pair has a gap of its own; of others nothing is known."""
+    own_azimuth, mate_azimuth, sigma, offset = facing
     out = own.level + mate.level
     if not (is_level(own) and is_level(mate)):
         return Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
-    near = line_of_action(plain(own), plain(mate), pose, own_azimuth, mate_azimuth, sigma, offset + out, face)
+    apart = Facing(own_azimuth, mate_azimuth, sigma, offset + out)
+    near = line_of_action(plain(own), plain(mate), pose, apart, face)
     how = NOWHERE if near.how == NOWHERE else CLOSED
     x, y = near.x - own.level * near.nx, near.y - own.level * near.ny
     return Nearest(

@@ -5,22 +5,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gearing.build import Build
+from tol3d.gearing.builds.build import Build
+from tol3d.gearing.builds.flank_offsets import FlankPlaces
 from tol3d.gearing.engines.exact.compiled_displacements import compiled_displacements
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.kernels import deviated_gaps, deviated_read, deviated_rests
-from tol3d.gearing.engines.exact.pair_kernels import PairKernels, kernels_of
+from tol3d.gearing.engines.exact.kernels import PairKernels, deviated_gaps, deviated_read, deviated_rests, kernels_of
 from tol3d.gearing.engines.exact.rows import CONTACT, DRIVEN_ANGLE, DRIVEN_TURN, DRIVER_TURN, GAP, READINGS
 from tol3d.gearing.engines.exact.seating import ALL_TEETH, DRIVEN_TOOTH, DRIVER_TOOTH
 from tol3d.gearing.engines.exact.spur import SpurTooth
 from tol3d.gearing.engines.gaps import Gaps, MeshReading
 from tol3d.gearing.engines.status import OUT_OF_RANGE
-from tol3d.gearing.flank_margin import margin_of, standing_out
-from tol3d.gearing.flank_offsets import FlankPlaces
 from tol3d.gearing.model import Mesh, Model, Reading, TransmissionError
+from tol3d.gearing.model.flank_margin import margin_of, standing_out
 from tol3d.gears import Flank
+from tol3d.numerics.arrays import Array
 
-Array = NDArray[np.float64]
 Teeth = NDArray[np.int64]
 
 DEPTH = 1.0  # mm

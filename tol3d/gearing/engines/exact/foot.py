@@ -6,31 +6,20 @@ The bodies here are never run: as a kernel is compiled for a kind of teeth, each
 import math
 from typing import Any
 
-from tol3d.gearing.engines.exact.numbers import Foot, Nearest
+from tol3d.gearing.engines.exact.numbers import Facing, Foot, Nearest
+from tol3d.numerics.compiled import variant
 
 TURN = 2.0 * math.pi
 PER_TURN = 1.0 / TURN
 
 
-def foot(
-    own: Any,
-    mate: Any,
-    pose: Any,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    profile: float,
-    face: float,
-) -> Foot:
+def foot(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Foot:
     """The foot on the mate's endless flank of a point of own flank; one variant a kind of gears.
 
     Args:
         own, mate: the gears' teeth.
         pose: mate from own.
-        own_azimuth, mate_azimuth: of the middle of the teeth [rad], their flanks' turns included.
-        sigma: side of the flanks, the same for both.
-        offset: of both flanks along their normals, together [mm].
+        facing: which flanks.
         profile, face: the point's parameters.
     """
     raise NotImplementedError
@@ -57,16 +46,7 @@ def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
     raise NotImplementedError
 
 
-def line_of_action(
-    own: Any,
-    mate: Any,
-    pose: Any,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
-) -> Nearest:
+def line_of_action(own: Any, mate: Any, pose: Any, facing: Facing, face: float) -> Nearest:
     """The nearest points of two flanks where they are known in closed form; NOWHERE in general. One variant a kind."""
     raise NotImplementedError
 
@@ -102,3 +82,25 @@ def widest(driver: Any, driven: Any, tangent: float) -> float:
         tangent: length of the tangent of both base circles [mm].
     """
     raise NotImplementedError
+
+
+def external(kind: type) -> None:
+    """Register the gears of a kind as external; see foot.py."""
+    variant(opening, kind)(external_opening)
+    variant(handed, kind)(external_side)
+    variant(widest, kind)(external_radius)
+
+
+def external_opening(driven: Any) -> float:
+    """In the sense in which the driver leaves its mate."""
+    return 1.0
+
+
+def external_side(driver: Any, sigma: float) -> float:
+    """Flanks of one side meet."""
+    return sigma
+
+
+def external_radius(driver: Any, driven: Any, tangent: float) -> float:
+    """r_1 r_2/(r_1 + r_2), where r_1 + r_2 is the tangent, is at most a quarter of it."""
+    return 0.25 * tangent

@@ -23,10 +23,9 @@ from tol3d.gearing.engines.exact.foot import (
     turn_to,
     widest,
 )
-from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.spur import involute_foot
 from tol3d.numerics.compiled import variant
-
-SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
 
 
 class InternalTooth(NamedTuple):
@@ -92,61 +91,10 @@ def internal_radius(driver: InternalTooth, driven: InternalTooth, tangent: float
 
 @variant(foot, InternalTooth)
 def internal_foot(
-    own: InternalTooth,
-    mate: InternalTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    profile: float,
-    z: float,
+    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, profile: float, z: float
 ) -> Foot:
     """See foot.foot: the point at a roll times sense [rad] and a height [mm]; sigma is the side of unwinding."""
-    roll = own.sense * profile
-    beta = sigma * (roll - own.half) + own_azimuth
-    cos, sin = math.cos(beta), math.sin(beta)
-    px = own.base * (cos + sigma * roll * sin)
-    py = own.base * (sin - sigma * roll * cos)
-    x = pose.xx * px + pose.xy * py + pose.xz * z + pose.x
-    y = pose.yx * px + pose.yy * py + pose.yz * z + pose.y
-    height = pose.zx * px + pose.zy * py + pose.zz * z + pose.z
-    square = x * x + y * y
-    tangent = math.sqrt(max(square - mate.base * mate.base, SHORTEST_TANGENT * SHORTEST_TANGENT))
-    ux = x * mate.base - sigma * y * tangent
-    uy = y * mate.base + sigma * x * tangent
-    angle = sigma * (math.atan2(uy, ux) - mate_azimuth) + mate.half
-    foot_roll = angle - TURN * math.floor(angle * PER_TURN + 0.5)
-    scale = 1.0 / square
-    ux *= scale
-    uy *= scale
-    out = mate.sense * sigma
-    nx, ny = out * uy, -out * ux
-    # the point moves along (cos, sin) as it rolls, across it as that turns
-    vx, vy = pose.xx * cos + pose.xy * sin, pose.yx * cos + pose.yy * sin
-    wx, wy = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin
-    towards = nx * vx + ny * vy
-    across = own.base * roll * (ux * vx + uy * vy)
-    sideways = ux * pose.xz + uy * pose.yz
-    curvature = mate.sense / tangent
-    return Foot(
-        mate.sense * (tangent - mate.base * foot_roll) - offset,
-        mate.sense * foot_roll,
-        height,
-        (mate.sense * tangent - offset) * mate.per_base,
-        x,
-        y,
-        height,
-        nx,
-        ny,
-        0.0,
-        own.sense * own.base * roll * towards,
-        nx * pose.xz + ny * pose.yz,
-        own.base * (towards + sigma * roll * (nx * wx + ny * wy)) + across * across * curvature,
-        own.sense * across * sideways * curvature,
-        sideways * sideways * curvature,
-        0.0,
-    )
+    return involute_foot(own, mate, (own.sense, mate.sense), pose, facing, profile, z)
 
 
 @variant(turn_to, InternalTooth)
@@ -157,20 +105,14 @@ def internal_turn(mate: InternalTooth, gap: float, offset: float, at: Foot) -> f
 
 @variant(line_of_action, InternalTooth)
 def internal_line_of_action(
-    own: InternalTooth,
-    mate: InternalTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
+    own: InternalTooth, mate: InternalTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
     """On parallel axes flanks touch on the line that touches both base circles, whose ends are T apart.
 
     From these the flanks stand r_b t away, t = alpha_w + half - sigma (azimuth off the line of centres): the gap is
     r_b t of the ring less that of the pinion and T, the same for every pair of one base pitch.
     """
+    own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     square, bases = pose.x * pose.x + pose.y * pose.y, -own.sense * own.base - mate.sense * mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:

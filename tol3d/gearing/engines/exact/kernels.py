@@ -1,14 +1,23 @@
 """The kernels: one of each sort for every kind of pair, compiled for the arrays of a Build and no others."""
 
+import math
+from dataclasses import dataclass
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
 from tol3d.gearing.engines.exact.bevel import BevelTooth
 from tol3d.gearing.engines.exact.deviated import DeviatedTooth
-from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows
+from tol3d.gearing.engines.exact.deviated_rows import gap_deviated_rows, read_deviated_rows, rest_deviated_rows
 from tol3d.gearing.engines.exact.internal import InternalTooth
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.rests import rest_rows
 from tol3d.gearing.engines.exact.rows import gap_rows, read_rows
 from tol3d.gearing.engines.exact.spur import SpurTooth
-from tol3d.gearing.engines.exact.tooth_rests import rest_deviated_rows
+from tol3d.gears import BevelGear, BevelPair, GearPair, InternalGear, InternalPair, SpurGear, SpurPair
+from tol3d.gears.pair import CONTACT_MARGIN
 from tol3d.numerics.compiled import Kernel
 
 BUILD = "float64[:, :, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1]"
@@ -37,3 +46,141 @@ internal_rests = Kernel(rest_rows, INTERNAL, REST)
 deviated_read = Kernel(read_deviated_rows, DEVIATED, READ_DEVIATED)
 deviated_gaps = Kernel(gap_deviated_rows, DEVIATED, GAPS_DEVIATED)
 deviated_rests = Kernel(rest_deviated_rows, DEVIATED, REST_DEVIATED)
+
+
+@dataclass(frozen=True, eq=False)
+class PairKernels:
+    """A pair as kernels know it, and its kernels.
+
+    Args:
+        numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
+        read, gaps, rests: see kernels.
+        flanks: where offsets of single flanks lie, of a pair that has any.
+        standing_out: how far one of them may stand out of its neighbours [mm].
+    """
+
+    numbers: tuple[Any, Any, PairNumbers, Pose]
+    read: Kernel
+    gaps: Kernel
+    rests: Kernel
+    flanks: NDArray[np.int64] | None = None
+    standing_out: float = math.inf
+
+
+@singledispatch
+def kernels_of(pair: GearPair) -> PairKernels:
+    """A pair's numbers and kernels."""
+    raise TypeError(f"engines/exact has no kernels for {type(pair).__name__}")
+
+
+@kernels_of.register
+def _(pair: SpurPair) -> PairKernels:
+    alpha = pair.working_pressure_angle
+    tangent = pair.centre_distance * math.sin(alpha)
+    numbers = _pair_numbers(
+        pair,
+        at_pitch=alpha + pair.pinion.base_half_angle,
+        per_azimuth=1.0,
+        lever=max(pair.pinion.face_width, pair.wheel.face_width) / 2,
+        along=0.0,
+        in_all=0.0,
+        by_x=math.cos(alpha) / tangent,
+        by_y=math.sin(alpha) / tangent,
+        by_z=0.0,
+        by_tilt_x=0.0,
+        by_tilt_y=0.0,
+    )
+    return PairKernels(
+        (_spur(pair.pinion), _spur(pair.wheel), numbers, _nominal(pair)), spur_read, spur_gaps, spur_rests
+    )
+
+
+def _spur(gear: SpurGear) -> SpurTooth:
+    half = gear.face_width / 2
+    profile = (gear.base_half_angle, gear.form_roll, gear.tip_roll)
+    return SpurTooth(gear.base_radius, 1.0 / gear.base_radius, *profile, -half, half)
+
+
+@kernels_of.register
+def _(pair: InternalPair) -> PairKernels:
+    """Of a ring's flank counts its roll backwards; see InternalTooth."""
+    alpha = pair.working_pressure_angle
+    tangent = pair.centre_distance * math.sin(alpha)
+    driver, driven = _in_ring(pair.pinion), _in_ring(pair.wheel)
+    numbers = _pair_numbers(
+        pair,
+        at_pitch=driver.sense * (alpha + driver.half),
+        per_azimuth=1.0,
+        lever=max(pair.pinion.face_width, pair.wheel.face_width) / 2,
+        along=0.0,
+        in_all=0.0,
+        by_x=-math.cos(alpha) / tangent,
+        by_y=-driver.sense * math.sin(alpha) / tangent,
+        by_z=0.0,
+        by_tilt_x=0.0,
+        by_tilt_y=0.0,
+    )._replace(ratio=-pair.wheel.teeth / pair.pinion.teeth)
+    return PairKernels((driver, driven, numbers, _nominal(pair)), internal_read, internal_gaps, internal_rests)
+
+
+def _in_ring(gear: SpurGear | InternalGear) -> InternalTooth:
+    half, per_base = gear.face_width / 2, 1.0 / gear.base_radius
+    if isinstance(gear, InternalGear):
+        profile = (-gear.base_half_angle, -gear.form_roll, -gear.tip_roll)
+        return InternalTooth(gear.base_radius, per_base, *profile, -half, half, -1.0)
+    profile = (gear.base_half_angle, gear.form_roll, gear.tip_roll)
+    return InternalTooth(gear.base_radius, per_base, *profile, -half, half, 1.0)
+
+
+@kernels_of.register
+def _(pair: BevelPair) -> PairKernels:
+    pinion, wheel = pair.pinion, pair.wheel
+    sine, cosine = math.sin(wheel.base_angle), math.cos(wheel.base_angle)
+    in_all = pinion.pitch_q + wheel.pitch_q
+    # where the plane of action touches the wheel's base cone, seen from the pitch line
+    azimuth = math.atan2(math.sin(wheel.pitch_q), sine * math.cos(wheel.pitch_q))
+    whole = math.sin(in_all) / math.tan(pinion.base_angle)
+    radius = pair.mean_cone_distance
+    numbers = _pair_numbers(
+        pair,
+        at_pitch=pinion.pitch_q + math.sin(pinion.base_angle) * pinion.pitch_half_angle,
+        per_azimuth=math.sin(pinion.base_angle),
+        lever=pinion.outer_cone_distance,
+        along=1.0,
+        in_all=in_all,
+        by_x=-cosine * math.cos(azimuth) / (radius * whole),
+        by_y=-cosine * math.sin(azimuth) / (radius * whole),
+        by_z=sine / (radius * whole),
+        by_tilt_x=math.sin(azimuth) / whole,
+        by_tilt_y=-math.cos(azimuth) / whole,
+    )
+    return PairKernels((_bevel(pinion), _bevel(wheel), numbers, _nominal(pair)), bevel_read, bevel_gaps, bevel_rests)
+
+
+def _bevel(gear: BevelGear) -> BevelTooth:
+    sine, cosine = math.sin(gear.base_angle), math.cos(gear.base_angle)
+    profile = (gear.base_half_angle, gear.form_q, gear.tip_q)
+    return BevelTooth(
+        sine, cosine, 1.0 / sine, 1.0 / cosine, *profile, gear.inner_cone_distance, gear.outer_cone_distance
+    )
+
+
+def _pair_numbers(pair: GearPair, **own: float) -> PairNumbers:
+    """What all pairs say alike, with what a kind says of its own."""
+    lowest, highest = pair.touching_azimuths
+    return PairNumbers(
+        lowest=lowest,
+        highest=highest,
+        driver_pitch=pair.pinion.angular_pitch,
+        driven_pitch=pair.wheel.angular_pitch,
+        driven_start=float(pair.driven_angle(np.zeros(1))[0]),
+        ratio=pair.wheel.teeth / pair.pinion.teeth,
+        section=pair.pinion_section,
+        reach=CONTACT_MARGIN * pair.pinion.base_pitch * math.sin(pair.working_pressure_angle),
+        **own,
+    )
+
+
+def _nominal(pair: GearPair) -> Pose:
+    rest = pair.world_from_wheel
+    return Pose(*rest.T.ravel().tolist(), *(-(rest.T @ pair.wheel_origin)).tolist())

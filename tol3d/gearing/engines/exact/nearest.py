@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from tol3d.gearing.engines.exact.foot import foot, line_of_action, turn_to
-from tol3d.gearing.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Foot, Nearest, Pose
+from tol3d.gearing.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE, Facing, Foot, Nearest, Pose
 from tol3d.numerics.compiled import part
 
 STEPS = 20  # Newton takes one or two from the line of action; more only where a face ends
@@ -31,25 +31,14 @@ def down_to(slope: float, bow: float, low: float, high: float) -> float:
 
 @part
 def lowest(
-    own: Any,
-    mate: Any,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    start: float,
-    face: float,
-    per_turn: float,
-    last_fall: float,
+    own: Any, mate: Any, pose: Pose, facing: Facing, start: float, face: float, per_turn: float, last_fall: float
 ) -> tuple[Foot, float, float, float, bool]:
     """The lowest gap over own flank, and where: (foot, last fall, profile, face, whether the faces overlap).
 
     Args:
         own, mate: the gears' teeth; of `own`, low and high bound the search along the face.
         pose: mate from own.
-        own_azimuth, mate_azimuth, sigma: which flanks.
-        offset: of both along their normals, together [mm].
+        facing: which flanks.
         start, face: where to start on `own`.
         per_turn: 1 to look for the smallest turn of the mate, 0 for the smallest gap.
         last_fall: [mm], a step that lowers the gap by less is the last; it is not looked at again.
@@ -57,7 +46,7 @@ def lowest(
     profile = min(max(start, own.begin), own.end)
     fall, steps = 0.0, STEPS
     while True:
-        at = foot(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, profile, face)
+        at = foot(own, mate, pose, facing, profile, face)
         # a point that the mate turns to touches it as far from the apex as the point is, not as its foot is
         there = at.face + 0.5 * per_turn * at.gap * at.gap * at.nearness
         low, high = max(own.low, face + mate.low - there), min(own.high, face + mate.high - there)
@@ -94,29 +83,18 @@ def inverse(pose: Pose) -> Pose:
 
 @part
 def nearest(
-    own: Any,
-    mate: Any,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    start: float,
-    face: float,
-    per_turn: float,
-    last_fall: float,
+    own: Any, mate: Any, pose: Pose, facing: Facing, start: float, face: float, per_turn: float, last_fall: float
 ) -> Nearest:
     """The nearest points of two flanks; arguments as in `lowest`.
 
     Where the foot would lie beyond an end of the mate's profile, its tip edge most often, that edge is nearest to own
     flank: the same search the other way round.
     """
-    straight = line_of_action(own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, face)
+    straight = line_of_action(own, mate, pose, facing, face)
     if straight.how != NOWHERE:
         return straight
-    at, fall, profile, face, overlap = lowest(
-        own, mate, pose, own_azimuth, mate_azimuth, sigma, offset, start, face, per_turn, last_fall
-    )
+    at, fall, profile, face, overlap = lowest(own, mate, pose, facing, start, face, per_turn, last_fall)
+    offset = facing.offset
     lean = (at.gap + offset) * at.nearness * at.nearness
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
@@ -132,9 +110,8 @@ def nearest(
         at_end = not own.begin < profile < own.end
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, at_end, lean)
     edge = min(max(at.profile, mate.begin), mate.end)
-    its, its_fall, its_own, _, overlap = lowest(
-        mate, own, inverse(pose), mate_azimuth, own_azimuth, sigma, offset, edge, at.face, per_turn, last_fall
-    )
+    back = Facing(facing.mate_azimuth, facing.own_azimuth, facing.sigma, offset)
+    its, its_fall, its_own, _, overlap = lowest(mate, own, inverse(pose), back, edge, at.face, per_turn, last_fall)
     if not overlap:
         return Nearest(math.inf, math.inf, CLOSED, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, False, lean)
     how = AT_EDGE if own.begin < its.profile <= own.end and at.profile >= mate.begin else BEYOND

@@ -1,6 +1,9 @@
 """What kernels know of gears, poses and feet: tuples of numbers, lengths in mm, angles in rad."""
 
+import math
 from typing import NamedTuple
+
+from tol3d.numerics.compiled import part
 
 CLOSED, AT_EDGE, BEYOND, ALIKE, NOWHERE = 0, 1, 2, 3, 4
 
@@ -20,6 +23,21 @@ class Pose(NamedTuple):
     x: float
     y: float
     z: float
+
+
+class Facing(NamedTuple):
+    """Two flanks that face each other.
+
+    Args:
+        own_azimuth, mate_azimuth: of the middle of the teeth [rad], their flanks' turns included.
+        sigma: side of the flanks, the same for both.
+        offset: of both flanks along their normals, together [mm].
+    """
+
+    own_azimuth: float
+    mate_azimuth: float
+    sigma: float
+    offset: float
 
 
 class Foot(NamedTuple):
@@ -123,3 +141,32 @@ class PairNumbers(NamedTuple):
     by_z: float
     by_tilt_x: float
     by_tilt_y: float
+
+
+SMALL = 0.02  # rad; below it the series are exact to 1e-15 of themselves
+
+
+@part
+def sine(angle: float) -> float:
+    """sin(angle)."""
+    if abs(angle) > SMALL:
+        return math.sin(angle)
+    square = angle * angle
+    return angle * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0)))
+
+
+@part
+def arcsine(value: float) -> float:
+    """Its inverse."""
+    if abs(value) > SMALL:
+        return math.asin(value)
+    square = value * value
+    return value * (1.0 + square * (1.0 / 6.0 + square * (0.075 + square * (15.0 / 336.0 + square * (105.0 / 3456.0)))))
+
+
+@part
+def turned(x: float, y: float, angle: float) -> tuple[float, float]:
+    """A vector across an axis, turned about it by less than a right angle."""
+    sin = sine(angle)
+    cos = math.sqrt(1.0 - sin * sin)
+    return cos * x - sin * y, sin * x + cos * y

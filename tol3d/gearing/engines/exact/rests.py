@@ -11,21 +11,13 @@ from numpy.typing import NDArray
 from tol3d.gearing.engines.exact.foot import opening
 from tol3d.gearing.engines.exact.numbers import PairNumbers, Pose
 from tol3d.gearing.engines.exact.reach import within_reach
-from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of
-from tol3d.gearing.engines.exact.seating import Look, MeshBuild, Side, closed, seen, standing
+from tol3d.gearing.engines.exact.rows import FREE, build_of, fault_of, write_contact
+from tol3d.gearing.engines.exact.seating import Look, MeshBuild, closed, seen, standing
 from tol3d.gearing.engines.status import INTERFERES, OK, OUT_OF_RANGE
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-
-@part
-def write_first(contact: Array, side: Side, shaft: Array, out: float) -> None:
-    """Write a contact (3,) in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
-    x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
-    for i in range(3):
-        contact[i] = shaft[i, 0] * x + shaft[i, 1] * y + shaft[i, 2] * z + shaft[i, 3]
 
 
 @part
@@ -70,7 +62,7 @@ def rest_row(
             else:
                 behind = at.driven - middle
             if k == 0:
-                write_first(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
+                write_contact(contact[row, side], touching, shafts[row, gears[1]], flank_offset[row, gears[0]])
                 teeth[row, side] = touching.tooth
         if fault == OK and sigma * opening(build.driven) * (behind - ahead) * arm < -FREE:
             fault = INTERFERES
@@ -108,5 +100,5 @@ def rest_rows(
     """
     gears = (which[0], which[1])
     for row in range(len(shafts)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
         rest_row(build, which, shafts, flank_offset, scale, row, driver_angles, rests, contact, teeth, status)

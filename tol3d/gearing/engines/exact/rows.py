@@ -24,10 +24,10 @@ from tol3d.gearing.engines.exact.seating import (
     standing,
 )
 from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import part
 from tol3d.numerics.loops import fill
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 FREE = 1e-6  # mm; a play above minus this is called free
@@ -69,8 +69,9 @@ def build_of(
     flank_offset: Array,
     scale: Array,
     row: int,
+    flanks: Any,
 ) -> MeshBuild:
-    """The mesh of a row, built."""
+    """The mesh of a row, built, its single flanks offset as a MeshBuild has it."""
     driver, driven = gears
     return MeshBuild(
         grown(pinion, scale[row, driver]),
@@ -85,7 +86,7 @@ def build_of(
         flank_turn[row, driver],
         opening(wheel) * flank_turn[row, driven],
         flank_offset[row, driver] + flank_offset[row, driven],
-        0.0,
+        flanks,
     )
 
 
@@ -139,11 +140,11 @@ def fault_of(side: Side) -> int:
 
 
 @part
-def write_contact(readings: Array, row: int, side: Side, shaft: Array, out: float) -> None:
-    """Write the contact in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
+def write_contact(contact: Array, side: Side, shaft: Array, out: float) -> None:
+    """Write a contact (3,) in the world, on the driver's flank, which its offset [mm] brings `out` of its tooth."""
     x, y, z = side.x - out * side.nx, side.y - out * side.ny, side.z - out * side.nz
     for k in range(3):
-        readings[row, CONTACT + k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
+        contact[k] = shaft[k, 0] * x + shaft[k, 1] * y + shaft[k, 2] * z + shaft[k, 3]
 
 
 @part
@@ -179,7 +180,7 @@ def read_row(
     status[row] = INTERFERES if other.gap < -FREE else OK
     readings[row, DRIVEN_ANGLE] = at.driven
     readings[row, GAP] = other.gap
-    write_contact(readings, row, side, shafts[row, gears[1]], flank_offset[row, gears[0]])
+    write_contact(readings[row, CONTACT:], side, shafts[row, gears[1]], flank_offset[row, gears[0]])
     teeth[row] = side.tooth
     if which[6]:
         readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
@@ -264,7 +265,7 @@ def read_rows(
     gears, looks = (which[0], which[1]), looks_of(pair, which)
     sigma = looks.working.sigma
     for row in range(len(driver_angles)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
         angle = driver_angles[row]
         fill(readings[row], np.nan)
         teeth[row], status[row] = 0, OUT_OF_RANGE
@@ -283,7 +284,7 @@ def read_rows(
         status[row] = INTERFERES if other.gap < -FREE else OK
         readings[row, DRIVEN_ANGLE] = at.driven
         readings[row, GAP] = other.gap
-        write_contact(readings, row, side, shafts[row, gears[1]], flank_offset[row, gears[0]])
+        write_contact(readings[row, CONTACT:], side, shafts[row, gears[1]], flank_offset[row, gears[0]])
         teeth[row] = side.tooth
         if which[6]:
             readings[row, DRIVEN_TURN] = free_turn(build, at, other, angle, looks)
@@ -322,6 +323,6 @@ def gap_rows(
     """
     gears = (which[0], which[1])
     for row in range(len(driver_angles)):
-        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row)
+        build = build_of(pinion, wheel, pair, nominal, gears, shafts, centre, flank_turn, flank_offset, scale, row, 0.0)
         angles = (driver_angles[row], driven_angles[row])
         gap_row(build, which, shafts, flank_offset, row, angles, driver_teeth, wanted, value, vectors, at_end)

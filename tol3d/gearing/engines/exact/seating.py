@@ -12,8 +12,17 @@ import numpy as np
 
 from tol3d.gearing.engines.exact.foot import flank_of, handed, opening, section
 from tol3d.gearing.engines.exact.nearest import QUICK_FALL, nearest
-from tol3d.gearing.engines.exact.numbers import ALIKE, AT_EDGE, BEYOND, CLOSED, Nearest, PairNumbers, Pose
-from tol3d.gearing.engines.exact.small_angles import turned
+from tol3d.gearing.engines.exact.numbers import (
+    ALIKE,
+    AT_EDGE,
+    BEYOND,
+    CLOSED,
+    Facing,
+    Nearest,
+    PairNumbers,
+    Pose,
+    turned,
+)
 from tol3d.numerics.compiled import part
 
 LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start
@@ -233,10 +242,7 @@ def pair_nearest(
         flank_of(own, build.flanks, 0, tooth, sigma),
         flank_of(build.driven, build.flanks, 1, mating_tooth(build.driven, tooth, sigma), sigma),
         pose,
-        own_azimuth,
-        mate_azimuth,
-        handed(own, sigma),
-        build.offset,
+        Facing(own_azimuth, mate_azimuth, handed(own, sigma), build.offset),
         start,
         face,
         per_turn,

@@ -6,12 +6,21 @@ t = sigma (psi - azimuth) + eta_b its roll: the gap is s - r_b t, and it closes 
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from tol3d.gearing.engines.exact.external import external
-from tol3d.gearing.engines.exact.foot import PER_TURN, TURN, flank_of, foot, grown, line_of_action, section, turn_to
-from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Foot, Nearest, Pose
-from tol3d.numerics.compiled import variant
+from tol3d.gearing.engines.exact.foot import (
+    PER_TURN,
+    TURN,
+    external,
+    flank_of,
+    foot,
+    grown,
+    line_of_action,
+    section,
+    turn_to,
+)
+from tol3d.gearing.engines.exact.numbers import ALIKE, NOWHERE, Facing, Foot, Nearest, Pose
+from tol3d.numerics.compiled import inlined, variant
 
 SHORTEST_TANGENT = 1e-9  # mm; a point within the base circle has none
 
@@ -58,19 +67,17 @@ def spur_section(tooth: SpurTooth, share: float) -> SpurTooth:
     return SpurTooth(tooth.base, tooth.per_base, tooth.half, tooth.begin, tooth.end, at, at)
 
 
-@variant(foot, SpurTooth)
-def spur_foot(
-    own: SpurTooth,
-    mate: SpurTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    roll: float,
-    z: float,
+@inlined
+def involute_foot(
+    own: Any, mate: Any, senses: tuple[float, float], pose: Pose, facing: Facing, profile: float, z: float
 ) -> Foot:
-    """See foot.foot: the point at a roll [rad] and a height [mm]."""
+    """The foot of a point on involutes that unwind in their senses, 1 of an external gear and -1 of a ring's space.
+
+    Along a flank counts its roll [rad] times its sense.
+    """
+    own_sense, mate_sense = senses
+    own_azimuth, mate_azimuth, sigma, offset = facing
+    roll = own_sense * profile
     beta = sigma * (roll - own.half) + own_azimuth
     cos, sin = math.cos(beta), math.sin(beta)
     px = own.base * (cos + sigma * roll * sin)
@@ -87,32 +94,39 @@ def spur_foot(
     scale = 1.0 / square
     ux *= scale
     uy *= scale
-    nx, ny = sigma * uy, -sigma * ux
+    out = mate_sense * sigma
+    nx, ny = out * uy, -out * ux
     # the point moves along (cos, sin) as it rolls, across it as that turns
     vx, vy = pose.xx * cos + pose.xy * sin, pose.yx * cos + pose.yy * sin
     wx, wy = pose.xy * cos - pose.xx * sin, pose.yy * cos - pose.yx * sin
     towards = nx * vx + ny * vy
     across = own.base * roll * (ux * vx + uy * vy)
     sideways = ux * pose.xz + uy * pose.yz
-    curvature = 1.0 / tangent
+    curvature = mate_sense / tangent
     return Foot(
-        tangent - mate.base * foot_roll - offset,
-        foot_roll,
+        mate_sense * (tangent - mate.base * foot_roll) - offset,
+        mate_sense * foot_roll,
         height,
-        (tangent - offset) * mate.per_base,
+        (mate_sense * tangent - offset) * mate.per_base,
         x,
         y,
         height,
         nx,
         ny,
         0.0,
-        own.base * roll * towards,
+        own_sense * own.base * roll * towards,
         nx * pose.xz + ny * pose.yz,
         own.base * (towards + sigma * roll * (nx * wx + ny * wy)) + across * across * curvature,
-        across * sideways * curvature,
+        own_sense * across * sideways * curvature,
         sideways * sideways * curvature,
         0.0,
     )
+
+
+@variant(foot, SpurTooth)
+def spur_foot(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
+    """See foot.foot: the point at a roll [rad] and a height [mm]."""
+    return involute_foot(own, mate, (1.0, 1.0), pose, facing, roll, z)
 
 
 @variant(turn_to, SpurTooth)
@@ -122,21 +136,13 @@ def spur_turn(mate: SpurTooth, gap: float, offset: float, at: Foot) -> float:
 
 
 @variant(line_of_action, SpurTooth)
-def spur_line_of_action(
-    own: SpurTooth,
-    mate: SpurTooth,
-    pose: Pose,
-    own_azimuth: float,
-    mate_azimuth: float,
-    sigma: float,
-    offset: float,
-    face: float,
-) -> Nearest:
+def spur_line_of_action(own: SpurTooth, mate: SpurTooth, pose: Pose, facing: Facing, face: float) -> Nearest:
     """On parallel axes flanks touch where they cross the tangent of both base circles, T long.
 
     From its ends the flanks stand r_b t away, t = alpha_w + eta_b - sigma (azimuth off the line of centres): what is
     left of T is the gap, the same for every pair of one base pitch.
     """
+    own_azimuth, mate_azimuth, sigma, offset = facing
     nowhere = Nearest(0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, False, 0.0)
     square, bases = pose.x * pose.x + pose.y * pose.y, own.base + mate.base
     if pose.xz != 0.0 or pose.yz != 0.0 or square <= bases * bases:

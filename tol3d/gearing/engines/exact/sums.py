@@ -7,15 +7,13 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tol3d.gearing.displacements.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, TURN
-from tol3d.gearing.displacements.slots import SLOTS as DISPLACED
-from tol3d.gearing.engines.exact.small_angles import sine
+from tol3d.gearing.builds.slots import CENTRE, FLANK_OFFSET, FLANK_TURN, TURN
+from tol3d.gearing.builds.slots import SLOTS as DISPLACED
+from tol3d.gearing.engines.exact.numbers import sine
+from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import FULL, kernel, part
 from tol3d.numerics.loops import fill
-
-Array = NDArray[np.float64]
 
 SCALE = DISPLACED  # growth of the seat's gear comes after what is displaced
 SLOTS = DISPLACED + 1

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from tol3d.gearing.engines.exact.deviated import LEAST_BEND, DeviatedTooth, Offset, is_level, offset_of, wave_at
 from tol3d.gearing.engines.exact.foot import PER_TURN, TURN
-from tol3d.gearing.engines.exact.numbers import Pose
-from tol3d.gearing.engines.exact.small_angles import SMALL, arcsine, sine
+from tol3d.gearing.engines.exact.numbers import SMALL, Pose, arcsine, sine
 from tol3d.numerics.compiled import part
 
 STEPS = 4  # of Newton's; two do nearly always

@@ -1,17 +1,16 @@
-"""Radial clearance of a bearing."""
+"""Radial clearance of bearings, which shifts and tilts the gears on their shafts."""
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from tol3d.gearing.effects import NOTHING, AxisOffset
+from tol3d.gearing.effects import NOTHING, AxisOffset, AxisTilt, Effect, Plane
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, gears_on
-from tol3d.gearing.grammar.tolerances.gear_tolerance import GearToleranceSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, in_direction, together
-from tol3d.gearing.grammar.tolerances.lever import Lever, unit_vector
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction, together
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
 from tol3d.scene.entry import Entry
 from tol3d.scene.move import MoveSpec
@@ -20,8 +19,59 @@ from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
 
 if TYPE_CHECKING:
-    from tol3d.gearing.model.mesh import Mesh
     from tol3d.gearing.model.nominal import Nominal
+    from tol3d.gearing.model.shafts import Carried, Mesh
+
+
+@dataclass(frozen=True)
+class Lever:
+    """A gear on a shaft of which one point moves.
+
+    Args:
+        own: the gear on the shaft.
+        moved: z of the point that moves [mm].
+        fixed: z of one that does not; None where all of the shaft moves alike.
+        rate: how far the point moves by a deviation of 1; half of it by a clearance.
+    """
+
+    own: "Carried"
+    moved: float
+    fixed: float | None
+    rate: float = 0.5
+
+    @property
+    def share(self) -> float:
+        """What the gear moves of what the point moves."""
+        return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
+
+    def anywhere(self) -> Iterator[Effect]:
+        """Shift and tilt of the gear's axis where the point moves by a deviation with a direction on the shaft."""
+        plane = Plane(mirrored=self.own.backward)
+        yield AxisOffset(self.own.gear, factor=self.rate * self.share, plane=plane)
+        if self.fixed is not None:
+            per_length = self.rate * self.own.sense / (self.moved - self.fixed)
+            yield AxisTilt(self.own.gear, per_length=per_length, plane=plane)
+
+    def towards(self, azimuth: float) -> Iterator[Effect]:
+        """Shift and tilt of the gear's axis where the point moves by a deviation, at an azimuth on the shaft."""
+        sense = -1.0 if self.own.backward else 1.0
+        x, y, _ = unit_vector(azimuth)
+        yield AxisOffset(self.own.gear, (x, sense * y, 0.0), factor=self.rate * self.share)
+        if self.fixed is not None:
+            # z of the shaft turns towards (x, y): about z cross (x, y) = (-y, x)
+            per_length = self.rate / (self.moved - self.fixed)
+            yield AxisTilt(self.own.gear, (-y, sense * x, 0.0), per_length=per_length)
+
+
+def unit_vector(azimuth: float) -> tuple[float, float, float]:
+    """Unit vector across an axis at an azimuth [rad]."""
+    return _exact(math.cos(azimuth)), _exact(math.sin(azimuth)), 0.0
+
+
+def _exact(cosine: float) -> float:
+    """A cosine or sine of a right angle as 0 or 1, not 6e-17 off."""
+    return round(cosine) + 0.0 if abs(cosine - round(cosine)) < 1e-15 else cosine
+
 
 WORDS = ("apart", "random", "tooth_force")
 

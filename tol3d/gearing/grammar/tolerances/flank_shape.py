@@ -1,4 +1,4 @@
-"""What deviations of the shape of a gear's single flanks have in common: slopes and forms, each drawn for itself."""
+"""Deviations of the shape of a gear's single flanks: slopes and forms, each drawn for itself."""
 
 import math
 from abc import abstractmethod
@@ -10,10 +10,16 @@ from pydantic import Field, model_validator
 from tol3d.distributions import Distribution, Normal, StatedDistribution, Uniform
 from tol3d.errors import GeometryError
 from tol3d.files import Files
-from tol3d.gearing.effects import Place
-from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, IsoClass, limits_of_class, no_word
-from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
-from tol3d.gearing.pitch_draw import GivenDraw, tooth_names
+from tol3d.gearing.draws.pitch_draw import GivenDraw, tooth_names
+from tol3d.gearing.effects import FORM, HELIX, SLOPE, FlankDeviation, Place
+from tol3d.gearing.grammar.tolerances.evaluation_range import FORM_SHARE, Range, face_part, profile_part
+from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    FlankToleranceSpec,
+    IsoClass,
+    RecordSpec,
+    limits_of_class,
+    no_word,
+)
 from tol3d.gears import SpurGear
 from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.listed import listed
@@ -176,3 +182,79 @@ class FlankShapeSpec(FlankToleranceSpec):
             for side in self.sides
             for group in groups
         )
+
+
+class ProfileSlopeSpec(FlankShapeSpec):
+    """f_Halpha, a length: by so much more the flank stands out at its tip than where its active profile begins.
+
+    Linear in the roll over the whole involute, 0 in the middle between both, or of a range that is stated.
+    """
+
+    kind: Literal["profile_slope"]
+    range: Range | None = Field(
+        default=None, description="diameters it counts between; by default from the active profile's begin to the tip"
+    )
+
+    def of_class(self, limits: FlankTolerances) -> float:
+        """See FlankShapeSpec."""
+        return limits.profile_slope
+
+    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+        """See FlankToleranceSpec."""
+        mix = profile_part(self.range, gear, active_roll, 1.0).slope
+        return FlankDeviation(self.of, SLOPE, self.places(gear), mix=mix)
+
+
+class ProfileFormSpec(FlankShapeSpec):
+    """f_falpha, a length from peak to valley of a stated shape over the whole involute; negative turns it inside out.
+
+    With u from -1/2 to 1/2 over the evaluation range, in the roll: a barrel is 1/3 - 4 u^2 of it, waves are
+    cos(2 pi waves u)/2. Both go on beyond the range.
+    """
+
+    kind: Literal["profile_form"]
+    shape: Literal["barrel", "wave"] = Field(description="a barrel, or cosine waves")
+    waves: int | None = Field(default=None, ge=1, le=20, description="of a wave: how many there are over the range")
+    range: Range | None = Field(
+        default=None,
+        description="diameters it counts between; by default from the active begin 95 % of the way to the tip",
+    )
+
+    @model_validator(mode="after")
+    def _refuse_stray_waves(self) -> Self:
+        if (self.shape == "wave") != (self.waves is not None):
+            expected, got = ("a number of waves", "none") if self.shape == "wave" else ("none of a barrel", "waves")
+            raise refused("waves", expected, got)
+        return self
+
+    def of_class(self, limits: FlankTolerances) -> float:
+        """See FlankShapeSpec."""
+        return limits.profile_form
+
+    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+        """See FlankToleranceSpec."""
+        part, places = profile_part(self.range, gear, active_roll, FORM_SHARE), self.places(gear)
+        if self.waves is None:
+            return FlankDeviation(self.of, FORM, places, mix=part.barrel)
+        return FlankDeviation(self.of, FORM, places, float(self.waves), span=(part.begin, part.end))
+
+
+class HelixSlopeSpec(FlankShapeSpec):
+    """f_Hbeta, a length: by so much more the flank stands out at the upper end of its face than at the lower one.
+
+    Linear in the gear's z over the whole face width, 0 in its middle, or in that of a range that is stated.
+    """
+
+    kind: Literal["helix_slope"]
+    range: Range | None = Field(
+        default=None, description="heights over the lower end of the face it counts between; by default the whole face"
+    )
+
+    def of_class(self, limits: FlankTolerances) -> float:
+        """See FlankShapeSpec."""
+        return limits.helix_slope
+
+    def effect(self, gear: SpurGear, active_roll: float) -> FlankDeviation:
+        """See FlankToleranceSpec."""
+        level, times = face_part(self.range, gear).slope
+        return FlankDeviation(self.of, HELIX, self.places(gear), mix=(level, 0.0, 0.0, times))

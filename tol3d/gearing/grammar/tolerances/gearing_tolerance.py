@@ -1,16 +1,27 @@
 """What every tolerance of gears, their shafts and their reducers has in common: it means an effect."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from tol3d.gearing.effects import Effect, Together
+from pydantic import Field
+
+from tol3d.gearing.effects import Effect, LinkDeviation, Together
+from tol3d.gearing.grammar.moves import LinkSpec, MeshSpec, ReducerSpec
+from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.scene.direction import At
+from tol3d.scene.entry import Entry
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.name import Name
+from tol3d.scene.part import PartSpec
+from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.units import Dimension
 
 if TYPE_CHECKING:
     from tol3d.gearing.model.contributor import Unit
+    from tol3d.gearing.model.nominal import Nominal
 
 
 @dataclass(frozen=True)
@@ -18,7 +29,7 @@ class Meaning:
     """What a deviation does.
 
     Args:
-        effect: on which parts and how; see effects/.
+        effect: on which parts and how; see effects.py.
         planar: whether the deviation is a length in a direction across an axis.
         azimuth: that direction [rad]; None for a random one.
         least: smallest physical deviation [mm, rad or K], such as 0 of a clearance, if there is one.
@@ -55,3 +66,69 @@ def in_direction(effects: Sequence[Effect], direction: object) -> Meaning:
 def together(effects: Sequence[Effect]) -> Effect:
     """Several effects of one deviation as one."""
     return effects[0] if len(effects) == 1 else Together(tuple(effects))
+
+
+class GearToleranceSpec(GearingToleranceSpec):
+    """A tolerance of one gear, or of what carries it."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)
+
+    of: Name = Field(description="the gear")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The gear, or what carries it."""
+        return (Reference(("of",), self.of, self.applies_to),)
+
+
+class MeshToleranceSpec(GearingToleranceSpec):
+    """A tolerance of how two axes lie to each other."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)
+
+    of: Name = Field(description="the mesh move")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The mesh."""
+        return (Reference(("of",), self.of, self.applies_to),)
+
+
+class LinkToleranceSpec(GearingToleranceSpec):
+    """A deviation of a link; the link finds it by the kind of the tolerance, and knows what it does to its play."""
+
+    link_spec: ClassVar[type[Any]] = LinkSpec  # or a kind of it
+
+    of: Name = Field(description="the link")
+
+    def references(self) -> tuple[Reference, ...]:
+        """The link."""
+        return (Reference(("of",), self.of, (self.link_spec,)),)
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """A deviation of one component, of the link alone."""
+        return Meaning(LinkDeviation(self.of))
+
+
+class ReducerBacklashSpec(LinkToleranceSpec):
+    """An angle: the free turn of the reducer's driven shaft while its driver is held; draws below 0 are unphysical."""
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+    link_spec: ClassVar[type[Any]] = ReducerSpec
+
+    kind: Literal["reducer_backlash"]
+    of: Name = Field(description="the reducer")
+
+    def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
+        """The reducer's own backlash would be a second one."""
+        reducer = moves[self.of]
+        if isinstance(reducer, ReducerSpec) and reducer.backlash is not None:
+            got = f"{self.of!r}, which says backlash: {reducer.backlash}"
+            yield Contradiction(("of",), "a reducer without a backlash of its own", got)
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The shaft that the reducer drives has this play."""
+        return Meaning(LinkDeviation(self.of), least=0.0)
+
+    @property
+    def unit(self) -> "Unit":
+        """Arc minutes, as data sheets state it."""
+        return "arcmin"

@@ -9,17 +9,8 @@ from pydantic import Field, model_validator
 
 from tol3d.errors import GeometryError, SceneError
 from tol3d.files import Files
-from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
-from tol3d.gearing.grammar.tolerances.flank_tolerance import (
-    FlankToleranceSpec,
-    IsoClass,
-    Share,
-    limits_of_class,
-    no_word,
-)
-from tol3d.gearing.grammar.tolerances.record_law import RecordSpec
-from tol3d.gearing.normal_pitch_draw import NormalPitchDraw
-from tol3d.gearing.pitch_draw import (
+from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
+from tol3d.gearing.draws.pitch_draw import (
     GivenDraw,
     Pattern,
     PitchDraw,
@@ -27,6 +18,15 @@ from tol3d.gearing.pitch_draw import (
     RandomWalk,
     RunOutAndRandom,
     tooth_names,
+)
+from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
+from tol3d.gearing.grammar.tolerances.flank_tolerance import (
+    FlankToleranceSpec,
+    IsoClass,
+    RecordSpec,
+    Share,
+    limits_of_class,
+    no_word,
 )
 from tol3d.gears import SpurGear
 from tol3d.scene.listed import listed

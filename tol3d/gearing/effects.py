@@ -1,0 +1,333 @@
+"""Effects: on what one deviation acts, and in which sense. Data for both roads; each has its own formulas for it."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from tol3d.gears.flank import Flank
+from tol3d.numerics.arrays import Array
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.shafts import Mesh
+
+
+class Effect(ABC):
+    """What a deviation acts on. Frozen data.
+
+    The geometric road reads its displacements (builds/), the analytic road its terms (stack_up/terms.py), each
+    registered there for the class of the effect.
+    """
+
+    @property
+    def singles(self) -> tuple["Effect", ...]:
+        """The effects that it is made of; itself alone."""
+        return (self,)
+
+    @abstractmethod
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """Whether it changes how the gears of a mesh lie to each other, or their flanks."""
+
+    def clocking(self, mesh: "Mesh") -> float:
+        """Turn of the shaft that a mesh drives, about the driven gear's z, with the teeth in contact [rad per unit]."""
+        return 0.0
+
+    def acts_on(self, link: str) -> bool:
+        """Whether it is a deviation of a link that is no gear mesh."""
+        return False
+
+    @property
+    def turns_with(self) -> str | None:
+        """The gear with which the deviation turns; None where it rests."""
+        return None
+
+    def deviates_teeth(self, gear: str) -> bool:
+        """Whether it makes the teeth of a gear differ from each other, so that curves have tooth-mesh orders."""
+        return False
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the deviation's azimuths count against those of the gear with which it turns."""
+        return False
+
+
+@dataclass(frozen=True)
+class Together(Effect):
+    """Several effects of one deviation, such as a shaft that moves with all that it carries."""
+
+    effects: tuple[Effect, ...]
+
+    @property
+    def singles(self) -> tuple[Effect, ...]:
+        """See Effect."""
+        return self.effects
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """See Effect."""
+        return any(effect.acts_in(mesh) for effect in self.effects)
+
+    def clocking(self, mesh: "Mesh") -> float:
+        """See Effect."""
+        return sum(effect.clocking(mesh) for effect in self.effects)
+
+    def acts_on(self, link: str) -> bool:
+        """See Effect."""
+        return any(effect.acts_on(link) for effect in self.effects)
+
+    def deviates_teeth(self, gear: str) -> bool:
+        """See Effect."""
+        return any(effect.deviates_teeth(gear) for effect in self.effects)
+
+    @property
+    def turns_with(self) -> str | None:
+        """Of the first gear: they all turn alike."""
+        return self.effects[0].turns_with if self.effects else None
+
+    @property
+    def mirrored(self) -> bool:
+        """Of the same gear."""
+        return self.effects[0].mirrored if self.effects else False
+
+
+NOTHING = Together(())
+
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Plane:
+    """How a gear lies to the frame in which a deviation with a direction is counted, such as its shaft's.
+
+    Args:
+        azimuth: of that frame's x axis in the gear's frame [rad].
+        mirrored: whether the two count azimuths in opposite senses, as a gear does that faces backward on its shaft.
+    """
+
+    azimuth: float = 0.0
+    mirrored: bool = False
+
+    @property
+    def matrix(self) -> Array:
+        """(x, y) of the gear's frame from (x, y) of the other, (2, 2)."""
+        cos, sin, sense = math.cos(self.azimuth), math.sin(self.azimuth), -1.0 if self.mirrored else 1.0
+        return np.array([[cos, -sense * sin], [sin, sense * cos]])
+
+    def seen_from(self, azimuth: float) -> "Plane":
+        """The same in a frame whose x axis lies at an azimuth [rad] of the gear's."""
+        return Plane(self.azimuth - azimuth, self.mirrored)
+
+
+AS_COUNTED = Plane()
+
+
+@dataclass(frozen=True)
+class AxisOffset(Effect):
+    """Shift of a gear's rotation axis [mm], in the gear's frame at rest.
+
+    Scalar: `direction` (unit vector) times `factor` times the deviation. Planar (components x, y): `factor`
+    times the vector as `plane` turns it. It acts in all meshes of the gear, or in one only, in whose frame
+    `direction` then is.
+    """
+
+    part: str
+    direction: Vector = (1.0, 0.0, 0.0)
+    factor: float = 1.0
+    mesh: str | None = None
+    plane: Plane = AS_COUNTED
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In every mesh of the gear, or in the one that is named."""
+        return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)
+
+
+@dataclass(frozen=True)
+class AxesOffset(Effect):
+    """Distance [mm] by which two axes that should meet pass each other: the driven one lies at +y of the mesh."""
+
+    part: str
+    mesh: str
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In that mesh."""
+        return self.mesh == mesh.name
+
+
+@dataclass(frozen=True)
+class AxisTilt(Effect):
+    """Turn of a gear's axis: the deviation [rad] times `axis`, a unit vector of the gear's frame at rest.
+
+    Planar (components x, y): the axis leans towards the vector as `plane` turns it, by the vector's length.
+    `per_length` [1/mm] makes an angle of a deviation that is given as a length. The turn is about the point
+    of the axis at z = `pivot` [mm] of that frame. It acts in all meshes of the gear, or in one only, in whose frame
+    `axis` then is.
+    """
+
+    part: str
+    axis: Vector = (0.0, 0.0, 0.0)
+    per_length: float = 1.0
+    pivot: float = 0.0
+    mesh: str | None = None
+    plane: Plane = AS_COUNTED
+
+    def matrix(self, azimuth: float) -> Array:
+        """Rotation vector per component where it is planar, (3, 2), in a frame whose x lies at an azimuth [rad]."""
+        (xx, xy), (yx, yy) = self.plane.seen_from(azimuth).matrix
+        return self.per_length * np.array([[-yx, -yy], [xx, xy], [0.0, 0.0]])
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In every mesh of the gear, or in the one that is named."""
+        return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)
+
+
+@dataclass(frozen=True)
+class Clocking(Effect):
+    """Turn of a gear on its shaft [rad], about its own z."""
+
+    part: str
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """A mesh finds its rest for any turn of its gears; the shafts turn, see `clocking`."""
+        return False
+
+    def clocking(self, mesh: "Mesh") -> float:
+        """A driver that sits ahead takes the driven gear with it; a driven gear ahead leaves its shaft behind."""
+        return float(mesh.rate) * (self.part == mesh.driver) - (self.part == mesh.driven)
+
+
+UNIFORM: Final = 0
+SLOPE: Final = 1
+FORM: Final = 2
+HELIX: Final = 3
+SHAPES: Final = 4
+"""How an offset goes over a flank: alike everywhere, along the profile, in its form, along the face."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A flank that a component of a deviation moves out of its tooth, by `factor` [mm/mm] along its normal."""
+
+    tooth: int
+    flank: Flank
+    factor: float
+
+
+@dataclass(frozen=True)
+class FlankDeviation(Effect):
+    """Offsets of single flanks of a gear along their normals, positive adds material.
+
+    With the roll t of a point, its height z over the middle of the face b, and u = (t - t_mid)/(t_tip - t_form) over
+    the whole involute: a mix of 1, u, a form and z/b, times the deviation.
+
+    Args:
+        part: the gear.
+        shape: UNIFORM, SLOPE, FORM or HELIX: what the deviation is.
+        places: by component of the deviation the flanks that it moves.
+        waves: of a FORM, how many cosine waves there are over `span`, (1/2) cos(2 pi waves u); 0 for a barrel,
+            1/3 - 4 u^2.
+        mix: (SHAPES,), what one of the deviation adds to each; of its own shape alone where none is given.
+        span: of waves, the rolls from which u goes from -1/2 to 1/2 [rad]; None over the whole involute.
+    """
+
+    part: str
+    shape: int
+    places: tuple[tuple[Place, ...], ...]
+    waves: float = 0.0
+    mix: tuple[float, ...] = ()
+    span: tuple[float, float] | None = None
+
+    @property
+    def terms(self) -> Iterator[tuple[int, Place, int, float]]:
+        """Of each component, flank and shape: the first three, and how much of the shape one of the component adds."""
+        mix = self.mix or tuple(float(shape == self.shape) for shape in range(SHAPES))
+        for component, places in enumerate(self.places):
+            for place in places:
+                for shape, factor in enumerate(mix):
+                    if factor:
+                        yield component, place, shape, factor * place.factor
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In every mesh of the gear."""
+        return self.part in (mesh.driver, mesh.driven)
+
+    def deviates_teeth(self, gear: str) -> bool:
+        """See Effect."""
+        return gear == self.part
+
+
+@dataclass(frozen=True)
+class LinkDeviation(Effect):
+    """A deviation of a link: what it does to the play is the link's own, see links/.
+
+    Args:
+        link: its name.
+        turning: the part in the link with which the deviation turns; None where it rests.
+    """
+
+    link: str
+    turning: str | None = None
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """It moves no axis and no flank."""
+        return False
+
+    def acts_on(self, link: str) -> bool:
+        """On that link."""
+        return link == self.link
+
+    @property
+    def turns_with(self) -> str | None:
+        """The part in the link."""
+        return self.turning
+
+
+@dataclass(frozen=True)
+class Temperature(Effect):
+    """Temperature of some parts above the reference 20 degC [K]; each grows by its own coefficient."""
+
+    parts: tuple[str, ...]
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """Where a gear of the mesh, or its housing, is one of them."""
+        return not {mesh.driver, mesh.driven, mesh.housing}.isdisjoint(self.parts)
+
+
+@dataclass(frozen=True)
+class ToothThickness(Effect):
+    """Deviation of the tooth thickness of a gear [mm], positive is thicker; half of it on each flank.
+
+    Each flank turns out of its tooth by `turn` [rad/mm], and moves out along its normal by `offset` [mm/mm].
+    """
+
+    part: str
+    turn: float
+    offset: float = 0.0
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In every mesh of the gear."""
+        return self.part in (mesh.driver, mesh.driven)
+
+
+@dataclass(frozen=True)
+class TurningOffset(Effect):
+    """Offset (x, y) [mm] of a gear's centre from its rotation axis, in the gear's frame; it turns with the gear."""
+
+    part: str
+    plane: Plane = AS_COUNTED
+
+    def acts_in(self, mesh: "Mesh") -> bool:
+        """In every mesh of the gear."""
+        return self.part in (mesh.driver, mesh.driven)
+
+    @property
+    def turns_with(self) -> str:
+        """The gear."""
+        return self.part
+
+    @property
+    def mirrored(self) -> bool:
+        """As its plane is."""
+        return self.plane.mirrored

@@ -1,0 +1,134 @@
+"""Tolerances of a gear as a whole, and of how it sits on its shaft."""
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from pydantic import Field
+
+from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
+from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction
+from tol3d.scene.direction import RandomOrFixed
+from tol3d.scene.entry import Entry
+from tol3d.scene.name import Name
+from tol3d.units import Dimension
+
+if TYPE_CHECKING:
+    from tol3d.gearing.model.contributor import Unit
+    from tol3d.gearing.model.nominal import Nominal
+
+
+class AxialShiftSpec(GearToleranceSpec):
+    """A length along the gear's own +z. It moves no flank of a spur pair with parallel axes; tilted ones feel it."""
+
+    kind: Literal["axial_shift"]
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear moves along its axis."""
+        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
+
+
+class MountingFaceSpec(GearToleranceSpec):
+    """Delta P, a length: the face lies off its true place, and the gear with it along its own +z.
+
+    Each face of the stack (the gear's back, the housing's seat, an end cover) is a contributor of its own.
+    """
+
+    kind: Literal["mounting_face"]
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear moves along its axis."""
+        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
+
+
+class ShimSpec(GearToleranceSpec):
+    """The thickness of a shim, a length: constant, or with its own tolerance."""
+
+    kind: Literal["shim"]
+    side: Literal["behind", "in_front"] = Field(
+        default="behind",
+        description="behind the gear it moves it along its own -z, of a bevel gear towards the apex, which closes; "
+        "in_front the other way",
+    )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear moves along its axis; no shim is thinner than nothing."""
+        factor = -1.0 if self.side == "behind" else 1.0
+        return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0), factor=factor), least=0.0)
+
+
+class ClockingSpec(GearToleranceSpec):
+    """An angle: the gear is turned on its shaft, positive counter-clockwise about its own z.
+
+    It takes nothing from one mesh's backlash. Where parallel load paths join, it shifts the play of one against that of
+    the others.
+    """
+
+    dimensions: ClassVar[tuple[Dimension, ...]] = ("angle",)
+
+    kind: Literal["clocking"]
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear turns on its shaft."""
+        return Meaning(Clocking(self.of))
+
+    @property
+    def unit(self) -> "Unit":
+        """Arc minutes, as backlash at shafts is read."""
+        return "arcmin"
+
+
+class EccentricitySpec(GearToleranceSpec):
+    """e, a length: the teeth's centre lies off the rotation axis by e (cos phi, sin phi) and turns with the gear."""
+
+    kind: Literal["eccentricity"]
+    direction: RandomOrFixed = Field(
+        default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
+    )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """The gear's centre lies off its axis."""
+        return in_direction([TurningOffset(self.of)], self.direction)
+
+
+class RunOutSpec(GearToleranceSpec):
+    """S, a length: the shaft displaces the gears that it carries by S (cos phi, sin phi) and turns with them."""
+
+    applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, ShaftSpec)
+
+    kind: Literal["run_out"]
+    of: Name = Field(description="the gear on the shaft, or the shaft with every gear on it")
+    direction: RandomOrFixed = Field(
+        default="random", description="phi, in the gear's frame (x through the middle of tooth 0), or in the shaft's"
+    )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """Of a shaft: its direction is counted on the shaft, and every gear on it is displaced alike."""
+        if not isinstance(nominal.scene.parts[self.of], ShaftSpec):
+            return in_direction([TurningOffset(self.of)], self.direction)
+        offsets = [TurningOffset(own.gear, Plane(-own.phase, own.backward)) for own in nominal.carried_by(self.of)]
+        return in_direction(offsets, self.direction)
+
+
+class ToothThicknessSpec(GearToleranceSpec):
+    """E_s, a length: positive is thicker, half on each flank.
+
+    `arc` counts it on the reference circle, of a bevel gear in the middle of the face; `normal` along the normals
+    of the flanks, which is 1/cos(alpha) as much. A bevel tooth is thinned in proportion along its face (the flank
+    is turned), or by the same normal offset everywhere; on a spur gear that is the same.
+    """
+
+    kind: Literal["tooth_thickness"]
+    measured: Literal["arc", "normal"] = Field(default="arc", description="along the reference circle, or the normals")
+    along_face: Literal["proportional", "constant"] = Field(
+        default="proportional", description="how a bevel tooth's deviation goes along the face"
+    )
+
+    def meaning(self, nominal: "Nominal") -> Meaning:
+        """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
+        gear = nominal.mesh_of(self.of).gear(self.of)
+        cosine = gear.section_arm / gear.thickness_radius
+        normal = 0.5 if self.measured == "normal" else 0.5 * cosine
+        if self.along_face == "constant":
+            return Meaning(ToothThickness(self.of, turn=0.0, offset=normal))
+        turn = 0.5 / (gear.section_arm if self.measured == "normal" else gear.thickness_radius)
+        return Meaning(ToothThickness(self.of, turn=turn))

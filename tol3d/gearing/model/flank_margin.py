@@ -1,0 +1,58 @@
+"""How far beyond the path of contact pairs of flanks are looked at, where single ones stand out of their neighbours."""
+
+import math
+from typing import Final
+
+import numpy as np
+
+from tol3d.gearing.effects import SHAPES, FlankDeviation
+from tol3d.gearing.model import Mesh, Model
+from tol3d.gears import GearPair, SpurGear
+from tol3d.gears.flank import RIGHT
+
+MARGINS: Final = (0.35, 0.6, 0.85)
+"""Pitches beyond CONTACT_MARGIN: the first that does."""
+
+SAMPLE: Final = 200
+"""Builds by which it is chosen."""
+
+LARGEST: Final = np.array([1.0, 1 / 2, 2 / 3, 1 / 2])
+"""Size of each shape over the whole flank; of all shapes together no build has that much more than its neighbours."""
+
+
+def standing_out(pair: GearPair, margin: float) -> float:
+    """By how much a flank may stand out of its neighbours [mm] so that it touches nowhere beyond a margin [pitches].
+
+    Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
+    circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m.
+    """
+    tangent = sum(pair.working_radii) * math.sin(pair.working_pressure_angle)
+    turned = margin * pair.pinion.base_pitch
+    found = math.inf
+    for gear in (pair.pinion, pair.wheel):
+        if not isinstance(gear, SpurGear):
+            raise TypeError("single flanks deviate of spur gears only")
+        tip = gear.base_radius * gear.tip_roll
+        found = min(found, turned**2 * tip * tangent / (2 * gear.base_radius**2 * (tangent - tip)))
+    return found
+
+
+def margin_of(model: Model, mesh: Mesh) -> float:
+    """How far beyond CONTACT_MARGIN pairs of a mesh are looked at [pitches]: by builds that its tolerances draw."""
+    most = sum(_steps(model, mesh, name) for name in (mesh.driver, mesh.driven))
+    return next((own for own in MARGINS if standing_out(mesh.pair, own) >= most), MARGINS[-1])
+
+
+def _steps(model: Model, mesh: Mesh, name: str) -> float:
+    """By how much more than its neighbours a flank of a gear stands out, at most of some builds [mm]."""
+    gear, generator = mesh.gear(name), np.random.Generator(np.random.Philox(key=1))
+    flanks = np.zeros((gear.teeth, 2, SHAPES, SAMPLE))
+    for own in model.contributors:
+        for effect in own.effect.singles:
+            if isinstance(effect, FlankDeviation) and effect.part == name:
+                drawn = own.draw.deviations(*(1.0 - generator.random((own.draw.uniforms, SAMPLE))))
+                for component, place, shape, factor in effect.terms:
+                    flanks[place.tooth, int(place.flank != RIGHT), shape] += factor * drawn[component]
+    size = np.einsum("tfsn,s->tfn", np.abs(flanks[:, :, 1:]), LARGEST[1:])
+    most, least = flanks[:, :, 0] + size, flanks[:, :, 0] - size
+    return float(max((most - np.roll(least, by, axis=0)).max() for by in (1, -1)))

@@ -1,0 +1,222 @@
+"""Moves to pairs of gears: the geometry of each kind of mesh, or why it cannot be made."""
+
+import math
+from functools import singledispatch
+
+from tol3d.errors import GeometryError
+from tol3d.gearing.grammar.moves import BevelMeshSpec, GearMeshSpec, MeshSpec
+from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec, InternalGearSpec, SpurGearSpec
+from tol3d.gears import (
+    BevelGear,
+    BevelPair,
+    Gear,
+    GearPair,
+    InternalGear,
+    InternalPair,
+    SpurGear,
+    SpurPair,
+    pitch_angles,
+)
+from tol3d.scene import Scene
+from tol3d.units import Quantity
+
+
+@singledispatch
+def pair_of(move: GearMeshSpec, name: str, scene: Scene) -> GearPair:
+    """The pair of a move.
+
+    Args:
+        move: the move.
+        name: its name.
+        scene: the scene that it stands in.
+
+    Raises:
+        SceneError: gears that cannot be made or run together, with their numbers and place.
+    """
+    raise TypeError(f"model/pairs.py has no function for {type(move).__name__}")
+
+
+@singledispatch
+def undercut_warning(gear: Gear) -> str:
+    """What a generating rack would take off a flank, outside the flank in use; or nothing."""
+    return ""
+
+
+@singledispatch
+def assembly_warning(pair: GearPair) -> str:
+    """How the gears of a pair cannot be put together though they run together; or nothing."""
+    return ""
+
+
+def internal(quantity: Quantity | None, otherwise: float = 0.0) -> float:
+    """A quantity in mm, rad, K or 1/K; `otherwise` where none was given."""
+    return otherwise if quantity is None else quantity.internal
+
+
+@pair_of.register
+def _(move: MeshSpec, name: str, scene: Scene) -> GearPair:
+    _refuse_rings(move, name, scene)
+    pinion, wheel = (cylindrical_gear(scene, gear) for gear in move.gears)
+    if move.centre_distance is None:
+        words = "expected the centre_distance of the axes, got none; it follows only where both shafts lie in bores"
+        raise scene.refuse(("moves", name), words)
+    try:
+        pair = cylindrical_pair(pinion, wheel, move.centre_distance.internal)
+        pair.refuse_interference()
+    except GeometryError as error:
+        raise scene.refuse(("moves", name, "centre_distance"), str(error)) from None
+    return pair
+
+
+def _refuse_rings(move: MeshSpec, name: str, scene: Scene) -> None:
+    """Refuse two rings, and one that is no larger than its mate, before their teeth are found impossible."""
+    driver, driven = move.gears
+    specs = {gear: spec for gear in move.gears if isinstance(spec := scene.parts[gear], GearSpec)}
+    rings = [gear for gear, spec in specs.items() if isinstance(spec, InternalGearSpec)]
+    if len(rings) == 2:
+        words = f"expected one internal gear at most, got {driver!r} and {driven!r}: rings do not mesh with each other"
+        raise scene.refuse(("moves", name, "driven"), words)
+    for ring in rings:
+        inner = driven if ring == driver else driver
+        if specs[ring].teeth <= specs[inner].teeth:
+            words = f"expected more teeth than the {specs[inner].teeth} of {inner!r}, which is inside it"
+            raise scene.refuse(("parts", ring, "teeth"), f"{words}, got {specs[ring].teeth}")
+
+
+def cylindrical_pair(
+    pinion: SpurGear | InternalGear, wheel: SpurGear | InternalGear, centre_distance: float
+) -> SpurPair | InternalPair:
+    """Two gears at a centre distance [mm], of which one may be a ring.
+
+    Raises:
+        GeometryError: they do not mesh.
+    """
+    if isinstance(pinion, SpurGear) and isinstance(wheel, SpurGear):
+        return SpurPair(pinion, wheel, centre_distance)
+    return InternalPair(pinion, wheel, centre_distance)
+
+
+def cylindrical_gear(scene: Scene, name: str) -> SpurGear | InternalGear:
+    """A spur gear or a ring of a scene.
+
+    Raises:
+        SceneError: it cannot be made.
+    """
+    spec = scene.parts[name]
+    try:
+        if isinstance(spec, SpurGearSpec):
+            return _spur_gear(spec)
+        if isinstance(spec, InternalGearSpec):
+            return _internal_gear(spec)
+    except GeometryError as error:
+        raise scene.refuse(("parts", name), str(error)) from None
+    raise TypeError(f"{name} is no spur gear")
+
+
+def _spur_gear(spec: SpurGearSpec) -> SpurGear:
+    return SpurGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        bore=internal(spec.bore),
+    )
+
+
+def _internal_gear(spec: InternalGearSpec) -> InternalGear:
+    return InternalGear(
+        teeth=spec.teeth,
+        module=spec.module.internal,
+        pressure_angle=spec.pressure_angle.internal,
+        face_width=spec.face_width.internal,
+        profile_shift=spec.profile_shift,
+        addendum=spec.addendum,
+        dedendum=spec.dedendum,
+        root_fillet=None if spec.root_fillet is None else spec.root_fillet.internal,
+        outer_diameter=None if spec.outer_diameter is None else spec.outer_diameter.internal,
+    )
+
+
+@undercut_warning.register
+def _(gear: SpurGear) -> str:
+    if gear.undercut_radius > gear.base_radius:
+        return (
+            f"a rack of addendum 1 undercuts it below profile_shift {gear.undercut_limit_shift:.4f}; "
+            f"its flank is lost up to {2 * gear.undercut_radius:.4f} mm, below the flank in use"
+        )
+    return ""
+
+
+PITCH_ANGLE_AS_WRITTEN = math.radians(0.01)  # two decimals of a degree are enough to check a drawing's angle
+
+
+@pair_of.register
+def _(move: BevelMeshSpec, name: str, scene: Scene) -> GearPair:
+    try:
+        driver, driven = (_teeth(scene, gear) for gear in move.gears)
+        angles = pitch_angles(driver, driven, move.shaft_angle.internal)
+    except GeometryError as error:
+        raise scene.refuse(("moves", name, "shaft_angle"), str(error)) from None
+    pinion, wheel = (_bevel_gear(scene, gear, angle) for gear, angle in zip(move.gears, angles, strict=True))
+    try:
+        pair = BevelPair(pinion, wheel, move.shaft_angle.internal)
+        pair.refuse_interference()
+    except GeometryError as error:
+        raise scene.refuse(("moves", name), str(error)) from None
+    return pair
+
+
+def _teeth(scene: Scene, name: str) -> int:
+    spec = scene.parts[name]
+    if not isinstance(spec, GearSpec):
+        raise TypeError(f"{name} is no gear")
+    return spec.teeth
+
+
+def _bevel_gear(scene: Scene, name: str, pitch_angle: float) -> BevelGear:
+    spec = scene.parts[name]
+    if not isinstance(spec, BevelGearSpec):
+        raise TypeError(f"{name} is no bevel gear")
+    if abs(internal(spec.pitch_angle, pitch_angle) - pitch_angle) > PITCH_ANGLE_AS_WRITTEN:
+        wanted = f"{math.degrees(pitch_angle):.4f} deg, which the teeth and the shaft angle ask for"
+        raise scene.refuse(
+            ("parts", name, "pitch_angle"), f"the pitch cones do not roll: expected {wanted}, got '{spec.pitch_angle}'"
+        )
+    try:
+        return BevelGear(
+            teeth=spec.teeth,
+            module=spec.module.internal,
+            pressure_angle=spec.pressure_angle.internal,
+            face_width=spec.face_width.internal,
+            pitch_angle=pitch_angle,
+            profile_shift=spec.profile_shift,
+            addendum=spec.addendum,
+            dedendum=spec.dedendum,
+            bore=internal(spec.bore),
+        )
+    except GeometryError as error:
+        raise scene.refuse(("parts", name), str(error)) from None
+
+
+@undercut_warning.register
+def _(gear: BevelGear) -> str:
+    if gear.undercut_angle > gear.base_angle:
+        return (
+            f"a crown rack of addendum 1 undercuts it below profile_shift {gear.undercut_limit_shift:.4f}; "
+            "its flank is lost below the flank in use"
+        )
+    return ""
+
+
+@assembly_warning.register
+def _(pair: InternalPair) -> str:
+    if pair.radially_assembled:
+        return ""
+    return (
+        f"the gear of {pair.inner.teeth} teeth goes into the ring of {pair.ring.teeth} along its axis only: moved "
+        "along the line of centres its teeth meet the ring's"
+    )

@@ -1,0 +1,208 @@
+"""What a measure's backlashes leave free, together: added up along a train, compared where parallel load paths join.
+
+Both roads go through here; what a single backlash is, each of them reads for itself.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links.stated_link import FreeTurn, middle_of
+from tol3d.gearing.model import Backlash, LostMotion, Measure, Mesh, Model, Reading, TransmissionError
+from tol3d.gearing.model.measure import AnyStage, ParallelStage, Stage
+from tol3d.gearing.play.linked import LinkLaw, link_trials
+from tol3d.gearing.play.load_paths import FREE, LinearForm, Variable, free_form, value
+from tol3d.numerics.arrays import Array
+from tol3d.system.breakdown import Breakdown, SumTerm
+from tol3d.system.trials import Trials
+from tol3d.units import ARCMIN
+
+
+def clocking(model: Model, mesh: Mesh, deviations: Array) -> Array:
+    """Turn of the shaft that a mesh drives, about the driven gear's z, by how its gears sit on their shafts [rad].
+
+    Args:
+        model, mesh: the mesh.
+        deviations: (trials, components) [mm, rad, K].
+
+    Returns:
+        (trials,)
+    """
+    total = np.zeros(len(deviations))
+    for contributor in model.contributors:
+        if rate := contributor.effect.clocking(mesh):
+            total = total + rate * deviations[:, model.component_slices[contributor.name].start]
+    return total
+
+
+def staged_measures(model: Model) -> tuple[Measure, ...]:
+    """The measure of each train whose stages are kept: its first of one value at random positions."""
+    found: dict[str, Measure] = {}
+    for measure in model.measures:
+        if isinstance(measure.kind, LostMotion) and measure.positions.over == "random":
+            found.setdefault(measure.kind.train, measure)
+    return tuple(found.values())
+
+
+def breakdowns_of(model: Model) -> tuple[Breakdown, ...]:
+    """The stages of each of them: lost motion [arcmin] at the shaft that each stage drives."""
+    return tuple(
+        Breakdown(
+            measure.name, tuple(SumTerm(stage.link, stage.factor) for stage in measure.kind.stages), "arcmin", ARCMIN
+        )
+        for measure in staged_measures(model)
+        if isinstance(measure.kind, LostMotion)
+    )
+
+
+def stages_of(measure: Measure) -> tuple[AnyStage, ...]:
+    """The stages that a train's measure adds up, from the held shaft on."""
+    if not isinstance(measure.kind, LostMotion):
+        raise TypeError(f"{measure.name} has no stages")
+    return measure.kind.stages
+
+
+Angles = tuple[float, ...] | None
+"""Driver angles [rad] that every trial shares; None for those of the trial."""
+
+SeatKey = tuple[str, Angles, Reading]
+"""Mesh, positions and reading: backlashes that share them share their contacts."""
+
+Read = Callable[[Backlash, SeatKey], Array]
+"""Values (trials, positions) of a backlash [mm or rad] where it is read."""
+
+
+def seat_key(model: Model, measure: Measure, backlash: Backlash) -> SeatKey:
+    """Where and how a measure reads one of its backlashes."""
+    return backlash.mesh, model.driver_angles(measure, backlash.mesh), backlash.reading
+
+
+def seat_keys(model: Model, measure: Measure) -> tuple[SeatKey, ...]:
+    """The same of all of them."""
+    return tuple(seat_key(model, measure, backlash) for _, backlash in measure.kind.backlashes)
+
+
+@dataclass(frozen=True, eq=False)
+class Play:
+    """The backlashes of a measure in some trials.
+
+    Args:
+        model, measure: what is read.
+        trials: deviations and positions.
+        read: gives the values of each backlash.
+        law: gives the free turns of links that are no meshes.
+    """
+
+    model: Model
+    measure: Measure
+    trials: Trials
+    read: Read
+    law: LinkLaw
+
+    def free(self) -> Array:
+        """What they leave free together [mm or rad], (trials, positions)."""
+        return np.asarray(sum(factor * values for _, factor, values in self.parts()))
+
+    def parts(self) -> Iterator[tuple[str, float, Array]]:
+        """What is added up: the name of each link or group of parallel load paths, its factor, its play."""
+        kind = self.measure.kind
+        if isinstance(kind, Backlash):
+            yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
+            return
+        if isinstance(kind, TransmissionError):
+            for factor, backlash in kind.backlashes:
+                yield backlash.mesh, factor, self.read(backlash, seat_key(self.model, self.measure, backlash))
+            return
+        for stage in kind.stages:
+            yield stage.link, stage.factor, self.of(stage)
+
+    def overlap(self) -> Array:
+        """What meshes, parallel load paths and other links lack where they bind [mm or rad], (trials, positions).
+
+        0 or less. That of a train which is jammed somewhere: the play of its other stages does not free it.
+        """
+        if not isinstance(self.measure.kind, LostMotion):
+            return np.minimum(self.free(), 0.0)
+        return np.asarray(sum(stage.factor * self._lacking(stage) for stage in self.measure.kind.stages))
+
+    def _lacking(self, stage: AnyStage) -> Array:
+        """What a stage lacks [rad]; of a link that is no mesh only where it jams, for data sheets may say anything."""
+        lacking = np.minimum(self.of(stage), 0.0)
+        if isinstance(stage, Stage) and stage.backlash is None:
+            return np.where(self._jams(stage), lacking, 0.0)
+        return lacking
+
+    def jammed(self) -> NDArray[np.bool_]:
+        """Where a link that is no mesh cannot be assembled, (trials, positions)."""
+        found = np.zeros(self._shape, dtype=bool)
+        for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
+            if stage.backlash is None:
+                found |= self._jams(stage)
+        return found
+
+    def untouched(self) -> NDArray[np.bool_]:
+        """Where nothing is found that stops a link that is no mesh, (trials, positions)."""
+        found = np.zeros(self._shape, dtype=bool)
+        for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
+            if stage.backlash is None:
+                found |= np.isnan(self._turn(stage).play)
+        return found
+
+    def _jams(self, stage: Stage) -> NDArray[np.bool_]:
+        turn = self._turn(stage)
+        return np.broadcast_to(False if turn.jams is None else turn.jams, self._shape)
+
+    def bound(self) -> NDArray[np.bool_]:
+        """Where parallel load paths bind each other, (trials, positions)."""
+        tight = np.zeros(self._shape, dtype=bool)
+        stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
+        for stage in _parallel(stages):
+            tight |= self.of(stage) < -FREE
+        return tight
+
+    def of(self, stage: AnyStage) -> Array:
+        """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
+        return value(self.form(stage), self.values_of)
+
+    def form(self, stage: AnyStage) -> LinearForm:
+        """That as a weighted sum of the readings of its links."""
+        if isinstance(stage, Stage):
+            return {(stage, "play"): np.array(1.0)}
+        return free_form(stage, self._flank, self.values_of)
+
+    def values_of(self, variable: Variable) -> Array:
+        """A stage's own play, or the angle at which its driven gear rests on its shaft [rad], (trials, positions).
+
+        Of a link that is no mesh the middle of its free turn stands for that angle.
+        """
+        stage, what = variable
+        if stage.backlash is None:
+            turn = self._turn(stage)
+            return np.broadcast_to(turn.play if what == "play" else middle_of(turn), self._shape)
+        key = seat_key(self.model, self.measure, stage.backlash)
+        if what == "play":
+            return self.read(stage.backlash, key)
+        sits = clocking(self.model, self.model.mesh(stage.backlash.mesh), self.trials.deviations)
+        return self.read(replace(stage.backlash, quantity="rest_angle"), key) + sits[:, None]
+
+    def _turn(self, stage: Stage) -> FreeTurn:
+        """The free turn of a link that is no mesh."""
+        link = self.model.link(stage.link)
+        return self.law(link, link_trials(self.model, self.measure, link, self.trials))
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return len(self.trials), self.measure.positions.in_a_trial
+
+    def _flank(self, stage: Stage) -> int | None:
+        return None if stage.backlash is None else self.model.mesh(stage.backlash.mesh).driven_flank
+
+
+def _parallel(stages: Iterable[AnyStage]) -> Iterator[ParallelStage]:
+    """All parallel load paths among some stages, those inside others too."""
+    for stage in stages:
+        if isinstance(stage, ParallelStage):
+            yield stage
+            yield from (inner for path in stage.paths for inner in _parallel(path))

@@ -1,0 +1,223 @@
+"""What a measure of gears sees of each contributor that acts on it: the columns that its variance is regressed on.
+
+A turning offset matters by where it points at the mesh, so it is turned into the world at the trial's
+position; over a whole turn only its length matters. Squares catch one-sided effects such as tilts.
+"""
+
+from collections.abc import Hashable, Mapping, Sequence, Set
+from dataclasses import replace
+from hashlib import blake2b
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links import LinkTrials, StatedLink
+from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
+from tol3d.gearing.play.linked import link_contributors
+from tol3d.gearing.roads.analytic import analytic_values
+from tol3d.numerics.arrays import Array
+from tol3d.system.itself import Itself
+from tol3d.system.regressors import is_group, regress_plainly, regress_term
+from tol3d.system.stated import mean_deviations, stated
+from tol3d.system.taken import ROWS_AT_ONCE, taken
+from tol3d.system.trials import Trials
+
+Columns = Mapping[str, NDArray[Any]]
+
+MOST_KEPT: Final = 200_000
+"""Trials of links that are kept, of what their contributors add."""
+
+_KEPT: Final[list[dict[tuple[Itself, bytes, bytes], Array]]] = [{}]
+
+
+def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
+    """The contributors that act on a measure: on one of its meshes, or one of its other links."""
+    meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
+    links = {name for _, name in measure.kind.links}
+    clocked = meshes if isinstance(measure.kind, LostMotion) and measure.kind.joins else ()
+    return tuple(contributor for contributor in model.contributors if _acts(contributor.effect, meshes, links, clocked))
+
+
+def _acts(effect: Effect, meshes: Sequence[Mesh], links: Set[str], clocked: Sequence[Mesh]) -> bool:
+    return (
+        any(effect.acts_in(mesh) for mesh in meshes)
+        or any(effect.clocking(mesh) for mesh in clocked)
+        or any(effect.acts_on(link) for link in links)
+    )
+
+
+def regressor_key(measure: Measure) -> Hashable:
+    """Measures of one key have the same regressors."""
+    kind = measure.kind
+    read = tuple(replace(backlash, quantity="normal_backlash", gear="") for _, backlash in kind.backlashes)
+    return read, tuple(name for _, name in kind.links), measure.positions, measure.take == "value"
+
+
+def regress(
+    model: Model, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
+) -> None:
+    """Write contributors' rows (2, trials) from the columns of their components, over each one's sigma."""
+    turning = _Turning(_angles(model, measure, columns) if measure.take == "value" else {})
+    parts = _parts_in_links(model, measure, columns)
+    for contributor in contributors:
+        own = rows[contributor.name]
+        if contributor.name in parts and isinstance(contributor.effect, LinkDeviation):
+            own[...] = 0.0
+            own[0] = parts[contributor.name]
+            continue
+        if is_group(contributor):
+            regress_term(own, *_group_term(model, measure, contributor, columns))
+            continue
+        values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+        _regress(own, contributor, values, turning)
+        if contributor.name in parts:  # of a shaft: across the line of centres it does nothing to a mesh
+            own[1] = parts[contributor.name]
+
+
+def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
+    """What contributors that act in links add to a measure there (trials,), where a link says it; [its unit]."""
+    found: dict[str, Array] = {}
+    for factor, name in measure.kind.links if measure.take == "value" else ():
+        link, seen = model.link(name), _link_trials(model, measure, name, columns)
+        if not link.compares:
+            continue
+        means = {
+            each.name: np.array(each.draw.mean(turning=model.turns_at_random(each, measure.positions)))
+            for each in seen.contributors
+        }
+        parts = _parts(link, seen, means)
+        found |= {name: factor * measure.per_internal * part for name, part in parts.items()}
+    return found
+
+
+def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+    """What contributors add to a link's play; each trial is worked out once, whatever measures and findings ask."""
+    by_bores = {own.contributor for own in link.moved}
+    names = [name for name in seen.deviations if name not in by_bores]
+    if not names:
+        return {}
+    rows = np.concatenate([seen.angles[:, :1], *seen.deviations.values()], axis=1)
+    about = blake2b(np.concatenate([means[name] for name in names] or [np.zeros(0)]).tobytes(), digest_size=16).digest()
+    keys = [(Itself(link), about, blake2b(row, digest_size=16).digest()) for row in np.ascontiguousarray(rows)]
+    known = _KEPT
+    if len(known[0]) + len(keys) > MOST_KEPT:
+        known[0] = {}  # another thread may still read the other one
+    found = known[0]
+    new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in found}
+    if new:
+        parts = link.parts(seen.rows(np.array([*new.values()], dtype=np.intp)), means)
+        found |= zip(new, np.stack([parts[name] for name in names], axis=1), strict=True)
+    every = np.array([found[key] for key in keys])
+    return {name: every[:, k] for k, name in enumerate(names)}
+
+
+def slopes_by_bores(model: Model, measure: Measure, link: str, columns: Columns) -> Mapping[str, Array]:
+    """Change of a link's play by each displacement of the bores of its parts [rad/mm], by contributor (trials, 2)."""
+    own = model.link(link)
+    return own.slopes_by_bores(_link_trials(model, measure, link, columns)) if own.moved else {}
+
+
+def _link_trials(model: Model, measure: Measure, link: str, columns: Columns) -> LinkTrials:
+    own = link_contributors(model, link)
+    deviations = {
+        each.name: np.stack([np.asarray(columns[key], dtype=np.float64) for key in each.columns], axis=-1)
+        * each.per_unit
+        for each in own
+    }
+    return LinkTrials(own, deviations, _link_angles(model, measure, link, columns))
+
+
+def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) -> Array:
+    """Where the driver of a link stands [rad], (trials, 1); 0 of a link whose play does not depend on it."""
+    if position_column(link) not in columns:
+        return np.zeros((len(next(iter(columns.values()))), 1))
+    angles = np.radians(np.asarray(columns[position_column(link)], dtype=np.float64))[:, None]
+    fixed = model.driver_angles(measure, link)
+    return angles if fixed is None else np.full_like(angles, fixed[0])
+
+
+def _group_term(model: Model, measure: Measure, contributor: Contributor, columns: Columns) -> tuple[Array, float]:
+    """What a group of many components does to a measure by the stack-up (trials,) [mm or rad], and a size of that.
+
+    All others are at their means. Of a curve what it does at the first position.
+    """
+    means = mean_deviations(model, measure.positions)
+    own = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
+    deviations = np.repeat(means, len(own[0]), axis=0)
+    deviations[:, model.component_slices[contributor.name]] = np.stack(own, axis=-1)
+    positions = {name: np.zeros(len(deviations)) for name in stated(model, means).positions}
+    for name in positions:
+        if (column := position_column(name)) in columns:
+            positions[name] = np.radians(np.asarray(columns[column], dtype=np.float64))
+    trials = Trials(deviations, positions)
+    at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
+    found = np.concatenate(
+        [
+            values[:, 0] if measure.take == "curve" else taken(measure, values)
+            for first in range(0, len(trials), at_once)
+            for values in [analytic_values(model, measure, trials.part(first, first + at_once))]
+        ]
+    )
+    meshes = [model.mesh(own.mesh) for _, own in measure.kind.backlashes] if measure.kind.is_angle else []
+    arm = meshes[0].pair.wheel.base_radius if meshes else 1.0
+    return found, contributor.draw.sigma / arm
+
+
+def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
+    """Where the gears of a measure's meshes stand, each in the first of them [rad], (trials,)."""
+    angles: dict[str, Array] = {}
+    for _, backlash in measure.kind.backlashes:
+        mesh = model.mesh(backlash.mesh)
+        driver = np.radians(np.asarray(columns[position_column(mesh.name)], dtype=np.float64))
+        if (fixed := model.driver_angles(measure, mesh.name)) is not None:
+            driver = np.full_like(driver, fixed[0])
+        angles.setdefault(mesh.driver, driver)
+        angles.setdefault(mesh.driven, mesh.pair.driven_angle(driver))
+    return angles
+
+
+def position_column(mesh: str) -> str:
+    """Name of the column with the random driver position of a mesh, or another link."""
+    return f"position:{mesh} [deg]"
+
+
+class _Turning:
+    """Cosines and sines of gears' turns, each worked out once."""
+
+    def __init__(self, angles: Mapping[str, Array]) -> None:
+        self._angles = angles
+        self._known: dict[str, tuple[Array, Array]] = {}
+
+    def __contains__(self, part: str | None) -> bool:
+        return part in self._angles
+
+    def __getitem__(self, part: str) -> tuple[Array, Array]:
+        if part not in self._known:
+            self._known[part] = (np.cos(self._angles[part]), np.sin(self._angles[part]))
+        return self._known[part]
+
+
+def _acting_effect(contributor: Contributor, turning: _Turning) -> Effect:
+    """What a contributor does to the gears that are read; of a shaft to the first of them, for they turn alike."""
+    effects = contributor.effect.singles
+    return next((effect for effect in effects if effect.turns_with in turning), effects[0])
+
+
+def _regress(rows: Array, contributor: Contributor, values: Sequence[Array], turning: _Turning) -> None:
+    """Write a contributor's two rows (2, trials) from the columns of its components."""
+    effect = _acting_effect(contributor, turning)
+    if not isinstance(contributor.draw, Planar) or effect.turns_with is None:
+        regress_plainly(rows, contributor, values)
+        return
+    law = contributor.distribution
+    per_spread = 1.0 / (law.sigma or 1.0)
+    x, y = values
+    if effect.turns_with in turning:
+        cos, sin = turning[effect.turns_with]
+        y = -y if effect.mirrored else y
+        np.multiply(cos * x - sin * y, per_spread, out=rows[0])
+        np.multiply(sin * x + cos * y, per_spread, out=rows[1])
+    else:
+        np.multiply(np.sqrt(x * x + y * y) - law.mean, per_spread, out=rows[0])
+        np.square(rows[0], out=rows[1])

@@ -1,0 +1,1 @@
+"""Builds with their gears where they came to rest, for pictures and files."""

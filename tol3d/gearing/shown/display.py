@@ -1,0 +1,287 @@
+"""A build simulated again for pictures and files: every mesh seated, its deviations magnified if wanted."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from tol3d.errors import InputError, RunError
+from tol3d.gearing.engines import NO_CONTACT
+from tol3d.gearing.meshing.mesh import Meshing, MeshSeat
+from tol3d.gearing.meshing.seats import Seats
+from tol3d.gearing.model import Measure, Mesh, Model
+from tol3d.gearing.play.play import SeatKey, seat_keys
+from tol3d.gearing.shown.placed import PlacedGear, SeatedMesh, allowed_factor
+from tol3d.gearing.system import gears_in
+from tol3d.numerics.arrays import Array
+from tol3d.report.presenter import Which
+from tol3d.runs.run import Run
+from tol3d.runs.worst import worst_trial
+from tol3d.simulate import Replay, replay, replayed, simulation_again
+from tol3d.system.stated import magnified, mean_build, nominal_build
+
+Side = Literal["drive", "back"]
+"""Flanks on which meshes rest: those that the first shaft pushes with, or the others."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeatedBuild:
+    """A build at rest.
+
+    Args:
+        model: whose build it is.
+        label: what it is, such as "trial-17" or "nominal", good as the start of a file's name.
+        magnify: the factor of its deviations.
+        meshes: each in a world of its own; those that are measured, or all of a model whose shafts are shown.
+        values: value of each measure on the geometric road, in the measure's unit, magnified too.
+        notes: what the user should know.
+        seen: the build itself, simulated again with its deviations as they are magnified.
+    """
+
+    model: Model
+    label: str
+    magnify: float
+    meshes: tuple[SeatedMesh, ...]
+    values: Mapping[str, object]
+    notes: tuple[str, ...]
+    seen: Replay
+
+
+def seated_build(run: Run, which: Which, *, magnify: float = 1.0) -> SeatedBuild:
+    """A build of a run, seated again.
+
+    Args:
+        which: a trial, or "worst", "nominal", "mean".
+        magnify: scales every deviation; lowered where the teeth would not seat, their gap would leave
+            the tooth space or a tip would fold, as a note then says.
+
+    Raises:
+        InputError: no such build, or one without contact.
+    """
+    if not (math.isfinite(magnify) and magnify >= 0.0):
+        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
+    label, seen = replayed_of(run, which)
+    plain = replayed_build(seen, label)
+    if magnify == 1.0:
+        return plain
+    rows = _rows(seen)
+    used, note = allowed_factor(lambda factor: _seated(_scaled(seen, factor), rows), magnify)
+    again = _scaled(seen, used)
+    label += f"-x{used:g}" if used != 1.0 else ""
+    return SeatedBuild(_model(seen), label, used, _seated(again, rows), again.geometric, (*plain.notes, note), again)
+
+
+def replayed_build(seen: Replay, label: str) -> SeatedBuild:
+    """A build that was replayed, seated again, under a label.
+
+    Raises:
+        RunError: its working flanks found no contact.
+    """
+    meshes = _seated(seen, _rows(seen))
+    for seat in meshes:
+        if seat.status == NO_CONTACT:
+            raise RunError(f"{label}: the working flanks of {seat.mesh.name} found no contact; choose another build")
+    failed = () if seen.status == "ok" else (f"{label}: {seen.status}; shown where its working flanks touch",)
+    return SeatedBuild(_model(seen), label, 1.0, meshes, seen.geometric, failed, seen)
+
+
+def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
+    """A build of a run again, with its label.
+
+    Raises:
+        InputError: no such build.
+    """
+    if which == "worst":
+        which = worst_trial(run)
+    if isinstance(which, int):
+        return f"trial-{which}", replay(run, which)
+    if which not in ("nominal", "mean"):
+        raise InputError(f"expected a trial's number, worst, nominal or mean, got {which!r}")
+    simulation = simulation_again(run)
+    system = simulation.system
+    build = nominal_build(system) if which == "nominal" else mean_build(system, system.measures[0])
+    return which, replayed(simulation, build)
+
+
+def magnified_of(run: Run, which: Which, magnify: float) -> tuple[str, Replay, tuple[str, ...]]:
+    """The same with its deviations magnified, its label, and what is to be noted.
+
+    Raises:
+        InputError: no such build, or no such factor.
+    """
+    if not (math.isfinite(magnify) and magnify >= 0.0):
+        raise InputError(f"magnify: expected a number of at least 0, got {magnify:g}")
+    label, seen = replayed_of(run, which)
+    if magnify == 1.0:
+        return label, seen, ()
+    return f"{label}-x{magnify:g}", _scaled(seen, magnify), (f"deviations magnified {magnify:g} times",)
+
+
+def _scaled(seen: Replay, factor: float) -> Replay:
+    """The build with its deviations multiplied by a factor."""
+    if factor == 1.0:
+        return seen
+    return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))
+
+
+def _model(seen: Replay) -> Model:
+    return gears_in(seen.simulation.system).model
+
+
+def _seats_of(seen: Replay) -> Seats:
+    """Its meshes as they came to rest."""
+    seats: Seats = seen.build
+    return seats
+
+
+# positions ----------------------------------------------------------------------------------------
+
+
+def shows_shafts(model: Model) -> bool:
+    """Whether its parts make more than single pairs: they are shown in one world then, at the trial's position."""
+    plain = all(len(drive.moves) == 1 for drive in model.layout.drives)
+    return bool(model.shafts or model.arms or model.links) or not plain
+
+
+def _first_measure(model: Model, mesh: Mesh) -> Measure | None:
+    return next((measure for measure in model.measures if _key(model, measure, mesh)), None)
+
+
+def _key(model: Model, measure: Measure, mesh: Mesh) -> SeatKey | None:
+    """Where a measure reads a mesh; None where it does not."""
+    return next((key for key in seat_keys(model, measure) if key[0] == mesh.name), None)
+
+
+def _rows(seen: Replay) -> dict[str, int]:
+    """At which position of its first measure each mesh is shown: the extreme that the measure takes, or the first."""
+    if shows_shafts(_model(seen)):
+        return {mesh.name: 0 for mesh in _model(seen).meshes}
+    rows = {}
+    for mesh in _model(seen).meshes:
+        measure = _first_measure(_model(seen), mesh)
+        if measure is not None:
+            rows[mesh.name] = _extreme(measure, _of_measure(seen, mesh).non_working.smallest())
+    return rows
+
+
+def _extreme(measure: Measure, gaps: Array) -> int:
+    if measure.take not in ("min", "max", "range") or np.isnan(gaps).all():
+        return 0
+    return int(np.nanargmin(gaps) if measure.take == "min" else np.nanargmax(gaps))
+
+
+def _of_measure(seen: Replay, mesh: Mesh) -> MeshSeat:
+    """A mesh at the positions of its first measure."""
+    return _seats_of(seen).seats[_own_key(seen, mesh)]
+
+
+def _own_key(seen: Replay, mesh: Mesh) -> SeatKey:
+    """Where a mesh is read first; one that is not read counts as the first that is."""
+    measure = _first_measure(_model(seen), mesh)
+    key = _key(_model(seen), measure, mesh) if measure else None
+    return key or next(iter(_seats_of(seen).seats))
+
+
+def _seats(seen: Replay, rows: Mapping[str, int]) -> Mapping[str, MeshSeat]:
+    if shows_shafts(_model(seen)):
+        return _along_shafts(seen)
+    return {mesh.name: _of_measure(seen, mesh) for mesh in _model(seen).meshes if mesh.name in rows}
+
+
+def seats_turned(seen: Replay, driver_angles: Mapping[str, float], beyond: float, side: Side) -> Mapping[str, MeshSeat]:
+    """Meshes of a build further on, on either side of their backlash.
+
+    Args:
+        seen: the build.
+        driver_angles: turns [rad] of the drivers of its meshes in it, by mesh; those that are shown.
+        beyond: turn of the first shafts, or of the drivers of single pairs, from there on [rad].
+        side: of all meshes.
+    """
+    if shows_shafts(_model(seen)):
+        return _along_shafts(seen, beyond, side)
+    meshes = (mesh for mesh in _model(seen).meshes if mesh.name in driver_angles)
+    return {
+        mesh.name: _meshing(seen, mesh, side).seat(np.array([driver_angles[mesh.name] + beyond])) for mesh in meshes
+    }
+
+
+def _along_shafts(seen: Replay, beyond: float = 0.0, side: Side | None = None) -> Mapping[str, MeshSeat]:
+    """Meshes at the trial's position, each driver turned to where the links before it came to rest.
+
+    Where load paths join, the first link decides where the shaft rests; how gears are clocked on their shafts is not
+    shown.
+
+    Args:
+        seen: the build.
+        beyond: turn of the first shafts from the trial's position on [rad].
+        side: of their backlash that all meshes rest on; None: each on that of its first measure.
+    """
+    layout = _model(seen).layout
+    angles = {
+        name: angle + beyond * float(layout.mesh_turn[name].rate) if name in layout.mesh_turn else angle
+        for name, angle in seen.trials.positions.items()
+    }
+    meshes = {mesh.name: mesh for mesh in _model(seen).meshes}
+    ahead: dict[str, float] = {}  # of its nominal angle, by shaft [rad]
+    seats = {}
+    for link in sorted(layout.links, key=lambda link: len(layout.upstream(link.driven))):
+        before = ahead.get(link.driver, 0.0)
+        mesh = meshes.get(link.name)
+        if mesh is None:
+            about = ahead.get(link.carrier or "", 0.0)
+            ahead.setdefault(link.driven, about + (before - about) * float(link.rate))
+            continue
+        meshing = _meshing(seen, mesh, side)
+        (_, driver), (_, driven) = layout.carrying[mesh.driver], layout.carrying[mesh.driven]
+        seats[mesh.name] = meshing.seat(angles[mesh.name] + driver.sense * before)
+        off = seats[mesh.name].driven_angle - mesh.pair.driven_angle(angles[mesh.name])
+        ahead.setdefault(link.driven, driven.sense * float(off[0]))
+    return seats
+
+
+def _meshing(seen: Replay, mesh: Mesh, side: Side | None) -> Meshing:
+    """A mesh as its first measure reads it, or on a side of its backlash."""
+    known = _seats_of(seen).meshings[_own_key(seen, mesh)]
+    reading = known.reading if side is None else replace(known.reading, flank=side)
+    return Meshing(known.engine, _model(seen), mesh, _seats_of(seen).build, reading)
+
+
+def _seated(seen: Replay, rows: Mapping[str, int]) -> tuple[SeatedMesh, ...]:
+    seats = _seats(seen, rows)
+    return tuple(
+        seated_mesh(seen, mesh, seats[mesh.name], rows[mesh.name]) for mesh in _model(seen).meshes if mesh.name in seats
+    )
+
+
+def seated_mesh(seen: Replay, mesh: Mesh, seat: MeshSeat, row: int) -> SeatedMesh:
+    """A mesh of a build, its gears placed as a row of its seat has them."""
+    at_work, idle = seat.working, seat.non_working
+    touching = int(np.argmin(np.where(np.isnan(at_work.value[row]), np.inf, at_work.value[row])))
+    nearest = int(np.argmin(np.where(np.isnan(idle.value[row]), np.inf, idle.value[row])))
+    driver_angle, driven_angle = float(seat.driver_angle[row]), float(seat.driven_angle[row])
+    return SeatedMesh(
+        mesh=mesh,
+        driver=_placed(seen, mesh, mesh.driver, driver_angle),
+        driven=_placed(seen, mesh, mesh.driven, driven_angle),
+        driver_angle=driver_angle,
+        driven_angle=driven_angle,
+        contact=at_work.driver_point[row, touching],
+        normal=at_work.normal[row, touching],
+        gap=np.stack([idle.driver_point[row, nearest], idle.driven_point[row, nearest]]),
+        gap_value=float(idle.smallest()[row]),
+        status=int(seat.status[row]),
+    )
+
+
+def _placed(seen: Replay, mesh: Mesh, name: str, angle: float) -> PlacedGear:
+    seat, build = _model(seen).seat_index[mesh.name, name], _seats_of(seen).build
+    gear = mesh.gear(name)
+    return PlacedGear(
+        name=name,
+        gear=gear,
+        world_from_gear=build.world_from_gear(seat, np.array([angle]))[0],
+        flank_turn=float(build.flank_turn[0, seat] + build.flank_offset[0, seat] / gear.section_arm),
+        scale=float(build.scale[0, seat]),
+    )

@@ -1,0 +1,1 @@
+"""The gears' part of summary.json: its types, words and sections."""
