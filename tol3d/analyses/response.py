@@ -128,7 +128,7 @@ class Response:
         row = mean_deviations(self.simulation.system, self.measures[0].positions)[0].copy()
         for name, own in self.slices.items():
             row[own] = self.draws[name].mean(turning=False)
-        return row
+        return np.asarray(row, dtype=np.float64)
 
     def positions(self, count: int, how: Standing, seed: int = 1) -> Mapping[str, Array]:
         """Positions of rows; see Standing.

@@ -10,14 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Remembered
+from tol3d.system.draw import Draw, Remembered
 from tol3d.system.faults import UnfitError
 
 Given = Mapping[str, Array]
 """Components (components, trials) [mm, rad or K] of the contributors that a draw reads, by their names."""
 
-Own = TypeVar("Own", bound=Contributor)
+class Named(Protocol):
+    """A contributor, as far as the order of drawing hangs on it."""
+
+    @property
+    def name(self) -> str:
+        """See Contributor."""
+        ...
+
+    @property
+    def draw(self) -> Draw:
+        """See Contributor."""
+        ...
+
+
+Own = TypeVar("Own", bound=Named)
 
 
 @runtime_checkable
@@ -55,7 +68,7 @@ class DependentlyJudged(Protocol, metaclass=Remembered):
         ...
 
 
-def reads_of(contributor: Contributor) -> tuple[str, ...]:
+def reads_of(contributor: Named) -> tuple[str, ...]:
     """Names of the contributors that one reads; of most none."""
     draw = contributor.draw
     return draw.reads if isinstance(draw, Dependent) else ()
