@@ -195,7 +195,8 @@ class PosedRoad:
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
         """See WitnessRoad."""
-        own: Any = [self.roads[pose].bounds(measure) for pose in self.at[measure.name]]  # type: ignore[attr-defined]
+        roads: Any = [self.roads[pose] for pose in self.at[measure.name]]
+        own = [road.bounds(measure) for road in roads]
         return max(each for each, _ in own), max(each for _, each in own)
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:

@@ -34,7 +34,7 @@ def polar_map(title: str, azimuths: Array, tilts: Array, values: Array, ends: Ar
     around = np.append(azimuths, azimuths[0] + 2 * np.pi)
     shown = np.ma.masked_invalid(np.vstack([values, values[:1]]))
     low, high = float(shown.min()), float(shown.max())
-    mesh = axes.pcolormesh(
+    drawn = axes.pcolormesh(
         np.repeat(around[:, None], tilts.shape[1], axis=1),
         np.vstack([tilts, tilts[:1]]),
         shown,
@@ -48,6 +48,6 @@ def polar_map(title: str, azimuths: Array, tilts: Array, values: Array, ends: Ar
     axes.tick_params(labelsize=WORDS_SIZE)
     axes.set_rlabel_position(112.0)
     ticks = LogLocator(subs=(1.0, 2.0, 5.0))
-    figure.colorbar(mesh, ax=axes, pad=0.1, shrink=0.8, ticks=ticks, format="%g").minorticks_off()
+    figure.colorbar(drawn, ax=axes, pad=0.1, shrink=0.8, ticks=ticks, format="%g").minorticks_off()
     figure.text(0.02, 0.01, "\n".join(words), fontsize=WORDS_SIZE, color=BLACK)
     return figure
