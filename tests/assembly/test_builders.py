@@ -107,10 +107,10 @@ def test_a_housing_that_opens_at_its_front_has_the_faces_that_the_page_says() ->
     assert top - front == {"front", "inside front", "inside back"}
 
 
-def refused(old: str, new: str, folder: Path) -> str:
-    assert TEXT.count(old) == 1, old
+def refused(old: str, new: str, folder: Path, text: str = TEXT) -> str:
+    assert text.count(old) == 1, old
     path = folder / "scene.yaml"
-    path.write_text(TEXT.replace(old, new), "utf-8")
+    path.write_text(text.replace(old, new), "utf-8")
     with pytest.raises(SceneError) as caught:
         load_scene(path)
     return str(caught.value).removeprefix(f"{path}:")
@@ -160,6 +160,46 @@ WRONG = {
 @pytest.mark.parametrize(("old", "new", "message"), WRONG.values(), ids=WRONG.keys())
 def test_a_wrong_builder_is_refused_where_it_stands(old: str, new: str, message: str, tmp_path: Path) -> None:
     said = refused(old, new, tmp_path)
+    assert message in said
+    assert "\n" not in said
+
+
+WRONG_LINKAGES = {
+    "ears that overlap": (
+        "        D: {angle: 60 deg}",
+        "        D: {angle: 110 deg}",
+        "parts.ring.builder.ears.B: ears 'D' and 'B' of the ring overlap or meet: they are 10 deg apart, and 19.7",
+    ),
+    "no ears": (
+        "      ears:\n        B: {angle: 120 deg}\n        D: {angle: 60 deg}\n",
+        "      ears: {}\n",
+        "parts.ring.builder.ears: ",
+    ),
+    "thick rod": (
+        "length: 260 mm, diameter: 8 mm, ball_diameter: 16 mm}\n    features:\n      bottom: {kind: sphere, face: "
+        "{name: bottom ball}}\n      top: {kind: sphere, face: {name: top ball}}",
+        "length: 260 mm, diameter: 18 mm, ball_diameter: 16 mm}\n    features:\n      bottom: {kind: sphere, face: "
+        "{name: bottom ball}}\n      top: {kind: sphere, face: {name: top ball}}",
+        "parts.rod 2.builder: a rod of 18 mm is not thinner than its balls of 16 mm",
+    ),
+    "no ring of teeth": ("reach: 95 deg", "reach: 10 deg", "no ring of teeth ends within a reach of 10 deg"),
+    "two teeth": (
+        "teeth: 25, module",
+        "teeth: 2, module",
+        "gear 1.builder.teeth: expected a number of at least 3",
+    ),
+    "another pole": ("pole: tooth", "pole: flank", "parts.gear 1.builder.pole: expected tooth or space"),
+    "a place off its seat": (
+        "at: [32 mm, 0 mm, 24 mm]",
+        "at: [32 mm, 0 mm, 25 mm]",
+        "parts.nut 1.features.A.at: expected what the face of the solid has, [32 mm, 0 mm, 24 mm]",
+    ),
+}
+
+
+@pytest.mark.parametrize(("old", "new", "message"), WRONG_LINKAGES.values(), ids=WRONG_LINKAGES.keys())
+def test_a_wrong_part_of_a_linkage_is_refused_where_it_stands(old: str, new: str, message: str, tmp_path: Path) -> None:
+    said = refused(old, new, tmp_path, (SCENES / "spherical_drive.yaml").read_text("utf-8"))
     assert message in said
     assert "\n" not in said
 

@@ -30,5 +30,5 @@ class BallScrewSpec(BuilderSpec):
     @property
     def shape(self) -> BallScrew:
         """See BuilderSpec."""
-        journal = self.journal and (self.journal.diameter.internal, self.journal.length.internal)
+        journal = None if self.journal is None else (self.journal.diameter.internal, self.journal.length.internal)
         return BallScrew(self.diameter.internal, self.length.internal, journal)
