@@ -59,11 +59,13 @@ def mark(shape: Shape, thickness: float) -> Surface:
 
     Args:
         shape: a plane is a frame along its edges or a ring, a slot or a tab such frames on both walls, a hole a
-            tube, a pin a little thicker than it is; others are as `symbol` has them.
+            tube, a pin a little thicker than it is, a ball its equator; others are as `symbol` has them.
         thickness: of a symbol [mm].
     """
     half = WALL * thickness / 2
     match shape:
+        case Point(diameter=float(diameter), inner=False):  # which may be no face, such as a pitch sphere
+            return ring(diameter / 2 - half, diameter / 2 + half, -half, half)
         case Slot():
             heights = -shape.width / 2, shape.width / 2
             return together([edges(shape.reach, thickness, own - half, own + half) for own in heights])
