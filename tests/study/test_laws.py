@@ -154,7 +154,7 @@ def test_what_its_package_requires_is_in_the_fingerprint_of_scenes_that_state_it
     [
         (("k: 3.0", "k: 0.0"), "6: tolerances.teeth.distribution.k: expected a number of more than 0, got 0.0"),
         (("k: 3.0", "kk: 3.0"), '6: tolerances.teeth.distribution.kk: unknown key "kk"; did you mean "k"?'),
-        (("kind: power", "kind: powr"), "arcsine, power, got 'powr'; did you mean \"power\"?"),
+        (("kind: power", "kind: powr"), "empirical, power, got 'powr'; did you mean \"power\"?"),
         (("upper: -10 um", "upper: -10 deg"), "quantities of one dimension"),
         (("lower: -40 um", "lower: -4 um"), "distribution.lower: expected less than upper"),
     ],
@@ -164,7 +164,7 @@ def test_what_is_wrong_with_it_is_said_as_of_any(change: tuple[str, str], said: 
 
 
 def test_without_its_mechanism_it_is_unknown(tmp_path: Path) -> None:
-    with known(PINS), pytest.raises(SceneError, match=r"expected one of normal, .*, arcsine, got 'power'"):
+    with known(PINS), pytest.raises(SceneError, match=r"expected one of normal, .*, empirical, got 'power'"):
         load_scene(written(tmp_path, PAIR))
 
 
