@@ -50,7 +50,8 @@ def drawn_elsewhere(assembly: Assembly, changes: Mapping[str, Array]) -> Assembl
     """The same assembly, its parts in other coordinates: of each the pose (4, 4) of its old frame in the new one."""
 
     def turned(direction: Array | None, part: str) -> Array | None:
-        return None if direction is None else direction @ changes[part][:3, :3].T
+        is_of_tilt = direction is not None and len(direction) == 2  # along or across it, whatever the coordinates
+        return direction if direction is None or is_of_tilt else direction @ changes[part][:3, :3].T
 
     def owner(feature: str) -> str:
         return assembly.features[feature].part

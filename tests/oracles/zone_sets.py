@@ -136,7 +136,6 @@ SETS = {
     "axis at a section": ZoneSet(_length, (False, False)),
     "flat axis": ZoneSet(_both_heights, (False, False), _about, (1, 1)),
     "flat axis' orientation": ZoneSet(_length, (False,)),
-    "flat axis at a section": ZoneSet(_length, (False,)),
     "point in a sphere": ZoneSet(_length, (False,) * 3),
     "point in a disc": ZoneSet(_length, (False, False)),
     "point between planes": ZoneSet(_length, (False,)),

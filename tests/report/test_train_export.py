@@ -20,7 +20,7 @@ from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION
 from tol3d.gears import SpurGear
 from tol3d.report import export_run, view_run
 from tol3d.simulate import run_scene
-from tol3d.solids.bodies import ShaftBody
+from tol3d.solids.posed_gear import ShaftBody
 
 TRIAL = 2
 DEG = math.pi / 180

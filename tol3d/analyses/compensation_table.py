@@ -2,16 +2,63 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
+
+import numpy as np
 
 from tol3d.analyses.compensated_swing import Swing
 from tol3d.analyses.compensation import Compensation, Unit
 from tol3d.analyses.correction import CLOSED_FORM, Correction
 from tol3d.analyses.robots import STATES, State
-from tol3d.analyses.spread import Spread
+from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY
 from tol3d.gears import LEFT, Flank
+from tol3d.numerics.arrays import Array
 from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page
+from tol3d.statistics import Moments
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """A sample's values, (n,), in any unit; a number that it has none of is nan."""
+
+    values: Array
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Count, mean, sigma, extremes and standard errors."""
+        return Moments.of(self.values)
+
+    @property
+    def low(self) -> float:
+        """Mean - 3 sigma."""
+        return self.moments.mean - 3 * self.moments.sigma
+
+    @property
+    def high(self) -> float:
+        """Mean + 3 sigma."""
+        return self.moments.mean + 3 * self.moments.sigma
+
+    @property
+    def ends_se(self) -> float:
+        """Standard error of low and of high, as of independent mean and sigma."""
+        return math.hypot(self.moments.mean_se, 3 * self.moments.sigma_se)
+
+    @cached_property
+    def quantiles(self) -> tuple[float, float, float]:
+        """The 0.135 %, 50 % and 99.865 % quantiles of the sample, between its neighbours."""
+        if not len(self.values):
+            return math.nan, math.nan, math.nan
+        low, middle, high = np.quantile(self.values, (LOW_PROBABILITY, 0.5, HIGH_PROBABILITY))
+        return float(low), float(middle), float(high)
+
+    @property
+    def largest_error(self) -> float:
+        """The largest of the values without their sign."""
+        return max(abs(self.moments.minimum), abs(self.moments.maximum)) if len(self.values) else math.nan
+
 
 COLUMN_WORDS: Final[Mapping[str, str]] = {"analytic": "analytic, same trials", "geometric": "3D simulation"}
 STATE_WORDS: Final[Mapping[State, str]] = {

@@ -12,8 +12,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final, Literal
 
-from tol3d.analyses.shim_choice import Shim, measure_of, mesh_of, shims_of, with_shims
-from tol3d.analyses.shimmed import MINIMUM_WORDS, UM, Minimum, Shimmed
+from tol3d.analyses.shim_choice import (
+    MINIMUM_WORDS,
+    UM,
+    Minimum,
+    Shim,
+    Shimmed,
+    measure_of,
+    mesh_of,
+    shims_of,
+    with_shims,
+)
 from tol3d.analyses.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, thickness_text
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.model import Model

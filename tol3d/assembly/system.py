@@ -25,7 +25,7 @@ from tol3d.assembly.placing import road as placing
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.roads import PlacingRoad, TorsorRoad
 from tol3d.assembly.torsors import road as torsors
-from tol3d.assembly.torsors.slopes import Slopes
+from tol3d.assembly.torsors.first_order import Slopes
 from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import ZoneDraw, laws_told
 from tol3d.errors import InputError

@@ -13,7 +13,7 @@ from tol3d.assembly.moments import widely
 from tol3d.assembly.placing import road as placing
 from tol3d.assembly.system import AssemblySystem
 from tol3d.assembly.torsors import road as torsors
-from tol3d.assembly.torsors.slopes import Slopes
+from tol3d.assembly.torsors.first_order import Slopes
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.gearing.roads.analytic import analytic_values

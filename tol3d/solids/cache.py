@@ -13,9 +13,9 @@ import numpy as np
 from tol3d.gears import Gear
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
-from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.lazy import CAD, Arrays
+from tol3d.solids.posed_gear import Body
 
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "scipy")
 

@@ -19,11 +19,10 @@ from tol3d.numerics.arrays import Array
 from tol3d.parts import arm, bevel_gear, shaft
 from tol3d.parts.named_solid import NamedSolid, refuse_cut_step
 from tol3d.solids import bevel_cad, body_cad, picking, spur_cad, swept_cad
-from tol3d.solids.bodies import ArmBody, Body, ShaftBody
 from tol3d.solids.built_shape import BuiltShape, SweptShape
 from tol3d.solids.lazy import Arrays
 from tol3d.solids.pick import Pick, PickedFace
-from tol3d.solids.posed_gear import PosedPart
+from tol3d.solids.posed_gear import ArmBody, Body, PosedPart, ShaftBody
 
 
 @singledispatch
@@ -87,12 +86,12 @@ tessellate.register(
 
 
 def pick_faces(shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]:
-    """See tol3d.solids.picks.picked."""
+    """See tol3d.solids.pick.picked."""
     return tuple(picking.pick_faces(solid_of(shape), picks))
 
 
 def box_around(shape: BuiltShape) -> tuple[list[float], list[float]]:
-    """See tol3d.solids.bounding_box."""
+    """See tol3d.solids.display_mesh."""
     box = solid_of(shape).solid.BoundingBox()
     return [box.xmin, box.ymin, box.zmin], [box.xmax, box.ymax, box.zmax]
 

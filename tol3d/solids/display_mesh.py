@@ -1,16 +1,19 @@
 """Display meshes: whole solids of gears, shafts and arms as closed triangles, for pictures and files, not measuring."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
-from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import cached
-from tol3d.solids.lazy import cad
+from tol3d.solids.lazy import Arrays, cad
+from tol3d.solids.posed_gear import Body, PosedPart
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,3 +60,37 @@ def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayM
         side=arrays["side"].astype(np.int8),
         chord_error=float(arrays["chord_error"]),
     )
+
+
+def bounding_box(shape: BuiltShape) -> tuple[Array, Array]:
+    """Lowest and highest x, y, z (3,) [mm] of a solid, to about 1e-6 mm.
+
+    Raises:
+        GeometryError: the solid cannot be built.
+    """
+
+    def build() -> Arrays:
+        return {"corners": np.array(cad().box_around(shape))}
+
+    low, high = cached("box", shape, {}, build)["corners"].astype(np.float64)
+    return low, high
+
+
+COLOURS: Final = ("steelblue", "darkorange", "seagreen", "goldenrod", "slategray", "indianred")
+
+
+def export_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str] = COLOURS) -> None:
+    """Write the parts as a STEP assembly [mm] with their names and colours.
+
+    Solids are built from each gear as it is, its tooth thickness deviation included. The file
+    appears whole or not at all.
+
+    Args:
+        parts: names differ and hold no colon at their beginnings.
+        path: the file.
+        colours: of the parts in order, names or "#RRGGBB"; begun again when there are more parts.
+
+    Raises:
+        RunError: the file cannot be written.
+    """
+    cad().write_step(parts, path, colours)

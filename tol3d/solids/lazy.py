@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
-from tol3d.solids.bodies import Body
 from tol3d.solids.built_shape import BuiltShape
-from tol3d.solids.posed_gear import PosedPart
+from tol3d.solids.posed_gear import Body, PosedPart
 
 if TYPE_CHECKING:
     from tol3d.solids.pick import Pick, PickedFace

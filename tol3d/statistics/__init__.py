@@ -1,9 +1,8 @@
 """Estimates from the values of trials, with their errors: pure functions, gathered block by block."""
 
-from tol3d.statistics.agreement import Agreement
 from tol3d.statistics.grid import CountGrid, Grid, Histogram
 from tol3d.statistics.independent_sums import IndependentSums, independent_shares
-from tol3d.statistics.limits import LimitCounts, Proportion, equivalent_ppk, pp, ppk
+from tol3d.statistics.limits import Agreement, LimitCounts, Proportion, equivalent_ppk, pp, ppk
 from tol3d.statistics.moments import Moments
 from tol3d.statistics.pair_sums import PairSums
 from tol3d.statistics.variance_shares import RegressorSums, Shares, shares

@@ -1,5 +1,6 @@
 """What falls outside the limits of a measure, in parts per million, and the performance indices."""
 
+import math
 from dataclasses import dataclass
 from typing import Self
 
@@ -218,3 +219,54 @@ def normal_share(margin: float, sigma: float) -> float:
 
 def _difference(larger: float | None, smaller: float | None) -> float | None:
     return None if larger is None or smaller is None else larger - smaller
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """Differences of two columns over the same trials, in their unit.
+
+    Args:
+        count: trials in which both roads gave a number.
+        skipped: trials in which one or both gave NaN.
+        max_abs: largest |difference|, 0 when there are none.
+        total, total_squares: sums of the differences and of their squares.
+    """
+
+    count: int = 0
+    skipped: int = 0
+    max_abs: float = 0.0
+    total: float = 0.0
+    total_squares: float = 0.0
+
+    @classmethod
+    def of(cls, values: Array, reference: Array) -> Self:
+        """The differences values - reference of one block, both (trials,)."""
+        difference = values - reference
+        known = difference[~np.isnan(difference)]
+        return cls(
+            count=len(known),
+            skipped=len(difference) - len(known),
+            max_abs=float(np.max(np.abs(known), initial=0.0)),
+            total=float(np.sum(known)),
+            total_squares=float(np.sum(known * known)),
+        )
+
+    def merge(self, other: Self) -> Self:
+        """The differences of both blocks together."""
+        return type(self)(
+            self.count + other.count,
+            self.skipped + other.skipped,
+            max(self.max_abs, other.max_abs),
+            self.total + other.total,
+            self.total_squares + other.total_squares,
+        )
+
+    @property
+    def mean(self) -> float:
+        """Mean difference (values - reference); NaN without trials."""
+        return self.total / self.count if self.count else math.nan
+
+    @property
+    def rms(self) -> float:
+        """Root of the mean square difference; NaN without trials."""
+        return math.sqrt(self.total_squares / self.count) if self.count else math.nan

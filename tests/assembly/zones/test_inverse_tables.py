@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from tol3d.assembly.zones.balls import maxwell
-from tol3d.assembly.zones.half_difference import uniform_large, uniform_lens, uniform_small
+from tol3d.assembly.zones.cross_section import uniform_large, uniform_lens, uniform_small
 from tol3d.assembly.zones.inverse import inverse
 
 Array = NDArray[np.float64]

@@ -29,7 +29,6 @@ ZONES: dict[str, Callable[..., Zone]] = {
     "axis at a section": catalogue.axis_section,
     "flat axis": lambda width, *refined: catalogue.flat_axis(width, (3.0, 4.0), *refined),
     "flat axis' orientation": lambda width: catalogue.flat_axis_orientation(width, (3.0, 4.0)),
-    "flat axis at a section": lambda width: catalogue.flat_axis_section(width, (3.0, 4.0)),
     "point in a sphere": catalogue.point_in_sphere,
     "point in a disc": catalogue.point_in_disc,
     "point between planes": catalogue.point_between_planes,
@@ -180,7 +179,6 @@ MIDDLES = {  # sigma of the middle in t / 6 by `normal`
     "rectangle": NORMAL_IN_WIDTH,
     "round face": NORMAL_IN_WIDTH,
     "flat axis": NORMAL_IN_WIDTH,
-    "flat axis at a section": NORMAL_IN_WIDTH,
     "point between planes": NORMAL_IN_WIDTH,
     "point in a sphere": math.sqrt(chi2.cdf(9, 5) / chi2.cdf(9, 3)),
 }
@@ -265,10 +263,8 @@ def test_a_process_draws_what_it_is_and_the_zone_judges() -> None:
         (catalogue.axis_section(WIDTH), lambda x, y: (x, y, x, y)),
         (catalogue.flat_axis(WIDTH, (3.0, 4.0)), lambda s, e: (0.6 * s, 0.8 * s, 0.6 * e, 0.8 * e)),
         (catalogue.flat_axis_orientation(WIDTH, (3.0, 4.0)), lambda e: (-0.6 * e, -0.8 * e, 0.6 * e, 0.8 * e)),
-        (catalogue.flat_axis_section(WIDTH, (3.0, 4.0)), lambda s: (0.6 * s, 0.8 * s, 0.6 * s, 0.8 * s)),
         (catalogue.point_in_disc(WIDTH), lambda x, y: (x, y, 0.0)),
         (catalogue.point_between_planes(WIDTH, (0.0, 3.0, -4.0)), lambda s: (0.0, 0.6 * s, -0.8 * s)),
-        (catalogue.contact_height(WIDTH), lambda s: (s,)),
     ],
 )
 def test_what_is_drawn_moves_the_feature_as_the_zone_allows(zone: Zone, expected: Callable[..., object]) -> None:

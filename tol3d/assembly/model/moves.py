@@ -1,5 +1,6 @@
 """Moves: each places one body, a part and what is welded to it, against placed ones."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -329,3 +330,20 @@ class Engage:
 
 
 Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch | StatedMove
+
+
+def pairs_of(move: Move) -> Sequence[tuple[str, str]]:
+    """The features by which a move lays its part: what is moved and its target, of play the inner and the outer one."""
+    match move:
+        case Fix() | Weld():
+            return ()
+        case StatedMove():
+            return move.pairs
+        case BestFit():
+            return [(own.moving, own.target) for own in move.fits]
+        case Touch():
+            return [(own.moving, own.target) for own in move.contacts]
+    related = [] if isinstance(move, Locate) else [(own.moving, own.target) for own in move.relations]
+    if isinstance(move, Engage):
+        return [*related, *((own.inner, own.outer) for own in move.engagements)]
+    return related if isinstance(move, Mate) else [*related, *((own.moving, own.target) for own in move.pairs)]

@@ -8,7 +8,7 @@ import numpy as np
 
 from tol3d.assembly.model import BestFit
 from tol3d.assembly.model.statuses import OK, SINGULAR
-from tol3d.assembly.placing.free_motion import free_motions, seen_steps
+from tol3d.assembly.placing.freedoms import free_motions, seen_steps
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Locate, Mate, Measured, Move, Rest, StatedMove, Touch, Weld
+from tol3d.assembly.model import Assembly, Engage, Measured, Move, StatedMove, Weld
+from tol3d.assembly.model.moves import pairs_of
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -65,21 +66,7 @@ class Causes:
             yield from map(self.of_frame, move.frames)
             yield from self._of_stated(move)
             return
-        if isinstance(move, Locate):
-            pairs = [(pair.moving, pair.target) for pair in move.pairs]
-        elif isinstance(move, Rest):
-            pairs = [(pair.moving, pair.target) for pair in move.pairs]
-            pairs += [(relation.moving, relation.target) for relation in move.relations]
-        elif isinstance(move, BestFit):
-            pairs = [(fit.moving, fit.target) for fit in move.fits]
-        elif isinstance(move, Mate | Engage):
-            pairs = [(relation.moving, relation.target) for relation in move.relations]
-            pairs += self._engaged(move)
-        elif isinstance(move, Touch):
-            pairs = [(contact.moving, contact.target) for contact in move.contacts]
-        else:
-            return
-        for moving, target in pairs:
+        for moving, target in self._pairs(move):
             yield self.of_feature(moving) | self.of_feature(target)
             yield self.of_part(self.assembly.features[target].part, f"moves.{move.name}")
             own = self.assembly.features[moving].part
@@ -93,13 +80,14 @@ class Causes:
             if (part := self.assembly.features[target].part) not in its:
                 yield self.of_part(part, f"moves.{move.name}")
 
-    def _engaged(self, move: Mate | Engage) -> Sequence[tuple[str, str]]:
-        """Of what engages, the feature of the body that is placed and the other one."""
-        if isinstance(move, Mate):
-            return ()
-        body = self.bodies[move.part]
-        both = [(own.inner, own.outer) for own in move.engagements]
-        return [pair if self.assembly.features[pair[0]].part in body else pair[::-1] for pair in both]
+    def _pairs(self, move: Move) -> Sequence[tuple[str, str]]:
+        """See pairs_of; of what engages, the feature of the body that is placed and the other one."""
+        if not isinstance(move, Engage):
+            return pairs_of(move)
+        related, body = len(move.relations), self.bodies[move.part]
+        both = pairs_of(move)[related:]
+        engaged = [pair if self.assembly.features[pair[0]].part in body else pair[::-1] for pair in both]
+        return [*pairs_of(move)[:related], *engaged]
 
     def before(self, move: Move) -> frozenset[Cause]:
         """What may have failed before a move, of what it needs."""

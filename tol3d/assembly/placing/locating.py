@@ -9,7 +9,7 @@ import numpy as np
 from tol3d.assembly.model import Locate, Pair, Rest
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
-from tol3d.assembly.placing.free_motion import free_motions, in_words
+from tol3d.assembly.placing.freedoms import free_motions, in_words
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World

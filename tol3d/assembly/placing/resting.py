@@ -12,7 +12,7 @@ from tol3d.assembly.model import Pair, Rest
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
 from tol3d.assembly.placing.balances import balances_found
-from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.locating import side_of
 from tol3d.assembly.placing.mating import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated

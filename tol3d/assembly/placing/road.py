@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.causes import Cause, ordered
-from tol3d.assembly.placing.decided import decided
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.measuring import may_lack, reading
 from tol3d.assembly.placing.plan import PlacingPlan, after, planned, world_before
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.resting import Resting
-from tol3d.assembly.placing.rocking import over_poses, slope_of, varying
+from tol3d.assembly.placing.rocking import decided, over_poses, slope_of, varying
 from tol3d.assembly.placing.world import SolidReader, World
 from tol3d.numerics.arrays import Array
 

@@ -4,18 +4,22 @@ The poses that go as far along the force as each other are a flat piece of all p
 order, is read at the two ends that lie farthest apart for the measure.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Measured
+from tol3d.assembly.model import Assembly, Engage, Measured
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.measures import Rocking
-from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
+from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
+from tol3d.assembly.placing.causes import Cause
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.resting import Resting, generic
+from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
+from tol3d.system.outcome import reason_column
 
 NUDGE: Final = 1e-3
 """mm; by which parts are moved for the slopes of measures."""
@@ -92,3 +96,68 @@ def over_poses(low: Array, high: Array, alone: Array, codes: Codes, rocking: Roc
     ends = np.minimum(low, high), np.maximum(low, high)
     asked = {"least": ends[0], "middle": (ends[0] + ends[1]) / 2.0, "largest": ends[1]}[rocking]
     return np.where(wide, asked, alone), codes
+
+
+Words = NDArray[np.str_]
+
+
+def decided(
+    assembly: Assembly, world: World, on_the_way: Mapping[str, tuple[Cause, ...]], codes: Mapping[str, Codes]
+) -> Iterator[tuple[str, Words]]:
+    """Columns (n,) by their names.
+
+    Of a rest which contacts carry, such as "1 3 4"; of a move with play the pair that has the least slack; of a measure
+    that hangs on rooms, where it is not built, the pair or the datums of the first of them that is too small, else "".
+
+    Args:
+        assembly: the model.
+        world: after the last move.
+        on_the_way: of each measure that is read, what may fail on the way to it, in order.
+        codes: what became of it (n,).
+    """
+    for name, loads in world.loads.items():
+        sets, which = carrying(loads)
+        words = np.array([" ".join(map(str, np.flatnonzero(each) + 1)) for each in sets])
+        yield f"carries:{name}", words[which]
+    for name, pairs in world.tightest.items():
+        yield f"tightest:{name}", pairs
+    for name, causes in on_the_way.items():
+        rooms = [cause for cause in causes if _is_room(assembly, cause)]
+        gauges = _inspecting(assembly.measures[name], assembly)
+        if rooms or gauges:
+            found = _reasons(assembly, world, rooms, codes[name])
+            yield reason_column(name), np.where((codes[name] == NO_BUILD) & (found == ""), _gauges(gauges), found)
+
+
+def _inspecting(measured: Measured, assembly: Assembly) -> tuple[GaugeRoom, ...]:
+    """The gauges over whose places a measure is read."""
+    if measured.room is not None:
+        return (measured.room,)
+    frame = assembly.datum_frames[measured.frame] if measured.over_gauges else None
+    return () if frame is None or frame.gauges is None else frame.gauges.rooms
+
+
+def _gauges(rooms: Sequence[GaugeRoom]) -> str:
+    return f"gauges of {', '.join(own.feature for own in rooms)}" if rooms else ""
+
+
+def _is_room(assembly: Assembly, cause: Cause) -> bool:
+    """Whether a cause is a room in which something may not fit."""
+    if isinstance(cause, int):
+        return isinstance(assembly.moves[cause], Engage)
+    return assembly.datum_frames[cause].gauges is not None
+
+
+def _reasons(assembly: Assembly, world: World, rooms: Sequence[Cause], codes: Codes) -> Words:
+    """Of a measure, in words (n,)."""
+    found: Words = np.full(len(codes), "")
+    for cause in rooms:
+        if isinstance(cause, int):
+            name = assembly.moves[cause].name
+            failed, words = world.slacks[name] < 0.0, world.tightest[name]
+        else:
+            frame = assembly.datum_frames[cause]
+            failed = world.own[frame.part].codes(cause) == NO_BUILD
+            words = np.array(_gauges(frame.gauges.rooms if frame.gauges else ()))
+        found = np.where((codes == NO_BUILD) & (found == "") & failed, words, found)
+    return found

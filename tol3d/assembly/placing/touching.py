@@ -13,7 +13,7 @@ from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
-from tol3d.assembly.placing.free_motion import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, kind_of, touching_distance
 from tol3d.assembly.placing.touches import lacking_at, touching_poses

@@ -7,9 +7,10 @@ branch: what lies on a part goes on below it at the same place. Many parts that 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
-from typing import Final, assert_never
+from typing import Final
 
 from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
+from tol3d.assembly.model.moves import pairs_of
 from tol3d.report.page import Branch
 
 DEEPEST: Final = 8  # levels that are set in
@@ -93,35 +94,9 @@ def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str
         body = [move.part]
         for part in body:  # it grows by what is welded to what was
             body += [other for other, (leader, _) in welded.items() if leader == part and other not in body]
-        named = dict.fromkeys(assembly.features[name].part for name in _features(move))
+        named = dict.fromkeys(assembly.features[name].part for pair in pairs_of(move) for name in pair)
         yield move.part, type(move), move.name, tuple(part for part in named if part not in body)
         yield from ((part, Weld, welded[part][1], (welded[part][0],)) for part in body[1:])
-
-
-def _features(move: Move) -> list[str]:
-    """The features by which a move lays its part, its own ones too."""
-    match move:
-        case Fix() | Weld():
-            return []
-        case Locate():
-            pairs = [(own.moving, own.target) for own in move.pairs]
-        case BestFit():
-            pairs = [(own.moving, own.target) for own in move.fits]
-        case Mate():
-            pairs = [(own.moving, own.target) for own in move.relations]
-        case Engage():
-            pairs = [(own.moving, own.target) for own in move.relations]
-            pairs += [(own.inner, own.outer) for own in move.engagements]
-        case Rest():
-            pairs = [(own.moving, own.target) for own in move.relations]
-            pairs += [(own.moving, own.target) for own in move.pairs]
-        case StatedMove():
-            pairs = list(move.pairs)
-        case Touch():
-            pairs = [(own.moving, own.target) for own in move.contacts]
-        case _:
-            assert_never(move)
-    return [name for pair in pairs for name in pair]
 
 
 @dataclass(frozen=True)

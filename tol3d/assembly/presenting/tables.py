@@ -40,7 +40,7 @@ from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.presenter import Map
 from tol3d.report.system_check import MIDDLE, system_blocks
 from tol3d.solids import BuiltShape
-from tol3d.solids.bounding_box import bounding_box
+from tol3d.solids.display_mesh import bounding_box
 from tol3d.solids.kept_shape import KeptShape
 from tol3d.study.simulation import Simulation
 

@@ -4,8 +4,7 @@ What trials do is linear in their deviations, but for a few terms: the corner by
 several amounts that a measure takes, a pose of least largest residual. Those are evaluated trial by trial.
 """
 
-from tol3d.assembly.torsors.first_order import FirstOrder, first_order
+from tol3d.assembly.torsors.first_order import Bend, FirstOrder, Slopes, first_order
 from tol3d.assembly.torsors.road import slopes, values
-from tol3d.assembly.torsors.slopes import Bend, Slopes
 
 __all__ = ["Bend", "FirstOrder", "Slopes", "first_order", "slopes", "values"]

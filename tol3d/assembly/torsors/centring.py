@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.torsors.interior_points import climbed
-from tol3d.assembly.torsors.ordered import ordered_sum
 from tol3d.assembly.torsors.quick_centring import quickly_centred
+from tol3d.assembly.torsors.torsor import ordered_sum
 from tol3d.numerics.arrays import Array
 
 Mask = NDArray[np.bool_]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +11,58 @@ from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
 from tol3d.assembly.torsors.moves import after
-from tol3d.assembly.torsors.ordered import ordered_product
 from tol3d.assembly.torsors.resting import OneSided, along_nothing
-from tol3d.assembly.torsors.slopes import STEP, Bend, Slopes
-from tol3d.assembly.torsors.terms import Ends, Largest, Term
+from tol3d.assembly.torsors.terms import Ends, Form, Largest, Term
+from tol3d.assembly.torsors.torsor import ordered_product
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+
+STEP: Final = 1e-6
+"""Step [mm] for slopes of what does not vary."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bend:
+    """A term of a measure that is not linear in the deviations.
+
+    Args:
+        form: how it depends on what it reads.
+        columns: of the deviations that act through it, in order.
+        weights: (numbers of the term,), with which it is added to the measure; all 0 where another one reads it.
+        vectors: (vectors, size, columns of the deviations + 1), of a largest length that reads deviations alone: it is
+            the largest of |vectors[..., :-1] @ deviations + vectors[..., -1]|; else None.
+    """
+
+    form: Form
+    columns: tuple[int, ...]
+    weights: Array
+    vectors: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Slopes:
+    """A measure to first order at the means of the deviations.
+
+    What it leaves out: of the columns in `bends` all but the mean slope from one sigma below to one above the mean, the
+    others at their means. So of a largest amount that is 0 at the means nothing is left.
+
+    Args:
+        nominal, at_means: of the measure, without deviations and with all at their means [mm or rad].
+        coefficients: change of the measure per deviation (columns,).
+        bends: the terms that are not linear; none where the measure is smooth.
+    """
+
+    nominal: float
+    at_means: float
+    coefficients: Array
+    bends: tuple[Bend, ...] = ()
+
+    @property
+    def bent(self) -> tuple[int, ...]:
+        """Columns whose coefficients are mean slopes, in order."""
+        return tuple(sorted({column for bend in self.bends for column in bend.columns}))
+
 
 UNSEEN = 1e-9
 """Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""

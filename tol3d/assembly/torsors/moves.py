@@ -9,11 +9,17 @@ from tol3d.assembly.model import BestFit, Contact, Engage, Fit, Fix, Locate, Mat
 from tol3d.assembly.torsors.engaging import engaged
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
 from tol3d.assembly.torsors.mating import located, mated
-from tol3d.assembly.torsors.ordered import ordered_product, ordered_solution, ordered_sum, squared_lengths
 from tol3d.assembly.torsors.resting import rested
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Form
-from tol3d.assembly.torsors.torsor import height_at, shift_at
+from tol3d.assembly.torsors.torsor import (
+    height_at,
+    ordered_product,
+    ordered_solution,
+    ordered_sum,
+    shift_at,
+    squared_lengths,
+)
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array

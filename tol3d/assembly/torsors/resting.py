@@ -11,9 +11,8 @@ import numpy as np
 from tol3d.assembly.model import Rest
 from tol3d.assembly.torsors.freedoms import INDEPENDENT, Freedoms, freedom_in_words
 from tol3d.assembly.torsors.mating import contact, take_relations
-from tol3d.assembly.torsors.ordered import ordered_product
 from tol3d.assembly.torsors.terms import Form
-from tol3d.assembly.torsors.torsor import height_at
+from tol3d.assembly.torsors.torsor import height_at, ordered_product
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array

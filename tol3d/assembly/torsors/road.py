@@ -6,8 +6,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from tol3d.assembly.model import Assembly
-from tol3d.assembly.torsors.first_order import FirstOrder, displaced, first_order
-from tol3d.assembly.torsors.slopes import Slopes
+from tol3d.assembly.torsors.first_order import FirstOrder, Slopes, displaced, first_order
 from tol3d.numerics.arrays import Array
 
 _FOUND: WeakKeyDictionary[Assembly, FirstOrder] = WeakKeyDictionary()

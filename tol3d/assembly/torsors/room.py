@@ -8,9 +8,9 @@ import numpy as np
 from tol3d.assembly.model import Floating
 from tol3d.assembly.torsors.centring import DECIDES, Cones, centred, largest_slack, narrowed, refined
 from tol3d.assembly.torsors.interior_points import climbed
-from tol3d.assembly.torsors.ordered import ordered_product, ordered_sum
 from tol3d.assembly.torsors.quick_centring import quickly_centred
 from tol3d.assembly.torsors.terms import Form
+from tol3d.assembly.torsors.torsor import ordered_product, ordered_sum
 from tol3d.numerics.arrays import Array
 
 HALVINGS: Final = 55

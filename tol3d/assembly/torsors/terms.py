@@ -6,7 +6,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from tol3d.assembly.torsors.ordered import ordered_product, squared_lengths
+from tol3d.assembly.torsors.torsor import ordered_product, squared_lengths
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 

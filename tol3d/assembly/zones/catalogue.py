@@ -71,12 +71,6 @@ def flat_axis_orientation(width: float, along: tuple[float, float]) -> Zone:
     return Zone(Shape(Line(), ("end",), ((-x,), (-y,), (x,), (y,))), width)
 
 
-def flat_axis_section(width: float, along: tuple[float, float]) -> Zone:
-    """Of an axis at one section, between planes t apart whose normal points `along` (x, y): both ends equal."""
-    x, y = _unit(along)
-    return Zone(Shape(Line(), ("along",), ((x,), (y,), (x,), (y,))), width)
-
-
 def point_in_sphere(width: float) -> Zone:
     """Of a point in a sphere of diameter t."""
     return Zone(Shape(Sphere(), POINT, THREE), width)
@@ -92,11 +86,6 @@ def point_between_planes(
 ) -> Zone:
     """Of a point between planes t apart whose normal points `along`: of a surface at a point, its profile."""
     return Zone(Shape(Line(), ("along",), tuple((own,) for own in _unit(along))), width, outward=outward)
-
-
-def contact_height(width: float) -> Zone:
-    """Of the height of a surface where it is touched at a point, within ±f/2 of its form."""
-    return Zone(Shape(Line(), ("",), ((1.0,),)), width)
 
 
 def _rises(section: CrossSection, width: float) -> Zone:

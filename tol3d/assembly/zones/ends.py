@@ -10,9 +10,17 @@ from functools import lru_cache
 import numpy as np
 
 from tol3d.assembly.zones.balls import NormalLine
-from tol3d.assembly.zones.cross_section import SIGMAS, Disc, cut_normal, cut_rayleigh, cut_variance
+from tol3d.assembly.zones.cross_section import (
+    QUARTER_TURN,
+    SIGMAS,
+    UNIFORM_DIFFERENCE,
+    Disc,
+    cut_normal,
+    cut_rayleigh,
+    cut_variance,
+    uniform_lens,
+)
 from tol3d.assembly.zones.face import left_by_a_normal
-from tol3d.assembly.zones.half_difference import QUARTER_TURN, UNIFORM_DIFFERENCE, uniform_lens
 from tol3d.assembly.zones.inverse import NODES, WEIGHTS, inverse
 from tol3d.assembly.zones.zone import Domain, Ratio, UnitLaw
 from tol3d.numerics.arrays import Array

@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from tol3d.assembly.zones.half_difference import QUARTER_TURN, uniform_lens
+from tol3d.assembly.zones.cross_section import QUARTER_TURN, uniform_lens
 from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
 from tol3d.assembly.zones.zone_draw import ZoneDraw

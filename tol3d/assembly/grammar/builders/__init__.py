@@ -1,4 +1,4 @@
-"""Kinds of builder, which make solids of dimensions, one file each."""
+"""Kinds of builder, which make solids of dimensions."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""Kinds of feature, by numbers, one file each."""
+"""Kinds of feature, by numbers."""
 
 from typing import Annotated
 

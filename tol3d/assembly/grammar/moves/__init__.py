@@ -1,4 +1,4 @@
-"""Kinds of move, one file each."""
+"""Kinds of move that place parts of an assembly."""
 
 from tol3d.assembly.grammar.moves.fix import FixSpec, WeldSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec, RestSpec, SixPlaneSpec, ThreeTwoOneSpec

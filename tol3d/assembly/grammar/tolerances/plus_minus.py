@@ -6,12 +6,10 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
-from tol3d.assembly.grammar.feature_name import Use
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
-from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.scene.vector import Direction
@@ -36,15 +34,6 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
     def named_datums(self) -> tuple[DatumSpec, ...]:
         return self.datums or ()
 
-    def references(self) -> tuple[Reference, ...]:
-        return FeatureTolerance.references(self)
-
-    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        return ToleranceSpec.file_names(self)
-
-    def uses(self) -> Iterator[Use]:
-        return FeatureTolerance.uses(self)
-
 
 Deviation = Annotated[Quantity, Of("length")]
 
@@ -67,15 +56,6 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         if self.limits is not None and not self.limits[0].internal < self.limits[1].internal:
             raise refused("limits", "the lower one before the upper one", list(map(str, self.limits)))
         return self
-
-    def references(self) -> tuple[Reference, ...]:
-        return FeatureTolerance.references(self)
-
-    def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        return ToleranceSpec.file_names(self)
-
-    def uses(self) -> Iterator[Use]:
-        return FeatureTolerance.uses(self)
 
 
 class LocatorSpec(ToleranceSpec):
