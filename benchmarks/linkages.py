@@ -16,13 +16,14 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from tol3d import Overrides, load_scene
-from tol3d.linkage import loop
+from tol3d.linkage.closing import loops_closed
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.system.measure import Measure
@@ -48,24 +49,21 @@ def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
 
 def kernel_calls(answering: Callable[[], object]) -> list[tuple[Any, ...]]:
     """What the road hands the kernel as it answers."""
-    right, found = loop.loops_closed, list[tuple[Any, ...]]()
+    found = list[tuple[Any, ...]]()
 
     def noted(*arguments: Any) -> None:
         found.append(arguments)
-        right(*arguments)
+        loops_closed(*arguments)
 
-    loop.loops_closed = noted
-    try:
+    with patch("tol3d.linkage.loop.loops_closed", noted):
         answering()
-    finally:
-        loop.loops_closed = right
     return found
 
 
 def closing(calls: Sequence[tuple[Any, ...]]) -> None:
     """The kernel alone, block by block."""
     for call in calls:
-        loop.loops_closed(*call)
+        loops_closed(*call)
 
 
 def with_poses(scene: Path, poses: int, folder: Path) -> Path:
