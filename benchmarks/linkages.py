@@ -5,7 +5,7 @@
 By the clock and by the processor's own time of one core, least of several rounds. The kernel gets what the finite road
 hands it for one pose: frames of all joints, the nominal pose and the inputs of each trial. A road also makes frames of
 deviations and reads the measure. A path is read in all its poses in a few trials; making its system, which looks for
-the nominal pose of each, is timed by itself.
+the nominal pose of each, is timed by itself; a read is one pose of one trial.
 """
 
 import argparse
@@ -90,8 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     path = SCENES / f"{given.scene}.yaml"
     simulation = simulation_of(load_scene(path), Overrides(trials=given.trials))
     system, trials = simulation.system, drawn(simulation, 0, given.trials)
-    table = Table(title=f"{given.scene}: a second, on one core")
-    for heading in ("what", "of", "by the clock", "of the processor"):
+    table = Table(title=f"{given.scene}: a second by the clock, and of the processor")
+    for heading in ("what", "of", "clock", "processor"):
         table.add_column(heading, justify="left" if heading == "what" else "right", no_wrap=True)
 
     def row(what: str, of: str, count: int, spent: tuple[float, float]) -> None:
@@ -118,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             for name in roads:
                 road = along.system.road(name, along.system.materials(name))
                 spent = least(1, lambda: road.answers(few, [measure]))  # noqa: B023
-                row(f"{name} road, {measure.name}", "poses × trials", given.poses * given.along, spent)
+                row(f"{name} road, {measure.name}", "reads", given.poses * given.along, spent)
     Console().print(table)
 
 

@@ -89,7 +89,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     "linkages": (
         rf"kernel, pointing error at rest +│ +loops │ +{NUMBER} │ +{NUMBER}",
         rf"exact road, pointing error at far +│ +trials │ +{NUMBER} │ +{NUMBER}",
-        rf"exact road, worst pointing error +│ +poses × trials │ +{NUMBER} │ +{NUMBER}",
+        rf"exact road, worst pointing error +│ +reads │ +{NUMBER} │ +{NUMBER}",
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
     "pairs": tuple(
