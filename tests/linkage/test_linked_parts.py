@@ -187,10 +187,10 @@ def test_a_linked_part_is_held_by_a_feature_toleranced_to_datums_that_deviate(co
         cover = standing["slider"] @ laid(normals, distances)
         expected.append([(standing["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
     made = covered.system.road("exact", covered.system.materials("exact"))
-    values = made.answers(stated(covered.system, np.array(rows)), covered.system.measures).values
+    read = made.answers(stated(covered.system, np.array(rows)), covered.system.measures).values
     found = np.array(
         [
-            [[values[f"{name} {axis} at {where}"][k, 0] for axis in "xyz"] for name in ("slider", "cover")]
+            [[read[f"{name} {axis} at {where}"][k, 0] for axis in "xyz"] for name in ("slider", "cover")]
             for k in range(4)
         ]
     )

@@ -26,6 +26,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "cycloid": ("--units", "20", "--angles", "20", "--rounds", "1", "--threads", "1"),
     "disc_profile": (),
     "fcl_speed": ("--trials", "10", "--naive", "1", "--rounds", "1"),
+    "linkages": ("--trials", "1000", "--rounds", "1", "--poses", "5", "--along", "2"),
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "pairs": ("--trials", "500", "--rounds", "1"),
     "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
@@ -47,6 +48,7 @@ LONG = (
     "curves",
     "cycloid",
     "fcl_speed",
+    "linkages",
     "memory",
     "pairs",
     "rig_records",
@@ -83,6 +85,11 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"naive, whole gears +{NUMBER} trials/s",
         rf"strips, mean section, one tooth +{NUMBER} trials/s",
         rf"strips, whole face, all teeth +{NUMBER} trials/s",
+    ),
+    "linkages": (
+        rf"kernel, pointing error at rest +│ +loops │ +{NUMBER} │ +{NUMBER}",
+        rf"exact road, pointing error at far +│ +trials │ +{NUMBER} │ +{NUMBER}",
+        rf"exact road, worst pointing error +│ +reads │ +{NUMBER} │ +{NUMBER}",
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
     "pairs": tuple(
