@@ -227,8 +227,8 @@ def closed(drawn: Loops, loops: Loops, start: Poses, wanted: Mapping[str, float]
         lacks = _equations(drawn, loops, poses, wanted)
         each = _equations(drawn, loops, _moved(poses, ends), wanted)
         rates = (each[:count] - each[count:]).T / (2 * STEP)
-        step = np.linalg.lstsq(rates, -lacks, rcond=1e-8)[0]
-        step = np.asarray(step * min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-300)), dtype=np.float64)
+        found = np.linalg.lstsq(rates, -lacks, rcond=1e-8)[0]
+        step = np.asarray(found * min(1.0, 0.3 / max(float(np.abs(found).max()), 1e-300)), dtype=np.float64)
         poses = _moved(poses, step)
         if np.abs(step).max() < MET:
             return poses if np.abs(_equations(drawn, loops, poses, wanted)).max() < 1e-9 else None
