@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -16,11 +18,14 @@ from scipy.spatial.transform import Rotation
 from tol3d import Overrides, run_scene
 from tol3d.assembly.model.statuses import DOES_NOT_CLOSE, OK, OTHER_BRANCH
 from tol3d.assembly.torsors.world import World
+from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.loop import ClosedLoop
 from tol3d.study.draws import drawn
 from tol3d.system.trials import Trials
 
 TRIALS = 4000
+LENGTHS = 13
+"""Place of the loop's length and of the nominal sign among the kernel's arguments."""
 MINUTE = np.radians(1 / 60)
 PARTS = ("along", "across")
 MEASURES = "".join(error(f"error {pose}", f"after: drive, at: {pose}") for pose in POSES) + "".join(
@@ -200,6 +205,25 @@ def test_a_flipped_sign_in_one_road_is_told(tmp_path: Path, monkeypatch: pytest.
     found = run_scene(path, out=tmp_path / "run", overrides=Overrides(trials=2000)).summary["measures"]["along"]
     fault, *_ = found["agreement"]["explanation"]["faults"]
     assert fault.startswith("the two roads disagree on zero of travel 2: ")
+
+
+def test_a_root_on_the_other_side_of_a_singular_pose_is_another_branch(sample: Sample) -> None:
+    """The kernel told that the nominal determinant has the other sign: no trial is taken for closed."""
+    calls = list[tuple[Any, ...]]()
+
+    def turned(*arguments: Any) -> None:
+        lengths = arguments[LENGTHS] * np.array([1.0, -1.0])
+        arguments = (*arguments[:LENGTHS], lengths, *arguments[LENGTHS + 1 :])
+        calls.append(arguments)
+        loops_closed(*arguments)
+
+    measure = next(own for own in sample.made.system.measures if own.name == "error middle")
+    with patch("tol3d.linkage.loop.loops_closed", turned):
+        road = sample.made.system.road("exact", None)
+        answers = road.answers(sample.trials.part(0, 5), [measure])
+    assert calls
+    assert (answers.status["error middle"] == OTHER_BRANCH).all()
+    assert np.isnan(answers.values["error middle"]).all()
 
 
 def test_lost_trials_keep_their_rows_and_are_counted(tmp_path: Path) -> None:

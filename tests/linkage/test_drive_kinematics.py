@@ -105,6 +105,18 @@ def test_forward_and_back_meet_within_1e_10_rad(own: Kinematics, angle: float) -
         assert own.tilt_at(back) == pytest.approx(tilt(np.radians(angle), np.radians(azimuth)), abs=1e-10)
 
 
+def test_travels_beyond_the_curve_have_a_root_on_the_near_branch_and_that_is_kept(own: Kinematics) -> None:
+    """By the closed formula both 78 deg and a smaller tilt have these travels; from rest the smaller one is reached."""
+    far = np.radians([78.0, 50.93])
+    found = own.at_inputs(dict(zip(("travel 1", "travel 2"), travels(*far), strict=True)))
+    x, y = own.tilt_at(found)
+    angle, azimuth = np.hypot(x, y), np.arctan2(-x, y)
+    assert found.sign == own.drawn.sign
+    assert 70.0 < np.degrees(angle) < 76.1655
+    assert travels(float(angle), float(azimuth)) == pytest.approx(travels(*far), abs=1e-9)
+    assert np.linalg.det(rates(float(angle), float(azimuth))) < 0 < np.linalg.det(rates(*far))
+
+
 def test_on_a_universal_joint_the_nuts_go_elsewhere() -> None:
     """At 40 and 25 deg S1 is -0.10577 cm, not 0.44869 cm."""
     found = nuts(drive("universal"), at(drive("universal"), 40.0, 25.0)) / CM

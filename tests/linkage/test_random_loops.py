@@ -8,6 +8,9 @@ import pytest
 from linkage.linked_bodies import Joint, Linkage, Part, Trial, axis, random_deviations, study_of
 from linkage.mechanisms import ZERO, placed
 from linkage.random_loops import FREEDOMS, open_chain, random_loop
+from oracles.closed_loops import Poses, closed, followed
+
+from tol3d.assembly.model.statuses import DOES_NOT_CLOSE, OTHER_BRANCH, SINGULAR
 
 LIMIT = 1e-9  # mm
 
@@ -64,6 +67,33 @@ def test_an_input_of_one_of_two_freedoms_counts_wherever_its_joint_is_listed(kin
     others = {name: own for name, own in linkage.joints.items() if name != "a 2"}
     last = replace(linkage, joints={**others, "a 2": linkage.joints["a 2"]})
     assert_as_the_oracle(last, tmp_path)
+
+
+@pytest.mark.parametrize("seed", [200, *(pytest.param(k, marks=pytest.mark.slow) for k in range(201, 221))])
+def test_large_deviations_are_followed_or_told_not_to_close(seed: int, tmp_path: Path) -> None:
+    """0.6 mm and 0.01 rad of loops of 60 mm: the road follows them where the oracle does, and nowhere else."""
+    linkage = random_loop(seed, two=seed % 2 == 0)
+    study, rng = study_of(linkage, tmp_path), np.random.default_rng(seed)
+    trials = [random_deviations(linkage, rng, 0.6, 1e-2) for _ in range(12)]
+    answers = study.answers(np.stack([study.columns(*own) for own in trials]))
+    wanted = linkage.poses["on"]
+    start = followed(linkage.loops, linkage.loops, wanted, 2)
+    codes = answers.status.get(linkage.measure(linkage.probes[0], 0, "on"), np.zeros(1, dtype=np.int8))
+    for k, (deviations, zeros) in enumerate(trials):
+        poses: Poses | None = start
+        for share in np.linspace(0.0, 1.0, 13)[1:]:
+            if poses is not None:
+                some = {name: share * own for name, own in deviations.items()}
+                off = {name: own + share * zeros.get(name, 0.0) for name, own in wanted.items()}
+                poses = closed(linkage.loops, linkage.deviated(some), poses, off)
+        found = np.array(
+            [[answers.values[linkage.measure(own, axis, "on")][k, 0] for axis in range(3)] for own in linkage.probes]
+        )
+        if poses is None:
+            assert codes[k] in (DOES_NOT_CLOSE, OTHER_BRANCH, SINGULAR)
+            assert np.isnan(found).all()
+        else:
+            assert np.abs(found - linkage.seen(poses)).max() < 1e-8  # near singular poses rounding counts for more
 
 
 X, Y, Z = np.eye(3).tolist()
