@@ -10,7 +10,11 @@ from linkage.mechanisms import ALL
 LIMIT = 1e-9  # mm; both solvers stop at 1e-11 of some 100 mm and better
 
 
-@pytest.mark.parametrize("name", ALL)
+LONG = ("stewart", "delta")  # whose closed forms are quicker
+NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in ALL]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_displaced_features_move_all_bodies_as_the_oracle_moves_them(name: str, tmp_path: Path) -> None:
     linkage = ALL[name]()
     study = study_of(linkage, tmp_path)
