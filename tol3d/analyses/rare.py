@@ -1,0 +1,280 @@
+"""How often a measure leaves a limit, where that is too rare to wait for: design points, and importance sampling.
+
+In standard normals the most likely build that fails is the design point: the one of the limit nearest to the origin. By
+the first order (FORM) the probability is Φ(-β), β its distance. A measure that is read at random positions has a design
+point at each, and deviations with directions may have several: they are sought from many starts, at several positions.
+Importance sampling then draws about all of them, positions as the study does, and weighs each build by how much
+likelier it was made: whatever the design points are worth, its mean is the probability.
+
+Sources: Hasofer and Lind 1974; Rackwitz and Fiessler 1978; Zhang and Der Kiureghian 1995 (the step's length).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp, ndtr
+from scipy.stats import t as student
+
+from tol3d.analyses.response import Response
+from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+from tol3d.system.measure import Measure
+
+Side = Literal["low", "high"]
+
+STEP: Final = 1e-3
+"""Of central differences, in standard normals."""
+ROUNDS: Final = 60
+MET: Final = 1e-4
+"""What is left of the limit, as a share of its distance from the mean build, and of the way across it."""
+SHRINKS: Final = 6
+"""How often a step is halved that leads nowhere."""
+PENALTY: Final = 2.0
+"""By how much more than needed the merit of a step counts the limit."""
+SAME: Final = 0.1
+"""Design points nearer to each other are one."""
+PLAIN: Final = 0.1
+"""Share of the draws that are not about any design point: no build that fails is then left out."""
+FARTHER: Final = 1.5
+"""How much farther than the nearest design point another one may be to be drawn about."""
+CONFIDENCE: Final = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """Below 0 where a measure is beyond a limit; a build that does not seat fails.
+
+    Args:
+        response: of that measure alone.
+        limit: in its unit.
+        side: low, where less than the limit fails; high, where more does.
+    """
+
+    response: Response
+    limit: float
+    side: Side
+
+    @property
+    def measure(self) -> Measure:
+        """Which."""
+        return self.response.measures[0]
+
+    def at(self, normals: Array, positions: Mapping[str, Array] | None) -> tuple[Array, NDArray[np.bool_]]:
+        """How far builds (n, dimension) are within the limit (n,), and which seat; what does not seat has no number."""
+        found = self.response.values(self.response.deviations(normals), positions)
+        values = found.values[:, 0]
+        return (values - self.limit if self.side == "low" else self.limit - values), found.seated[:, 0]
+
+    def fails(self, normals: Array, positions: Mapping[str, Array] | None) -> NDArray[np.bool_]:
+        """Whether builds are beyond the limit, or do not seat."""
+        inside, seated = self.at(normals, positions)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(~seated | ~(inside >= 0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class DesignPoint:
+    """The most likely build that fails, nearby.
+
+    Args:
+        normals: it (dimension,).
+        positions: at which it is read, of one row.
+        gradient: of the limit state there (dimension,).
+        beyond: whether the build at the origin fails, and this one is the most likely that does not.
+    """
+
+    normals: Array
+    positions: Mapping[str, Array]
+    gradient: Array
+    beyond: bool = False
+
+    @property
+    def beta(self) -> float:
+        """Its distance from the origin; below 0 where the build there fails."""
+        return float(np.linalg.norm(self.normals)) * (-1.0 if self.beyond else 1.0)
+
+    @property
+    def sensitivities(self) -> Array:
+        """Direction cosines of the design point (dimension,): their squares are shares of the failures."""
+        size = float(np.linalg.norm(self.normals))
+        return self.normals / (size if size > 0.0 else 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class RareEvent:
+    """How often a measure leaves a limit.
+
+    Args:
+        measure: its name.
+        limit, side: see LimitState.
+        points: design points, the nearest first.
+        first_order: Φ(-β) over the positions at which they were sought.
+        probability: by importance sampling.
+        error: of that, one standard error: by how much positions differ, or draws where there is one position.
+        freedoms: of that error.
+        evaluations: builds that it took.
+    """
+
+    measure: str
+    limit: float
+    side: Side
+    points: tuple[DesignPoint, ...]
+    first_order: float
+    probability: float
+    error: float
+    freedoms: int
+    evaluations: int
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """That holds the probability with 95 % confidence, by its logarithm."""
+        if not self.probability > 0.0:
+            return 0.0, 1.0
+        quantile = float(student.ppf((1 + CONFIDENCE) / 2, self.freedoms))
+        factor = math.exp(quantile * self.error / self.probability)
+        return self.probability / factor, min(1.0, self.probability * factor)
+
+
+def rare_event(
+    response: Response, side: Side, limit: float, *, draws: int = 5600, places: int = 16, starts: int = 2, seed: int = 1
+) -> RareEvent:
+    """How often a measure is beyond a limit.
+
+    Args:
+        response: of that measure alone.
+        side, limit: which, in its unit.
+        draws: of importance sampling.
+        places: positions at which design points are sought, evenly spread as the study draws them.
+        starts: at each position, from how many builds.
+        seed: of both.
+
+    Raises:
+        InputError: several measures, or a contributor without a smooth map from normals, by name.
+    """
+    if len(response.measures) != 1:
+        raise InputError(f"expected one measure, got {', '.join(response.names)}")
+    if response.rough:
+        words = "expected contributors with a smooth map from normals; subset simulation does without"
+        raise InputError(f"{words}: {', '.join(response.rough)} {'have' if len(response.rough) > 1 else 'has'} none")
+    state, before = LimitState(response, limit, side), response.evaluations
+    generator = np.random.default_rng(seed)
+    count = places if response.simulation.system.streams else 1
+    positions = response.positions(count, "drawn" if count > 1 else "rest", int(generator.integers(2**31)))
+    points = design_points(state, positions, count, starts, generator)
+    first = float(np.mean([max((float(ndtr(-own.beta)) for own in its), default=0.0) for its in points]))
+    found = np.array(
+        [_sampled(state, its, _at(positions, k), max(2, draws // count), generator) for k, its in enumerate(points)]
+    )
+    error = float(found[:, 0].std(ddof=1) / math.sqrt(count)) if count > 1 else float(found[0, 1])
+    nearest = tuple(sorted((own for its in points for own in its), key=lambda own: own.beta))
+    return RareEvent(
+        state.measure.name,
+        limit,
+        side,
+        nearest,
+        first,
+        float(found[:, 0].mean()),
+        error,
+        count - 1 if count > 1 else draws,
+        response.evaluations - before,
+    )
+
+
+def _at(positions: Mapping[str, Array], place: int) -> Mapping[str, Array]:
+    return {name: own[place : place + 1] for name, own in positions.items()}
+
+
+def design_points(
+    state: LimitState, positions: Mapping[str, Array], places: int, starts: int, generator: np.random.Generator
+) -> tuple[tuple[DesignPoint, ...], ...]:
+    """Design points at each of several positions, from several starts, all in batches; the nearest ones first."""
+    dimension, count = state.response.dimension, places * starts
+    rows = {name: np.repeat(own, starts, axis=0) for name, own in positions.items()}
+    z = 0.5 * generator.standard_normal((count, dimension))
+    z[::starts] = 1e-3  # one begins at the origin
+    inside, _ = state.at(z, rows)
+    beyond = np.repeat(inside[::starts] < 0.0, starts)
+    scale = float(np.nanmax(np.abs(inside))) or 1.0
+    done, best = np.zeros(count, dtype=bool), np.full(count, np.inf)
+    found_z, found_g = z.copy(), np.zeros_like(z)
+    for _ in range(ROUNDS):
+        live = np.flatnonzero(~done & np.isfinite(inside))
+        if not live.size:
+            break
+        own = {name: each[live] for name, each in rows.items()}
+        gradient = _gradient(state, z[live], own)
+        square = np.maximum((gradient * gradient).sum(axis=1), 1e-300)
+        aim = ((gradient * z[live]).sum(axis=1) - inside[live]) / square
+        step = aim[:, None] * gradient - z[live]
+        met = (np.abs(inside[live]) <= MET * scale) & (np.linalg.norm(step, axis=1) <= 10 * MET * (1.0 + np.abs(aim)))
+        sizes = np.linalg.norm(z[live], axis=1)
+        for k in np.flatnonzero(met):
+            row = live[k]
+            done[row], best[row], found_z[row], found_g[row] = True, sizes[k], z[row], gradient[k]
+        going = np.flatnonzero(~met)
+        if not going.size:
+            continue
+        rows_left, steps = live[going], step[going]
+        weight = PENALTY * sizes[going] / np.sqrt(square[going]) + PENALTY / np.sqrt(square[going])
+        merit = 0.5 * sizes[going] ** 2 + weight * np.abs(inside[rows_left])
+        taken, waiting = np.zeros(len(rows_left), dtype=bool), np.ones(len(rows_left))
+        for _ in range(SHRINKS):
+            open_rows = np.flatnonzero(~taken)
+            if not open_rows.size:
+                break
+            there = z[rows_left[open_rows]] + waiting[open_rows, None] * steps[open_rows]
+            value, _ = state.at(there, {name: each[rows_left[open_rows]] for name, each in rows.items()})
+            size = 0.5 * (there * there).sum(axis=1) + weight[open_rows] * np.abs(value)
+            good = np.isfinite(value) & (size < merit[open_rows])
+            for k, own_row in enumerate(open_rows):
+                if good[k]:
+                    z[rows_left[own_row]], inside[rows_left[own_row]], taken[own_row] = there[k], value[k], True
+                else:
+                    waiting[own_row] /= 2
+        done[rows_left[~taken]] = True  # it leads nowhere
+    kept = []
+    for place in range(places):
+        own = range(place * starts, (place + 1) * starts)
+        mine: list[int] = []
+        for row in sorted((row for row in own if np.isfinite(best[row])), key=lambda row: float(best[row])):
+            near = any(np.linalg.norm(found_z[row] - found_z[other]) < SAME for other in mine)
+            if not near and best[row] <= best[mine[0] if mine else row] + FARTHER:
+                mine.append(row)
+        kept.append(tuple(DesignPoint(found_z[k], _at(rows, k), found_g[k], bool(beyond[k])) for k in mine))
+    return tuple(kept)
+
+
+def _gradient(state: LimitState, z: Array, positions: Mapping[str, Array]) -> Array:
+    """Of the limit state by the normals (n, dimension), by central differences in one batch."""
+    dimension = z.shape[1]
+    shifts = STEP * np.concatenate([np.eye(dimension), -np.eye(dimension)])
+    builds = (z[:, None] + shifts).reshape(-1, dimension)
+    rows = {name: np.repeat(own, 2 * dimension, axis=0) for name, own in positions.items()}
+    found = state.at(builds, rows)[0].reshape(len(z), 2, dimension)
+    return np.nan_to_num((found[:, 0] - found[:, 1]) / (2 * STEP))
+
+
+def _sampled(
+    state: LimitState,
+    points: tuple[DesignPoint, ...],
+    position: Mapping[str, Array],
+    draws: int,
+    generator: np.random.Generator,
+) -> tuple[float, float]:
+    """Probability at a position and its standard error, of normals about the design points and some that are not."""
+    dimension, points = state.response.dimension, tuple(own for own in points if not own.beyond)
+    centres = np.array([own.normals for own in points]).reshape(-1, dimension)
+    shares = np.exp(-0.5 * np.array([own.beta**2 - points[0].beta ** 2 for own in points])) if points else np.zeros(0)
+    weights = np.concatenate([[PLAIN if points else 1.0], (1 - PLAIN) * shares / shares.sum() if points else []])
+    centres = np.vstack([np.zeros((1, dimension)), centres])
+    z = centres[generator.choice(len(weights), size=draws, p=weights)] + generator.standard_normal((draws, dimension))
+    fails = state.fails(z, {name: np.repeat(own, draws, axis=0) for name, own in position.items()})
+    # φ(z) / Σ w φ(z - c), in logarithms: φ(z - c) / φ(z) = exp(z·c - c²/2)
+    tilt = z[fails] @ centres.T - 0.5 * (centres * centres).sum(axis=1)
+    ratio = np.zeros(draws)
+    ratio[fails] = np.exp(-logsumexp(tilt, axis=1, b=weights))
+    return float(ratio.mean()), float(ratio.std(ddof=1) / math.sqrt(draws))
