@@ -35,6 +35,9 @@ SHRINKS: Final = 6
 """How often a step is halved that leads nowhere."""
 PENALTY: Final = 2.0
 """By how much more than needed the merit of a step counts the limit."""
+LEAST: Final = 1e-300
+AT_ORIGIN: Final = 1e-3
+"""Of each normal, where a start is at the origin: there a length has no direction."""
 SAME: Final = 0.1
 """Design points nearer to each other are one."""
 PLAIN: Final = 0.1
@@ -192,60 +195,99 @@ def design_points(
     state: LimitState, positions: Mapping[str, Array], places: int, starts: int, generator: np.random.Generator
 ) -> tuple[tuple[DesignPoint, ...], ...]:
     """Design points at each of several positions, from several starts, all in batches; the nearest ones first."""
-    dimension, count = state.response.dimension, places * starts
     rows = {name: np.repeat(own, starts, axis=0) for name, own in positions.items()}
-    z = 0.5 * generator.standard_normal((count, dimension))
-    z[::starts] = 1e-3  # one begins at the origin
-    inside, _ = state.at(z, rows)
-    beyond = np.repeat(inside[::starts] < 0.0, starts)
-    scale = float(np.nanmax(np.abs(inside))) or 1.0
-    done, best = np.zeros(count, dtype=bool), np.full(count, np.inf)
-    found_z, found_g = z.copy(), np.zeros_like(z)
+    begun = 0.5 * generator.standard_normal((places * starts, state.response.dimension))
+    begun[::starts] = AT_ORIGIN
+    walk = _Walk.begun(state, begun, rows)
+    beyond = np.repeat(walk.inside[::starts] < 0.0, starts)
     for _ in range(ROUNDS):
-        live = np.flatnonzero(~done & np.isfinite(inside))
-        if not live.size:
+        if not walk.step():
             break
-        own = {name: each[live] for name, each in rows.items()}
-        gradient = _gradient(state, z[live], own)
-        square = np.maximum((gradient * gradient).sum(axis=1), 1e-300)
-        aim = ((gradient * z[live]).sum(axis=1) - inside[live]) / square
-        step = aim[:, None] * gradient - z[live]
-        met = (np.abs(inside[live]) <= MET * scale) & (np.linalg.norm(step, axis=1) <= 10 * MET * (1.0 + np.abs(aim)))
-        sizes = np.linalg.norm(z[live], axis=1)
-        for k in np.flatnonzero(met):
-            row = live[k]
-            done[row], best[row], found_z[row], found_g[row] = True, sizes[k], z[row], gradient[k]
-        going = np.flatnonzero(~met)
-        if not going.size:
-            continue
-        rows_left, steps = live[going], step[going]
-        weight = PENALTY * sizes[going] / np.sqrt(square[going]) + PENALTY / np.sqrt(square[going])
-        merit = 0.5 * sizes[going] ** 2 + weight * np.abs(inside[rows_left])
-        taken, waiting = np.zeros(len(rows_left), dtype=bool), np.ones(len(rows_left))
-        for _ in range(SHRINKS):
-            open_rows = np.flatnonzero(~taken)
-            if not open_rows.size:
-                break
-            there = z[rows_left[open_rows]] + waiting[open_rows, None] * steps[open_rows]
-            value, _ = state.at(there, {name: each[rows_left[open_rows]] for name, each in rows.items()})
-            size = 0.5 * (there * there).sum(axis=1) + weight[open_rows] * np.abs(value)
-            good = np.isfinite(value) & (size < merit[open_rows])
-            for k, own_row in enumerate(open_rows):
-                if good[k]:
-                    z[rows_left[own_row]], inside[rows_left[own_row]], taken[own_row] = there[k], value[k], True
-                else:
-                    waiting[own_row] /= 2
-        done[rows_left[~taken]] = True  # it leads nowhere
-    kept = []
+    found = []
     for place in range(places):
-        own = range(place * starts, (place + 1) * starts)
         mine: list[int] = []
-        for row in sorted((row for row in own if np.isfinite(best[row])), key=lambda row: float(best[row])):
-            near = any(np.linalg.norm(found_z[row] - found_z[other]) < SAME for other in mine)
-            if not near and best[row] <= best[mine[0] if mine else row] + FARTHER:
-                mine.append(row)
-        kept.append(tuple(DesignPoint(found_z[k], _at(rows, k), found_g[k], bool(beyond[k])) for k in mine))
-    return tuple(kept)
+        ends = [k for k in range(place * starts, (place + 1) * starts) if walk.met[k]]
+        for k in sorted(ends, key=lambda end: float(walk.sizes[end])):
+            near = any(np.linalg.norm(walk.normals[k] - walk.normals[other]) < SAME for other in mine)
+            if not near and walk.sizes[k] <= walk.sizes[mine[0] if mine else k] + FARTHER:
+                mine.append(k)
+        found.append(
+            tuple(DesignPoint(walk.normals[k], _at(rows, k), walk.gradients[k], bool(beyond[k])) for k in mine)
+        )
+    return tuple(found)
+
+
+@dataclass(eq=False)
+class _Walk:
+    """Rows on their way to design points, each by the steps of Rackwitz and Fiessler as far as they lead somewhere.
+
+    Args:
+        state: whose.
+        positions: at which each row is read.
+        normals: where they are (n, dimension).
+        inside: the limit state there (n,).
+        gradients: where they were found last (n, dimension).
+        scale: of the limit state.
+        met, ended: which are there, and which go no further (n,).
+    """
+
+    state: LimitState
+    positions: Mapping[str, Array]
+    normals: Array
+    inside: Array
+    gradients: Array
+    scale: float
+    met: NDArray[np.bool_]
+    ended: NDArray[np.bool_]
+
+    @classmethod
+    def begun(cls, state: LimitState, normals: Array, positions: Mapping[str, Array]) -> "_Walk":
+        """At their starts; those that do not seat go nowhere."""
+        inside, _ = state.at(normals, positions)
+        scale, none = float(np.nanmax(np.abs(inside), initial=0.0)) or 1.0, np.zeros(len(normals), dtype=bool)
+        return cls(state, positions, normals, inside, np.zeros_like(normals), scale, none, ~np.isfinite(inside))
+
+    @property
+    def sizes(self) -> Array:
+        """Distances from the origin (n,)."""
+        return np.asarray(np.linalg.norm(self.normals, axis=1))
+
+    def _rows(self, rows: NDArray[np.int64]) -> Mapping[str, Array]:
+        return {name: own[rows] for name, own in self.positions.items()}
+
+    def step(self) -> bool:
+        """One step of all that are on their way; whether any is left."""
+        rows = np.flatnonzero(~self.ended)
+        if not rows.size:
+            return False
+        z, inside = self.normals[rows], self.inside[rows]
+        gradient = _gradient(self.state, z, self._rows(rows))
+        self.gradients[rows] = gradient
+        square = np.maximum((gradient * gradient).sum(axis=1), LEAST)
+        aim = ((gradient * z).sum(axis=1) - inside) / square
+        steps = aim[:, None] * gradient - z
+        left = np.linalg.norm(steps, axis=1)
+        there = (np.abs(inside) <= MET * self.scale) & (left <= 10 * MET * (1.0 + np.linalg.norm(z, axis=1)))
+        self.met[rows[there]] = self.ended[rows[there]] = True
+        going = ~there
+        weights = PENALTY * (1.0 + np.linalg.norm(z, axis=1)) / np.sqrt(square)
+        self._go(rows[going], steps[going], weights[going])
+        return True
+
+    def _go(self, rows: NDArray[np.int64], steps: Array, weights: Array) -> None:
+        """As much of each step as makes rows better: nearer to the origin, or to the limit."""
+        merits = 0.5 * self.sizes[rows] ** 2 + weights * np.abs(self.inside[rows])
+        waiting, share = np.arange(len(rows)), 1.0
+        for _ in range(SHRINKS):
+            if not waiting.size:
+                return
+            own = rows[waiting]
+            there = self.normals[own] + share * steps[waiting]
+            inside, _ = self.state.at(there, self._rows(own))
+            good = 0.5 * (there * there).sum(axis=1) + weights[waiting] * np.abs(inside) < merits[waiting]
+            self.normals[own[good]], self.inside[own[good]] = there[good], inside[good]
+            waiting, share = waiting[~good], share / 2
+        self.ended[rows[waiting]] = True  # they lead nowhere
 
 
 def _gradient(state: LimitState, z: Array, positions: Mapping[str, Array]) -> Array:
