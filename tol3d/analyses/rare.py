@@ -10,7 +10,7 @@ Sources: Hasofer and Lind 1974; Rackwitz and Fiessler 1978; Zhang and Der Kiureg
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -31,6 +31,9 @@ STEP: Final = 1e-3
 ROUNDS: Final = 60
 MET: Final = 1e-4
 """What is left of the limit, as a share of its distance from the mean build, and of the way across it."""
+FURTHEST: Final = 9.0
+"""From the origin, where nothing is looked for."""
+HALVINGS: Final = 30
 SHRINKS: Final = 6
 """How often a step is halved that leads nowhere."""
 PENALTY: Final = 2.0
@@ -115,10 +118,11 @@ class RareEvent:
         measure: its name.
         limit, side: see LimitState.
         points: design points, the nearest first.
-        first_order: Φ(-β) over the positions at which they were sought.
+        first_order: Φ(-β), the mean of the positions at which one was found; None where none was.
         probability: by importance sampling.
         error: of that, one standard error: by how much positions differ, or draws where there is one position.
         freedoms: of that error.
+        draws: of importance sampling.
         evaluations: builds that it took.
     """
 
@@ -126,24 +130,33 @@ class RareEvent:
     limit: float
     side: Side
     points: tuple[DesignPoint, ...]
-    first_order: float
+    first_order: float | None
     probability: float
     error: float
     freedoms: int
+    draws: int
     evaluations: int
 
     @property
     def interval(self) -> tuple[float, float]:
         """That holds the probability with 95 % confidence, by its logarithm."""
-        if not self.probability > 0.0:
-            return 0.0, 1.0
+        if not self.probability > 0.0:  # as of as many trials in which nothing fails
+            return 0.0, -math.log((1 - CONFIDENCE) / 2) / self.draws
         quantile = float(student.ppf((1 + CONFIDENCE) / 2, self.freedoms))
         factor = math.exp(quantile * self.error / self.probability)
         return self.probability / factor, min(1.0, self.probability * factor)
 
 
 def rare_event(
-    response: Response, side: Side, limit: float, *, draws: int = 5600, places: int = 16, starts: int = 2, seed: int = 1
+    response: Response,
+    side: Side,
+    limit: float,
+    *,
+    draws: int = 5600,
+    places: int = 16,
+    starts: int = 2,
+    alone: int = 8,
+    seed: int = 1,
 ) -> RareEvent:
     """How often a measure is beyond a limit.
 
@@ -153,6 +166,7 @@ def rare_event(
         draws: of importance sampling.
         places: positions at which design points are sought, evenly spread as the study draws them.
         starts: at each position, from how many builds.
+        alone: the same where there is one position.
         seed: of both.
 
     Raises:
@@ -166,9 +180,10 @@ def rare_event(
     state, before = LimitState(response, limit, side), response.evaluations
     generator = np.random.default_rng(seed)
     count = places if response.simulation.system.streams else 1
+    starts = starts if count > 1 else max(starts, alone)
     positions = response.positions(count, "drawn" if count > 1 else "rest", int(generator.integers(2**31)))
     points = design_points(state, positions, count, starts, generator)
-    first = float(np.mean([max((float(ndtr(-own.beta)) for own in its), default=0.0) for its in points]))
+    first = [float(ndtr(-its[0].beta)) for its in points if its]
     found = np.array(
         [_sampled(state, its, _at(positions, k), max(2, draws // count), generator) for k, its in enumerate(points)]
     )
@@ -179,12 +194,41 @@ def rare_event(
         limit,
         side,
         nearest,
-        first,
+        float(np.mean(first)) if first else None,
         float(found[:, 0].mean()),
         error,
         count - 1 if count > 1 else draws,
+        draws,
         response.evaluations - before,
     )
+
+
+def limits_left(
+    response: Response,
+    measure: str | None = None,
+    *,
+    draws: int = 5600,
+    seed: int = 1,
+    activity: Callable[[str], None] = lambda text: None,
+) -> tuple[RareEvent, ...]:
+    """How often each limit of a response's measures is left, or of one of them.
+
+    Raises:
+        InputError: no such measure, or none with a limit; see `rare_event`.
+    """
+    asked = response if measure is None else response.of(measure)
+    found = []
+    for own in asked.measures:
+        sides: tuple[tuple[Side, float | None], ...] = (("low", own.lower_limit), ("high", own.upper_limit))
+        for side, limit in sides:
+            if limit is not None:
+                activity(f"{own.name}, {side} limit")
+                alone = response.of(own.name)
+                found.append(rare_event(alone, side, limit * own.per_internal, draws=draws, seed=seed))
+    if not found:
+        whose = repr(measure) if measure is not None else "any measure that is one number a trial"
+        raise InputError(f"expected a limit (lower_limit, upper_limit) of {whose}, got none")
+    return tuple(found)
 
 
 def _at(positions: Mapping[str, Array], place: int) -> Mapping[str, Array]:
@@ -203,6 +247,7 @@ def design_points(
     for _ in range(ROUNDS):
         if not walk.step():
             break
+    walk.end_on_rays(beyond)
     found = []
     for place in range(places):
         mine: list[int] = []
@@ -273,6 +318,22 @@ class _Walk:
         weights = PENALTY * (1.0 + np.linalg.norm(z, axis=1)) / np.sqrt(square)
         self._go(rows[going], steps[going], weights[going])
         return True
+
+    def end_on_rays(self, beyond: NDArray[np.bool_]) -> None:
+        """Take rows that found no rest, such as at an edge of the limit, to it along their rays, if it is there."""
+        rows = np.flatnonzero(~self.met & np.isfinite(self.inside) & (self.sizes > 0.0))
+        if not rows.size:
+            return
+        own, sign = self._rows(rows), np.where(beyond[rows], -1.0, 1.0)
+        low, high = np.zeros(len(rows)), FURTHEST / self.sizes[rows]
+        crossed = sign * self.state.at(high[:, None] * self.normals[rows], own)[0] < 0.0
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            inside = sign * self.state.at(middle[:, None] * self.normals[rows], own)[0] >= 0.0
+            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        near = crossed & (high < 2.0)
+        self.normals[rows[near]] *= high[near, None]
+        self.met[rows[near]] = True
 
     def _go(self, rows: NDArray[np.int64], steps: Array, weights: Array) -> None:
         """As much of each step as makes rows better: nearer to the origin, or to the limit."""

@@ -29,6 +29,7 @@ COMMANDS = (
     showing.compare,
     analyses.shim,
     analyses.compensate,
+    analyses.rare,
     records.identify,
     records.rig,
     records.plan_rig,
