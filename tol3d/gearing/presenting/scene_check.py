@@ -95,7 +95,8 @@ def _path(first: str, path: LoadPath) -> Iterator[str]:
 def _vector_text(vector: Array, digits: int) -> str:
     """Coordinates, without a sign of what is 0 in print.
 
-    >>> _vector_text(np.array([172.5, -1e-17, 1.0]), 2)
+    >>> import numpy
+    >>> _vector_text(numpy.array([172.5, -1e-17, 1.0]), 2)
     '172.5, 0, 1'
     """
     return ", ".join(f"{round(float(value), digits) + 0.0:g}" for value in vector)
