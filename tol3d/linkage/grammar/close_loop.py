@@ -162,8 +162,8 @@ class CloseLoopSpec(StatedMoveSpec):
         taken: dict[tuple[str, str], str] = {}
         for name, own in self.inputs.items():
             if own.of not in self.joints:
-                near = hint(own.of, self.joints)
-                raise refused(f"inputs.{name}.of", f"a joint of {', '.join(self.joints)}{near}", repr(own.of))
+                got = f"{own.of!r}{hint(own.of, self.joints)}"
+                raise refused(f"inputs.{name}.of", f"a joint of {', '.join(self.joints)}", got)
             joint = self.joints[own.of]
             words = COORDINATES[joint.kind]
             if not words:
@@ -210,8 +210,8 @@ class CloseLoopSpec(StatedMoveSpec):
             if isinstance(pose, PathSpec):
                 for own in pose.path:
                     if own not in self.pose_names:
-                        words = f"poses of {', '.join(self.pose_names)}{hint(own, self.pose_names)}"
-                        raise refused(f"{at}.path", words, repr(own))
+                        got = f"{own!r}{hint(own, self.pose_names)}"
+                        raise refused(f"{at}.path", f"poses of {', '.join(self.pose_names)}", got)
             elif isinstance(pose, TiltPoseSpec):
                 if self.output is None or self.output.tilt is None:
                     raise refused(at, "inputs, for the move has no `output: {tilt: …}`", "a tilt")
@@ -225,8 +225,8 @@ class CloseLoopSpec(StatedMoveSpec):
         lacking = [own for own in self.inputs if own not in pose]
         for own in pose:
             if own not in self.inputs:
-                words = f"an input: {', '.join(self.inputs) or 'none'}{hint(own, self.inputs)}"
-                raise refused(f"{at}.{own}", words, repr(own))
+                got = f"{own!r}{hint(own, self.inputs)}"
+                raise refused(f"{at}.{own}", f"an input: {', '.join(self.inputs) or 'none'}", got)
         if lacking:
             words = f"a value of each of the {len(self.inputs)} inputs"
             raise refused(at, words, f"none of {', '.join(map(repr, lacking))}")
