@@ -71,6 +71,19 @@ def test_a_map_of_sigma_is_that_of_the_measure(simulation: Simulation, tmp_path:
     assert (tmp_path / "map.png").stat().st_size > 20_000
 
 
+def test_a_loop_whose_output_does_not_tilt_is_mapped_over_its_inputs(tmp_path: Path) -> None:
+    """Of a slider-crank one: as well conditioned at either side of the dead centre, for the mechanism is symmetric."""
+    own = simulation_of(load("slider_crank"))
+    presenter = presenter_at(own.presenter)
+    assert isinstance(presenter, Mapped)
+    found = presenter.workspace(own, None, lambda text: None)
+    rows = np.array([line.split(",") for line in found.csv().splitlines()[1:]], dtype=np.float64)
+    assert rows[:, 0] == pytest.approx(np.linspace(-90.0, 90.0, 41))
+    assert rows[:, 1] == pytest.approx(rows[::-1, 1], rel=1e-6)
+    found.draw(tmp_path / "map.png")
+    assert (tmp_path / "map.png").stat().st_size > 10_000
+
+
 def test_a_build_moves_along_its_path(scene: Path, tmp_path: Path) -> None:
     run = run_scene(scene, overrides=Overrides(trials=50), out=tmp_path / "run")
     display = presenter_at("tol3d.assembly.presenting").display(run, "nominal", magnify=1.0)

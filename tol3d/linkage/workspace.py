@@ -1,6 +1,6 @@
 """How far a loop reaches: condition numbers over its output or its inputs, and where it is singular."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -77,6 +77,72 @@ def workspace_of(
         positions.append(ray)
         activity(k + 1)
     return Workspace(azimuths, shares, reach, positions)
+
+
+@dataclass(frozen=True, eq=False)
+class InputGrid:
+    """Condition numbers over one or two inputs, the others as parts are placed.
+
+    Args:
+        names: of the inputs.
+        values: of each, from where parts are placed [mm or rad].
+        conditions: (values, values) or (values,), not a number where the loop does not get there.
+    """
+
+    names: tuple[str, ...]
+    values: tuple[Array, ...]
+    conditions: Array
+
+
+def range_of(move: ClosedLoop, name: str) -> tuple[float, float]:
+    """From where to where an input may go, from where parts are placed; as far as its poses do where nothing is said.
+
+    Raises:
+        InputError: neither a range nor two poses say it.
+    """
+    own = move.inputs[name]
+    if own.range is not None:
+        return own.range[0] - own.as_placed, own.range[1] - own.as_placed
+    values = [move.kinematics.inputs_at(at)[name] for at in (move.kinematics.drawn, *move.stations.values())]
+    if max(values) > min(values):
+        return min(values), max(values)
+    words = "expected a `range`, or poses in which it differs"
+    raise InputError(f"moves.{move.name}.inputs.{name}: {words}, got none")
+
+
+def input_grid_of(move: ClosedLoop, count: int, activity: Callable[[int], None] = lambda done: None) -> InputGrid:
+    """Condition numbers over the first one or two inputs of a loop.
+
+    Args:
+        move: the loop.
+        count: values of each input.
+        activity: told how many values of the first one are done.
+
+    Raises:
+        InputError: it has no inputs, or nothing says how far they go.
+    """
+    names = tuple(move.inputs)[:2]
+    if not names:
+        raise InputError(f"moves.{move.name}: expected a loop with inputs, whose values a picture can show, got none")
+    values = tuple(np.linspace(*range_of(move, name), count) for name in names)
+    found = np.full((count,) * len(names), np.nan)
+    for k, first in enumerate(values[0]):
+        at = _reached(move.kinematics, {names[0]: float(first)}, move.kinematics.drawn)
+        if len(names) == 1:
+            found[k] = at.condition if at is not None else np.nan
+        for n, second in enumerate(values[1] if len(names) > 1 else ()):
+            inputs = {names[0]: float(first), names[1]: float(second)}
+            there = _reached(move.kinematics, inputs, at or move.kinematics.drawn)
+            found[k, n] = there.condition if there is not None else np.nan
+        activity(k + 1)
+    return InputGrid(names, values, found)
+
+
+def _reached(kinematics: Kinematics, inputs: Mapping[str, float], start: Position) -> Position | None:
+    try:
+        return kinematics.at_inputs(inputs, start)
+    except UnreachedError:
+        return None
 
 
 def reach_of(kinematics: Kinematics, azimuth: float) -> float:

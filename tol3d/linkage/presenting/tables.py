@@ -1,13 +1,15 @@
 """What a closed loop means without deviations, as tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
+from tol3d.errors import InputError
 from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
 from tol3d.linkage.loop import ClosedLoop, LoopInput
 from tol3d.linkage.structure import FREEDOMS
+from tol3d.linkage.workspace import range_of
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 
 TILTS: Final = 10.0
@@ -111,7 +113,10 @@ def _forward(move: ClosedLoop) -> Sequence[PageItem]:
     """The output by the inputs, over their ranges; those of the poses where none is said."""
     if not move.inputs or len(move.inputs) > 2 or not _has_tilt(move.kinematics):
         return ()
-    ranges = [_range(move, name, own) for name, own in move.inputs.items()]
+    try:
+        ranges = [range_of(move, name) for name in move.inputs]
+    except InputError:
+        return ()
     rows = []
     for values in np.stack(np.meshgrid(*(np.linspace(*own, STEPS) for own in ranges), indexing="ij"), -1).reshape(
         -1, len(ranges)
@@ -128,11 +133,3 @@ def _forward(move: ClosedLoop) -> Sequence[PageItem]:
     heads = [*others, "tilt [deg]", "azimuth [deg]", "condition"]
     table = Table(first, [Heading(own) for own in heads], rows[:MOST_ROWS])
     return titled(f"{move.name}: the output by the inputs (forward)", table)
-
-
-def _range(move: ClosedLoop, name: str, own: LoopInput) -> tuple[float, float]:
-    if own.range is not None:
-        return own.range[0] - own.as_placed, own.range[1] - own.as_placed
-    stations: Mapping[str, Position] = move.stations or {"": move.kinematics.drawn}
-    values = [move.kinematics.inputs_at(at)[name] for at in stations.values()]
-    return min(values), max(values)

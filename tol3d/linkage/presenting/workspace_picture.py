@@ -16,9 +16,9 @@ from tol3d.errors import InputError
 from tol3d.linkage.grammar.close_loop import CloseLoopSpec
 from tol3d.linkage.grammar.inputs import TiltPoseSpec
 from tol3d.linkage.loop import ClosedLoop
-from tol3d.linkage.workspace import Workspace, workspace_of
+from tol3d.linkage.workspace import InputGrid, Workspace, input_grid_of, workspace_of
 from tol3d.report.canvas import save_figure
-from tol3d.report.polar_map import polar_map
+from tol3d.report.polar_map import plane_map, polar_map
 from tol3d.scene.nearest import hint
 from tol3d.study.simulation import Simulation
 from tol3d.system.road import ANALYTIC_ROAD
@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 RAYS: Final = 72
 PLACES: Final = 24
+VALUES: Final = 41
+"""Of each input, where the output does not tilt."""
 COARSE_RAYS: Final = 24
 COARSE_PLACES: Final = 10
 """Of a picture of a measure's sigma, for which the assembly is made anew in each pose."""
@@ -80,9 +82,56 @@ class WorkspaceMap:
         return stream.getvalue()
 
 
+@dataclass(frozen=True, eq=False)
+class InputMap:
+    """What a picture of condition numbers over inputs shows.
+
+    Args:
+        move: the loop.
+        grid: of its inputs.
+    """
+
+    move: ClosedLoop
+    grid: InputGrid
+
+    @property
+    def _places(self) -> list[tuple[str, Array]]:
+        """Words and values of the inputs, as the scene counts."""
+        found = []
+        for name, values in zip(self.grid.names, self.grid.values, strict=True):
+            own = self.move.inputs[name]
+            whole = own.as_placed + values
+            found.append((f"{name} [mm]", whole) if own.is_slide else (f"{name} [deg]", np.degrees(whole)))
+        return found
+
+    def draw(self, path: Path) -> None:
+        """Draw it.
+
+        Raises:
+            InputError: the picture cannot be written there.
+        """
+        words, places = zip(*self._places, strict=True)
+        others = [name for name in self.move.inputs if name not in self.grid.names]
+        held = f"{', '.join(others)}: as parts are placed; " if others else ""
+        below = [f"{held}blank: not reached, or beyond a singular pose"]
+        title = f"{self.move.name}: condition number"
+        save_figure(plane_map(title, words, places, self.grid.conditions, below), path)
+
+    def csv(self) -> str:
+        """Inputs and condition number of each place."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow([*(words for words, _ in self._places), "condition number"])
+        places = [values for _, values in self._places]
+        for place, value in np.ndenumerate(self.grid.conditions):
+            own = [f"{values[k]:.10g}" for values, k in zip(places, place, strict=True)]
+            writer.writerow([*own, "" if np.isnan(value) else f"{value:.10g}"])
+        return stream.getvalue()
+
+
 def workspace_map(
     simulation: Simulation, name: str, measure: str | None, activity: Callable[[str], None]
-) -> WorkspaceMap:
+) -> WorkspaceMap | InputMap:
     """The workspace of a loop.
 
     Args:
@@ -98,6 +147,9 @@ def workspace_map(
     assert isinstance(system, AssemblySystem)
     move = next(own for own in system.assembly.moves if own.name == name)
     assert isinstance(move, ClosedLoop)
+    output = move.kinematics.structure.output
+    if measure is None and (output is None or output.whole):
+        return InputMap(move, input_grid_of(move, VALUES, lambda done: activity(f"{done} of {VALUES}")))
     if measure is None:
         found = workspace_of(move, RAYS, PLACES, lambda done: activity(f"ray {done} of {RAYS}"))
         return WorkspaceMap(move.name, "condition number", found, found.conditions)
