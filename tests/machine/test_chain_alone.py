@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.report.presenter import presenter_at
+from tol3d.report.presenter import presenter_of
 
 SCENE = """scene: chain alone
 parts:
@@ -39,5 +39,5 @@ def test_a_link_is_read_in_every_pose(tmp_path: Path) -> None:
     assert up["geometric"]["sigma"] == pytest.approx(20.0 / 3, rel=4 / (2 * 400) ** 0.5)
     assert up["pose"] == "up"
     assert [own["name"] for own in up["contributors"]] == ["tip y"]
-    display = presenter_at("tol3d.assembly.presenting").display(run, "nominal", magnify=1.0)
+    display = presenter_of(run.found).display(run, "nominal", magnify=1.0)
     assert [world.name for world in display.worlds] == ["home", "up"]

@@ -123,4 +123,4 @@ def _shown(gears: GearDisplay, seen: Replay, label: str, magnify: float) -> Show
         if placed is None:
             raise RunError(f"{label}: cannot be shown: {seen.status}")
         poses[pose] = placed
-    return ShownMachine(gears, system, next(iter(poses.values())), poses if system.drives else {})
+    return ShownMachine(gears, system, next(iter(poses.values())), poses if "" not in poses else {})
