@@ -25,10 +25,15 @@ def assert_as_the_oracle(linkage: Linkage, folder: Path, seed: int = 0) -> None:
 
 
 def assert_second_order(linkage: Linkage, folder: Path) -> None:
-    """Halving all deviations quarters the rms difference of the roads, within what a third order makes of 20 trials."""
+    """Halving all deviations quarters the rms difference of the roads, within what a third order makes of 20 trials.
+
+    Near a singular pose some do not close, and the third order counts: deviations are then a 64th of the others'.
+    """
     study = study_of(linkage, folder)
     rng = np.random.default_rng(3)
     rows = np.stack([study.columns(*random_deviations(linkage, rng, 0.02, 2e-4)) for _ in range(20)])
+    if any(codes.any() for codes in study.answers(rows).status.values()):
+        rows /= 64
     for where in linkage.poses:
         off = [study.seen(f * rows, where) - study.seen(f * rows, where, "analytic") for f in (1.0, 0.5)]
         whole, half = (float(np.sqrt(np.mean(own**2))) for own in off)

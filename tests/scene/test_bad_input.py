@@ -210,7 +210,7 @@ CHANGES = {
     "unknown kind": (
         ("kind: rayleigh", "kind: raleigh"),
         "tolerances.wheel eccentricity.distribution.kind: expected one of normal, truncated_normal, uniform, "
-        "triangular, rayleigh, constant, empirical, got 'raleigh'; did you mean \"rayleigh\"?",
+        "triangular, rayleigh, arcsine, constant, empirical, got 'raleigh'; did you mean \"rayleigh\"?",
     ),
     "unknown kind of move": (
         ("kind: mesh", "kind: mash"),

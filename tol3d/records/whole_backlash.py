@@ -225,9 +225,9 @@ def _drawn(fit: Fit, model: BacklashModel, teeth: ToothPart, mean: Array) -> Ite
 
 
 def _root(covariance: Array) -> Array:
-    """A square root R with R^T R the covariance, which may be singular."""
+    """The symmetric square root R of a covariance, which may be singular: no other is the same on every machine."""
     values, vectors = np.linalg.eigh(covariance)
-    return np.asarray(np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)) @ vectors.T)
 
 
 def _extreme(mean: Array, teeth: ToothPart, sense: int, ends: Array, places: Array) -> Extreme:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any
+from typing import Any, Protocol
 
 from tol3d.errors import MechanismError, Tol3dError
 from tol3d.system.contributor import Contributor
@@ -97,7 +97,9 @@ def require_whole(system: Any) -> None:
 
 
 def _require(found: object, protocol: type) -> None:
-    lacking = [name for name in vars(protocol) if not name.startswith("_") and not hasattr(found, name)]
+    bases = [own for own in protocol.__mro__ if getattr(own, "_is_protocol", False) and own is not Protocol]
+    names = dict.fromkeys(name for own in bases for name in vars(own) if not name.startswith("_"))
+    lacking = [name for name in names if not hasattr(found, name)]
     if lacking:
         wanted, got = f"{protocol.__module__}.{protocol.__name__}", type(found).__name__
         raise UnfitError(f"expected a {wanted}, got {got} without {', '.join(lacking)}")

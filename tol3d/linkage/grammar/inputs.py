@@ -3,7 +3,9 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, GetJsonSchemaHandler, Tag, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from tol3d.assembly.grammar.feature_name import FeatureName
 from tol3d.distributions import StatedDistribution
@@ -135,6 +137,16 @@ def _a_mapping(value: Any) -> Any:
     raise refused("", "inputs such as {travel 1: 10 mm}, an output, or {path: [..], steps: 40}", value)
 
 
+class _AnyOf:
+    """Mark of a union whose schema is `anyOf`: what a tag tells apart, two of its schemas may allow."""
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        found = dict(handler(schema))
+        if "oneOf" in found:
+            found["anyOf"] = found.pop("oneOf")
+        return found
+
+
 PoseSpec = Annotated[
     Annotated[PathSpec, Tag("pose:path")]
     | Annotated[TiltPoseSpec, Tag("pose:tilt")]
@@ -142,4 +154,5 @@ PoseSpec = Annotated[
     | Annotated[Mapping[Name, Amount], Tag("pose:inputs")],
     Discriminator(_form),
     BeforeValidator(_a_mapping),
+    _AnyOf(),
 ]
