@@ -20,6 +20,8 @@ from tol3d.assembly.model.statuses import DOES_NOT_CLOSE, OK, OTHER_BRANCH
 from tol3d.assembly.torsors.world import World
 from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.loop import ClosedLoop
+from tol3d.simulate import load, simulation_of
+from tol3d.study.blocks import block_trials
 from tol3d.study.draws import drawn
 from tol3d.system.trials import Trials
 
@@ -244,3 +246,13 @@ def test_lost_trials_keep_their_rows_and_are_counted(tmp_path: Path) -> None:
     assert (np.asarray(words)[~lost] == np.asarray(words)[~lost][0]).all()
     assert not np.isin(np.asarray(words)[lost], np.asarray(words)[~lost]).any()
     assert (values[~lost] > 0).all()
+
+
+def test_blocks_of_long_paths_are_done_in_a_minute(tmp_path: Path) -> None:
+    sizes = {}
+    for steps in (7, 99):
+        path = tmp_path / f"{steps}.yaml"
+        text = drive_text(error("worst", "over: sweep, take: max"), 10)
+        path.write_text(text.replace("steps: 7", f"steps: {steps}"), "utf-8")
+        sizes[steps] = block_trials(simulation_of(load(path)))
+    assert sizes == {7: 65_536, 99: 16_384}  # 3 million poses: 375 000 trials of 8 and 30 000 of 100, in powers of two

@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 LOOKED_AT: Final = 9
 """Poses of a path at which its nominal values are compared: the ends, and between them."""
 
+CLOSED_A_MINUTE: Final = 3_000_000
+"""Poses of a drive of two loops that one core closes in a minute, both methods and their statistics included."""
+
 
 @dataclass(frozen=True)
 class PosedSystem(AssemblySystem):
@@ -84,8 +87,13 @@ class PosedSystem(AssemblySystem):
         for kinds in self._kinds.values():
             for name, kind in kinds.items():
                 if name not in found or not kind.threads:
-                    found[name] = kind
+                    found[name] = self._timed(kind)
         return found
+
+    def _timed(self, kind: RoadKind) -> RoadKind:
+        if not kind.threads or not has_loops(self.assembly):
+            return kind
+        return replace(kind, contacts_per_minute=CLOSED_A_MINUTE, block_contacts=CLOSED_A_MINUTE)
 
     def _alone(self, measure: Measure) -> AssemblySystem:
         """The assembly in the first pose in which a measure is read."""

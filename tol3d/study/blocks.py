@@ -14,11 +14,20 @@ BLOCK_VALUES: Final = 2**22  # values of a curve, or of all draws, in one block:
 
 
 def block_trials(simulation: Simulation) -> int:
-    """Trials of a canonical block: fewer where curves keep many positions of each trial, or a trial has many draws."""
+    """Trials of a canonical block: fewer where curves keep many positions, a trial has many draws, or it takes long."""
     curves = (measure for measure in simulation.system.measures if measure.take == "curve")
     kept = max((measure.positions.in_a_trial for measure in curves), default=1)
     values = max(kept, component_count(simulation.system), 1)
-    return max(min(_most(simulation), 1 << int(math.log2(BLOCK_VALUES / values))), 1)
+    return max(min(_most(simulation), _tidy(BLOCK_VALUES / values), _tidy(_in_time(simulation))), 1)
+
+
+def _in_time(simulation: Simulation) -> float:
+    most = simulation.road.block_contacts
+    return BLOCK_TRIALS if most is None else most / max(contacts_of(simulation), 1)
+
+
+def _tidy(trials: float) -> int:
+    return 1 << max(int(math.log2(trials)), 0)
 
 
 def _most(simulation: Simulation) -> int:

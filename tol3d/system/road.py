@@ -82,6 +82,7 @@ class RoadKind:
         compiled: whether it loads the compiler of kernels anyway, so that draws and sums may use it too.
         witness: whether it can check another road.
         contacts_per_minute: of one core, draws and statistics included; only for the estimate before what takes long.
+        block_contacts: the most that a block of trials takes; None where even large blocks are soon done.
     """
 
     setup: str
@@ -89,3 +90,4 @@ class RoadKind:
     compiled: bool = False
     witness: bool = False
     contacts_per_minute: int = 40_000_000
+    block_contacts: int | None = None
