@@ -16,6 +16,7 @@ from tol3d.system.faults import UnfitError
 Given = Mapping[str, Array]
 """Components (components, trials) [mm, rad or K] of the contributors that a draw reads, by their names."""
 
+
 class Named(Protocol):
     """A contributor, as far as the order of drawing hangs on it."""
 
