@@ -18,12 +18,12 @@ def block_trials(simulation: Simulation) -> int:
     curves = (measure for measure in simulation.system.measures if measure.take == "curve")
     kept = max((measure.positions.in_a_trial for measure in curves), default=1)
     values = max(kept, component_count(simulation.system), 1)
-    return max(min(_most(simulation), _tidy(BLOCK_VALUES / values), _tidy(_in_time(simulation))), 1)
+    return max(min(_most(simulation), _tidy(BLOCK_VALUES / values), *_in_time(simulation)), 1)
 
 
-def _in_time(simulation: Simulation) -> float:
+def _in_time(simulation: Simulation) -> list[int]:
     most = simulation.road.block_contacts
-    return BLOCK_TRIALS if most is None else most / max(contacts_of(simulation), 1)
+    return [] if most is None else [_tidy(most / max(contacts_of(simulation), 1))]
 
 
 def _tidy(trials: float) -> int:
