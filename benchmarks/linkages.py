@@ -1,4 +1,4 @@
-"""How many closed loops a second: the kernel alone, a road that reads one pose, and a path of many poses.
+"""Closed loops a second: the kernel alone, a road that reads one pose, and a path of many poses.
 
     python benchmarks/linkages.py [--trials 20000] [--rounds 3] [--poses 2000] [--along 50] [--scene spherical_drive]
 
@@ -48,7 +48,7 @@ def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
 
 
 def kernel_calls(answering: Callable[[], object]) -> list[tuple[Any, ...]]:
-    """What the road hands the kernel as it answers."""
+    """Arguments that the road hands the kernel as it answers."""
     found = list[tuple[Any, ...]]()
 
     def noted(*arguments: Any) -> None:

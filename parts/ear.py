@@ -83,7 +83,7 @@ class Eared:
 
     @property
     def root(self) -> float:
-        """Where the sides of an ear begin, along its middle [mm]."""
+        """Start of the sides of an ear, along its middle [mm]."""
         return math.sqrt(max(0.0, (self.diameter / 2) ** 2 - (self.ear_width / 2) ** 2))
 
     def swept(self, ears: Sequence[Ear], rims: Sequence[str], words: str) -> NamedSolid:

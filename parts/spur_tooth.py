@@ -41,7 +41,7 @@ class Side:
 
     @property
     def radial(self) -> bool:
-        """Whether a radial line leads from the fillet to the involute."""
+        """True where a radial line leads from the fillet to the involute."""
         return bool(math.dist(self.top, self.start) > SHORTEST_EDGE)
 
 

@@ -44,7 +44,7 @@ def formula(value: Callable[[Array], Array], count: int) -> Response:
 
 
 def test_a_plane_is_met_exactly() -> None:
-    """Of normals a linear measure is normal: β is its distance, whatever the direction."""
+    """A linear measure of normals is normal: β is its distance, whatever the direction."""
     slopes = np.array([3.0, -1.0, 0.5])
     own = rare_event(formula(lambda x: x @ slopes, 3), "high", 4.0 * float(np.linalg.norm(slopes)))
     assert own.points[0].beta == pytest.approx(4.0, abs=1e-6)

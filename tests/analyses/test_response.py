@@ -1,4 +1,4 @@
-"""What analyses ask of scenes: the same values as their runs have, and the same laws from standard normals."""
+"""Analyses read scenes: the same values as their runs have, and the same laws from standard normals."""
 
 import math
 from pathlib import Path
@@ -106,7 +106,7 @@ def test_no_direction_of_a_plane_is_special() -> None:
 
 
 def test_gradients_are_the_slopes_of_theory() -> None:
-    """Of measures that are linear by the analytic road every slope is known; both roads' are those at small steps."""
+    """The analytic road knows every slope of a linear measure; both roads' are those at small steps."""
     own = response("door")
     for measure in own.measures:
         form = own.simulation.system.closed_form(measure)

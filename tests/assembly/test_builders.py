@@ -54,7 +54,7 @@ def test_the_page_has_a_row_with_every_field_of_every_builder() -> None:
 
 
 def shape_in(scene: str, part: str) -> Any:
-    """What a part of a scene is built of."""
+    """Builder of a part of a scene."""
     built: Any = load_scene(SCENES / f"{scene}.yaml").parts[part]
     return built.builder.shape
 

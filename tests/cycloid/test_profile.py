@@ -28,7 +28,7 @@ def complex_of(points: NDArray[np.float64]) -> NDArray[np.complex128]:
 
 
 def pitch_points(profile: DiscProfile, u: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Where normals cross the pitch circle [mm], for a disc that is not modified."""
+    """Points where normals cross the pitch circle [mm], for a disc that is not modified."""
     return np.asarray(profile.pitch_radius * np.exp(1j * profile.pins * np.asarray(u)))
 
 

@@ -60,7 +60,7 @@ class Feature:
         return found
 
     def displaced(self, by: Array) -> Array:
-        """Where it lies with its deviations (4 of an axis, else 3) [mm] (4, 4)."""
+        """Its place with its deviations (4 of an axis, else 3) [mm] (4, 4)."""
         found = self.frame.copy()
         if self.kind != "axis":
             found[:3, 3] += by
@@ -90,7 +90,7 @@ def sphere(at: Sequence[float] | Array, diameter: float) -> Feature:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Where it is placed (4, 4), and its features."""
+    """Its place (4, 4) and its features."""
 
     placed: Array
     features: Mapping[str, Feature]
@@ -317,7 +317,7 @@ def study_of(linkage: Linkage, folder: Path, deviating: Sequence[str] | None = N
 
 
 def random_deviations(linkage: Linkage, rng: np.random.Generator, size: float, angle: float) -> Trial:
-    """Of all features of joints [mm], and of all inputs [mm or rad]."""
+    """Deviations of all features of joints [mm] and of all inputs [mm or rad]."""
     deviations = {
         name: size * rng.normal(size=4 if linkage.feature(name).kind == "axis" else 3) for name in linkage.held
     }
