@@ -266,7 +266,7 @@ def _measure(scene: Scene, name: str, system: AssemblySystem, count: int) -> Pla
     spec = scene.measures[name]
     if not isinstance(spec, TimedSpec) or spec.over is None:
         return own
-    positions = Positions("swing", 1, max(count - 1, 1), angles=tuple(float(k) for k in range(count)))
+    positions = Positions("swing", 1, max(count - 1, 1), angles=tuple(float(k) for k in range(count)), in_turn=True)
     return replace(
         own, positions=positions, take=spec.take, adds_up=False, worse="high" if spec.take == "max" else own.worse
     )

@@ -21,7 +21,7 @@ from tol3d.system.road import ANALYTIC_ROAD, Answers, Road
 from tol3d.system.stated import stated
 from tol3d.system.statuses import OK
 from tol3d.system.system import System
-from tol3d.system.taken import ROWS_AT_ONCE, taken
+from tol3d.system.taken import taken, trials_at_once
 from tol3d.system.trials import Trials
 
 T = TypeVar("T")
@@ -98,7 +98,7 @@ class Evaluation:
     def asked(self, trials: Trials, measures: Sequence[Measure]) -> Iterator[Asked]:
         """All that the road says of trials, as many at once as their positions let it."""
         road = self.road or self.system.road(ANALYTIC_ROAD, None)
-        rows = max(1, ROWS_AT_ONCE // max(measure.positions.in_a_trial for measure in measures))
+        rows = trials_at_once(measures)
         for first in range(0, len(trials), rows):
             piece = trials.part(first, first + rows)
             answers = road.answers(piece, measures)

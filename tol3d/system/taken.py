@@ -1,11 +1,24 @@
 """What a measure takes of its values at several positions."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
+from tol3d.system.positions import Positions
 
 ROWS_AT_ONCE = 65_536  # trials x positions; keeps poses and gaps of a turn's curves in some tens of megabytes
+VALUES_AT_ONCE = 2**22  # the same where positions are read in turn and only their values are held: 32 MB
+
+
+def trials_at_once(measures: Iterable[Measure]) -> int:
+    """How many trials a road is asked at once, as the positions of the measures let it."""
+    return max(1, min(_rows(own.positions) // own.positions.in_a_trial for own in measures))
+
+
+def _rows(positions: Positions) -> int:
+    return VALUES_AT_ONCE if positions.in_turn else ROWS_AT_ONCE
 
 
 def taken(measure: Measure, values: Array) -> Array:
