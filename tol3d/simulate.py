@@ -151,6 +151,30 @@ def run_scene(
         return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
 
 
+def run_simulation(
+    scene: Scene,
+    simulation: Simulation,
+    out: Path | str,
+    *,
+    execution: Execution = ONE_WORKER,
+    force: bool = False,
+    watch: Watch = UNWATCHED,
+) -> Run:
+    """Run a scene whose meaning is known: what `simulation_of` made of it, for a large one takes seconds to make.
+
+    Args:
+        scene: a scene.
+        simulation: what it means, overrides included.
+        out, execution, force, watch: see run_scene.
+
+    Raises:
+        RunError, InputError, MechanismError: see run_scene.
+    """
+    clock = Clock()
+    with faults_of(simulation.mechanism):
+        return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
+
+
 def _run(order: "_Order", watch: Watch, *, force: bool) -> Run:
     if whole := order.whole_run():
         return whole
@@ -326,6 +350,7 @@ __all__ = [
     "replay",
     "replayed",
     "run_scene",
+    "run_simulation",
     "simulation_again",
     "simulation_of",
     "workers_for",

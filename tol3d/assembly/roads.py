@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing.plan import PlacingPlan, planned
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import road as torsors
 from tol3d.system.measure import Measure
@@ -41,10 +43,15 @@ class PlacingRoad:
     solids: SolidReader | None = None
     chord_error: float = 0.0
 
+    @cached_property
+    def plan(self) -> PlacingPlan:
+        """What the nominal geometry decides; an assembly in many poses has one in each."""
+        return planned(self.assembly, self.solids)
+
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Road."""
         names = [measure.name for measure in measures]
-        found, decided = placing.answers(self.assembly, trials.deviations, names, self.solids)
+        found, decided = placing.planned_answers(self.plan, trials.deviations, names)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
             details=decided,

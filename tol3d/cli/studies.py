@@ -86,7 +86,7 @@ def run(
     from tol3d.report.table import Detail, Elapsed, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
     from tol3d.runs.occupant import numbered
-    from tol3d.simulate import Overrides, folder_for, load, run_scene, simulation_of, workers_for
+    from tol3d.simulate import Overrides, folder_for, load, run_simulation, simulation_of, workers_for
     from tol3d.system.faults import faults_of
 
     path = scene_path(scene)
@@ -109,7 +109,7 @@ def run(
         err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
     loading = seconds()
     with _watched(simulation, folder, draw) as watch:
-        finished = run_scene(loaded, overrides=overrides, out=folder, execution=execution, force=force, watch=watch)
+        finished = run_simulation(loaded, simulation, folder, execution=execution, force=force, watch=watch)
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
     accepted, found = ACCEPTED_PPM if accept is None else accept, finished.found
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
