@@ -57,6 +57,10 @@ class Manifest:
             raise RunError(f"{path}: expected lines of a SHA-256 and the path of a file in the run; the run is damaged")
         return cls(folder, sums)
 
+    def adding(self, name: str) -> "Manifest":
+        """The list with one more file, or with one as it is now."""
+        return Manifest(self.folder, dict(sorted({**self.sums, name: _sum_of(self.folder, name)}.items())))
+
     def write(self) -> None:
         """Put the list into the folder, all or nothing."""
         write_whole(self.folder / MANIFEST, "".join(f"{s}  {name}\n" for name, s in self.sums.items()).encode())

@@ -1,0 +1,102 @@
+"""What an analysis is asked of: a scene, or a finished run of one, in which its section is kept."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Final
+
+from tol3d.analyses.response import Response, response_of
+from tol3d.errors import RunError, unwritable
+from tol3d.import_path import named
+from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.run import SUMMARY, Run, open_run
+from tol3d.runs.summary.text import parsed
+from tol3d.runs.summary.values import Section, as_json
+from tol3d.scene.bundled import scene_path
+from tol3d.simulate import load, simulation_again, simulation_of
+from tol3d.study.simulation import Simulation
+
+FOLDER: Final = "analyses"
+SECTIONS: Final[Mapping[str, str]] = {}
+"""The class of each section by its name, as an import path."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A scene's simulation, and the run of it where there is one.
+
+    Args:
+        simulation: what builds are made of.
+        run: where sections are kept; None of a scene.
+    """
+
+    simulation: Simulation
+    run: Run | None = None
+
+    @cached_property
+    def response(self) -> Response:
+        """By the engine of its study."""
+        return response_of(self.simulation)
+
+    def keep(self, name: str, found: Section) -> Path | None:
+        """Keep a section in the run; its file, None of a scene.
+
+        Raises:
+            RunError, InputError: the run was changed since it was made, or cannot be written.
+        """
+        return None if self.run is None else keep(self.run, name, found)
+
+
+def subject_of(path: str, *, trust_parts: bool = False, run_builders: bool = False) -> Subject:
+    """The subject of a path: a run's folder, a scene's file, or the name of a bundled scene.
+
+    Raises:
+        SceneError, RunError: it is none of them, or damaged.
+    """
+    folder = Path(path)
+    if (folder / SUMMARY).exists() or folder.is_dir():
+        run = open_run(folder)
+        return Subject(simulation_again(run), run)
+    return Subject(simulation_of(load(scene_path(path), trust_parts=trust_parts, run_builders=run_builders)))
+
+
+def keep(run: Run, name: str, found: Section) -> Path:
+    """Keep a section in a run, in place of an older one of that name; its file."""
+    file = f"{FOLDER}/{name}.json"
+    path, manifest = run.path / file, run.manifest
+    if file not in manifest.sums and path.exists():
+        raise RunError(f"{path}: expected no such file, for it is none of the run's own; move it elsewhere")
+    try:
+        path.parent.mkdir(exist_ok=True)
+        write_whole(path, text_of_section(found).encode())
+        manifest.adding(file).write()
+    except OSError as error:
+        raise unwritable(path, error, "free it, or ask of a copy of the run") from None
+    return path
+
+
+def sections_of(run: Run) -> Mapping[str, Section]:
+    """The sections that a run keeps, by their names.
+
+    Raises:
+        RunError: one was changed since it was made.
+    """
+    listed = [name for name in SECTIONS if f"{FOLDER}/{name}.json" in run.manifest.sums]
+    return {name: _section(run, name) for name in listed}
+
+
+def _section(run: Run, name: str) -> Section:
+    file = f"{FOLDER}/{name}.json"
+    kind: type[Section] = named(SECTIONS[name])
+    content = parsed(run.manifest.content(file), run.path / file)
+    try:
+        return kind.model_validate(content)
+    except ValueError:
+        raise RunError(f"{run.path / file}: it is damaged, or of another tol3d; ask for {name} again") from None
+
+
+def text_of_section(found: Section) -> str:
+    """A section as JSON."""
+    return json.dumps(as_json(found), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
