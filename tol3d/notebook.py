@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from tol3d import report, simulate
-from tol3d.analyses import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
-from tol3d.analyses.shim import Rounding
-from tol3d.analyses.shim_choice import Minimum
-from tol3d.analyses.shim_table import shim_report
+from tol3d.adjustment import ShimPlan, ShimQuestion, length_of, shim_plan, stock_of
+from tol3d.adjustment.shim import Rounding
+from tol3d.adjustment.shim_choice import Minimum
+from tol3d.adjustment.shim_table import shim_report
 from tol3d.errors import InputError, unwritable
 from tol3d.gearing.model import Model
 from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of

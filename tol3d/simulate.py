@@ -67,10 +67,10 @@ Linkages bring one move into an assembly, `close_loop`, which places several bod
     first order  the second road            linkage/first_order.py      Displaced
     poses, paths an assembly in several     assembly/posed.py           PosedSystem
 
-`analyses/` asks what takes several studies (shims, compensation), of any scene by `analyses/response.py`; `report/` and
-`cli/` show what is there. The analytic road gets the same deviations and the same positions as the geometric one and
-never sees a mesh, a pose or an engine. A trial is a pure function of (system, seed, trial index): `replay` makes any of
-them again.
+`analyses/` asks any scene what an engineer decides from, by `analyses/response.py` alone; `adjustment/` finds shims and
+corrections of gears by several studies; `report/` and `cli/` show what is there. The analytic road gets the same
+deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A trial is a pure
+function of (system, seed, trial index): `replay` makes any of them again.
 """
 
 import platform

@@ -24,7 +24,7 @@ DOORS = {
     "matplotlib": (
         "tol3d/report/",
         "tol3d/gearing/presenting/",
-        "tol3d/analyses/compensation_picture.py",
+        "tol3d/adjustment/compensation_picture.py",
         "tol3d/records/identified_picture.py",
     ),
     "PIL": ("tol3d/report/animation.py",),

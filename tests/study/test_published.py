@@ -19,8 +19,8 @@ from pydantic import ValidationError
 from schemas import validate
 
 from tol3d import Run, load_scene
-from tol3d.analyses.compensation import CompensationQuestion, compensation
-from tol3d.analyses.compensation_table import highs_table
+from tol3d.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.adjustment.compensation_table import highs_table
 from tol3d.report import published as shown
 from tol3d.report.distribution import draw_distribution
 from tol3d.report.measure_table import curve_table

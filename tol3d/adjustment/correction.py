@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from tol3d.analyses.robots import Robots
+from tol3d.adjustment.robots import Robots
 from tol3d.gearing.engines.gaps import STATUSES
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
 from tol3d.gearing.model.measure import AnyStage, ParallelStage

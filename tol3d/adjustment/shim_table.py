@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from tol3d.analyses.shim import ShimPlan, closing_of
-from tol3d.analyses.shim_choice import MINIMUM_WORDS, UM, Shim, Shimmed
-from tol3d.analyses.stock import thickness_text
+from tol3d.adjustment.shim import ShimPlan, closing_of
+from tol3d.adjustment.shim_choice import MINIMUM_WORDS, UM, Shim, Shimmed
+from tol3d.adjustment.stock import thickness_text
 from tol3d.report.measure_table import CONVERTED_ROWS
 from tol3d.report.number import NOTHING, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page, warning

@@ -7,7 +7,7 @@ from itertools import chain, count
 from math import sin
 from typing import Final, Literal, get_args
 
-from tol3d.analyses.stock import NO_SHIM, tidy
+from tol3d.adjustment.stock import NO_SHIM, tidy
 from tol3d.distributions import DistributionSpec
 from tol3d.distributions.base import LOW_PROBABILITY
 from tol3d.distributions.constant import ConstantSpec

@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.analyses.compensated_swing import Swing
-from tol3d.analyses.compensation import Compensation, Unit
-from tol3d.analyses.correction import CLOSED_FORM, Correction
-from tol3d.analyses.robots import STATES, State
+from tol3d.adjustment.compensated_swing import Swing
+from tol3d.adjustment.compensation import Compensation, Unit
+from tol3d.adjustment.correction import CLOSED_FORM, Correction
+from tol3d.adjustment.robots import STATES, State
 from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY
 from tol3d.gears import LEFT, Flank
 from tol3d.numerics.arrays import Array

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tol3d.analyses.compensated_swing import Swing
-from tol3d.analyses.compensation import Compensation, Unit
-from tol3d.analyses.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS, Spread
-from tol3d.analyses.robots import STATES, State
+from tol3d.adjustment.compensated_swing import Swing
+from tol3d.adjustment.compensation import Compensation, Unit
+from tol3d.adjustment.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS, Spread
+from tol3d.adjustment.robots import STATES, State
 from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.canvas import (

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.analyses.robots import Robots, State
+from tol3d.adjustment.robots import Robots, State
 from tol3d.gearing.meshing.backlash import moved
 from tol3d.gearing.model import LostMotion, Measure, Model, Train
 from tol3d.gearing.model.train_measures import load_changes, over_swing

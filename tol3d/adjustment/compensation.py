@@ -14,9 +14,9 @@ from typing import Final, Literal
 
 import numpy as np
 
-from tol3d.analyses.compensated_swing import Swing, swing_of, swings_of, tip_error
-from tol3d.analyses.correction import Correction, at_shaft, corrections_of
-from tol3d.analyses.robots import Robots, State, left_of_the_mean, simulated_robots
+from tol3d.adjustment.compensated_swing import Swing, swing_of, swings_of, tip_error
+from tol3d.adjustment.correction import Correction, at_shaft, corrections_of
+from tol3d.adjustment.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
 from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
 from tol3d.gearing.model.contributor import Contributor

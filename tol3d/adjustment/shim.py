@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final, Literal
 
-from tol3d.analyses.shim_choice import (
+from tol3d.adjustment.shim_choice import (
     MINIMUM_WORDS,
     UM,
     Minimum,
@@ -23,7 +23,7 @@ from tol3d.analyses.shim_choice import (
     shims_of,
     with_shims,
 )
-from tol3d.analyses.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, thickness_text
+from tol3d.adjustment.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, thickness_text
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
