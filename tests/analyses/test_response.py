@@ -21,36 +21,39 @@ QUICK = ("spur_pair", "hole_and_slot", "gearbox_in_housing")
 TRIALS = 200
 
 
-def response(name: str, trials: int = TRIALS) -> Response:
-    return response_of(simulation_of(load(name), Overrides(trials=trials)))
+def response(name: str, trials: int = TRIALS, *, analytic: bool = False) -> Response:
+    return response_of(simulation_of(load(name), Overrides(trials=trials)), analytic=analytic)
 
 
-def _same_as_a_run(name: str, folder: Path) -> None:
-    run = run_scene(name, overrides=Overrides(trials=TRIALS, witness=0), out=folder / name)
-    columns, own = run.columns(), response(name)
-    found = own.values(*own.drawn(TRIALS))
-    for k, measure in enumerate(own.names):
-        codes = np.array(found.texts)[found.codes[:, k]]
-        assert codes.tolist() == np.asarray(columns[f"status:{measure}"]).tolist()
-        kept = np.asarray(columns[f"geometric:{measure}"], dtype=np.float64)
-        assert np.array_equal(
-            found.values[:, k], np.where(np.isfinite(found.values[:, k]), kept, np.nan), equal_nan=True
-        )
-        assert np.isfinite(found.values[found.seated[:, k], k]).all()
-    assert own.evaluations == TRIALS
+def _same_as_a_run(name: str, folder: Path, trials: int) -> None:
+    """Every measure of both roads, and both ends of every curve."""
+    run = run_scene(name, overrides=Overrides(trials=trials, witness=0), out=folder / name)
+    columns = run.columns()
+    for road in run.found.roads:
+        own = response(name, trials, analytic=road == "analytic")
+        found = own.values(*own.drawn(trials))
+        for k, measure in enumerate(own.names):
+            curve, _, end = measure.rpartition(", ") if measure in own.curves else (measure, "", "")
+            kept = np.asarray(columns[f"{road}:{curve}"], dtype=np.float64)
+            kept = {"": kept, "lowest": kept.min(axis=-1), "highest": kept.max(axis=-1)}[end]
+            values = found.values[:, k]
+            assert np.array_equal(values, np.where(np.isfinite(values), kept, np.nan), equal_nan=True)
+            assert np.isfinite(values[found.seated[:, k]]).all()
+            if road == "geometric":
+                codes = np.array(found.texts)[found.codes[:, k]]
+                assert codes.tolist() == np.asarray(columns[f"status:{curve}"]).tolist()
+        assert own.evaluations == trials
 
 
 @pytest.mark.parametrize("name", QUICK)
 def test_values_of_kept_trials_are_theirs_to_the_bit(name: str, tmp_path: Path) -> None:
-    _same_as_a_run(name, tmp_path)
+    _same_as_a_run(name, tmp_path, TRIALS)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set(bundled_scenes()) - set(QUICK)))
 def test_values_of_kept_trials_of_every_scene_are_theirs_to_the_bit(name: str, tmp_path: Path) -> None:
-    if all(own.take == "curve" for own in simulation_of(load(name)).system.measures):
-        pytest.skip("it has curves alone")
-    _same_as_a_run(name, tmp_path)
+    _same_as_a_run(name, tmp_path, 5 * TRIALS)
 
 
 def _drawn(draw: Draw, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -83,9 +86,7 @@ def test_normals_draw_the_same_law_as_uniforms(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(bundled_scenes()))
 def test_normals_draw_the_laws_of_every_scene(name: str) -> None:
-    own = response(name) if any(m.take != "curve" for m in simulation_of(load(name)).system.measures) else None
-    if own is None:
-        pytest.skip("it has curves alone")
+    own = response(name)
     assert own.rough == ()
     by_normals = own.deviations(np.random.default_rng(6).standard_normal((20_000, own.dimension)))
     by_study, _ = own.drawn(20_000, seed=8)

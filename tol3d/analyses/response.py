@@ -5,9 +5,9 @@ of the contributors, positions those of the system's streams.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, is_dataclass, replace
 from functools import cached_property
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
+from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
 from tol3d.study.draws import sampler_of, streams_of
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.simulation import Simulation
@@ -71,9 +72,10 @@ class Response:
 
     Args:
         simulation: of the scene.
-        measures: which are read, none of them a curve.
+        measures: which are read, one number a trial each; of a curve its lowest and its highest value.
         road: that builds; None for the analytic one.
         draws: by contributor, how it is drawn: the scene's, or other tolerances.
+        curves: by the name of such an end of a curve, the curve.
         count: of evaluations.
     """
 
@@ -81,6 +83,7 @@ class Response:
     measures: tuple[Measure, ...]
     road: Road | None
     draws: Mapping[str, Draw]
+    curves: Mapping[str, Measure] = field(default_factory=dict)
     count: Count = field(default_factory=Count)
 
     @property
@@ -160,12 +163,14 @@ class Response:
         values = np.empty((len(trials), len(self.measures)))
         codes = np.zeros(values.shape, dtype=np.int8)
         first = 0
-        for asked in evaluation.asked(trials, self.measures):
+        sources = [self.curves.get(own.name, own) for own in self.measures]
+        for asked in evaluation.asked(trials, [*{own.name: own for own in sources}.values()]):
             rows = slice(first, first + len(asked.trials))
             first = rows.stop
-            for k, own in enumerate(self.measures):
-                values[rows, k] = asked.values[own.name]
-                if self.road is not None and (status := asked.answers.status.get(own.name)) is not None:
+            for k, (own, source) in enumerate(zip(self.measures, sources, strict=True)):
+                found = asked.values[source.name]
+                values[rows, k] = found if source is own else ENDS[_end_of(own)](found)
+                if self.road is not None and (status := asked.answers.status.get(source.name)) is not None:
                     codes[rows, k] = status
         kept = np.array([own.keeps_overlap for own in self.measures])
         values[(codes != OK) & ~kept] = np.nan
@@ -287,14 +292,27 @@ class _Redrawn:
 
 
 def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
-    """The response of a simulation by its engine's road, or by the analytic one; of its measures that are no curves.
-
-    Raises:
-        InputError: all of its measures are curves.
-    """
-    measures = tuple(own for own in simulation.system.measures if own.take != "curve")
-    if not measures:
-        raise InputError("expected a measure of one number a trial, got curves alone; read one at a position")
+    """The response of a simulation by its engine's road, or by the analytic one."""
     exact = not analytic and simulation.study.engine != ANALYTIC_ROAD
     road = road_of(simulation, materials_of(simulation)) if exact else None
-    return Response(simulation, measures, road, {own.name: own.draw for own in simulation.system.contributors})
+    measures, curves = list[Measure](), dict[str, Measure]()
+    for own in simulation.system.measures:
+        ends = _ends(own) if own.take == "curve" else (own,)
+        measures += ends
+        curves |= {end.name: own for end in ends if end is not own}
+    return Response(
+        simulation, tuple(measures), road, {own.name: own.draw for own in simulation.system.contributors}, curves
+    )
+
+
+def _ends(curve: Measure) -> tuple[Measure, ...]:
+    """The lowest and the highest value of a curve, as measures, with the limits that judge them."""
+    if not is_dataclass(curve) or isinstance(curve, type):
+        raise InputError(f"{curve.name}: expected a measure of one number a trial, got a curve; read it at a position")
+    low: Any = replace(curve, name=f"{curve.name}, {LOWEST}", take="min", upper_limit=None)
+    high: Any = replace(curve, name=f"{curve.name}, {HIGHEST}", take="max", lower_limit=None)
+    return low, high
+
+
+def _end_of(measure: Measure) -> str:
+    return LOWEST if measure.take == "min" else HIGHEST
