@@ -18,9 +18,11 @@ from tol3d.scene.nearest import hint
 from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
 from tol3d.study.draws import sampler_of, streams_of
 from tol3d.study.evaluation import Evaluation
+from tol3d.study.high_low_mean import ranges
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
 from tol3d.system.contributor import Contributor
+from tol3d.system.copula import Copula
 from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
@@ -115,13 +117,23 @@ class Response:
         """The same of some measures.
 
         Raises:
-            InputError: one is not among them.
+            InputError: one is not among them, or is a curve.
         """
         known = {own.name: own for own in self.measures}
+        curves = {own.name for own in self.simulation.system.measures if own.take == "curve"}
         for name in names:
+            if name in curves:
+                raise InputError(
+                    f"expected a measure of one number a trial, got {name!r}, a curve; read one at a position"
+                )
             if name not in known:
                 raise InputError(f"expected a measure of {', '.join(known)}, got {name!r}{hint(name, known)}")
         return replace(self, measures=tuple(known[name] for name in names))
+
+    @property
+    def copula(self) -> Copula:
+        """Which contributors are correlated; of the normals of each block the first mixes into the others."""
+        return self.simulation.copula
 
     # what is built ----------------------------------------------------------------------------------
 
@@ -210,6 +222,28 @@ class Response:
         names = {own.name for measure in self.measures for own in self.simulation.system.acting(measure)}
         return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
 
+    def ranges(self, positions: Mapping[str, Array] | None = None) -> Array:
+        """How far each contributor by itself moves each measure, over all of its tolerance (measures, contributors).
+
+        The others are at their means; nan where a build does not seat. See study/high_low_mean.py.
+
+        Args:
+            positions: one of each stream (1,); at rest if not given.
+        """
+
+        def values(rows: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
+            places = (
+                None if positions is None else {k: np.repeat(own, len(rows), axis=0) for k, own in positions.items()}
+            )
+            found = replace(self, measures=tuple(measures)).values(rows, places)
+            numbers = np.where(found.seated, found.values, np.nan).T
+            return {own.name: each for own, each in zip(measures, numbers, strict=True)}
+
+        redrawn = [_Redrawn(own, self.draws[own.name]) for own in self.contributors]
+        found = ranges(redrawn, self.slices, self.mean[None], self.measures, values)
+        unknown = np.full(len(redrawn), np.nan)
+        return np.array([found.get(own.name, unknown) for own in self.measures])
+
     # what is drawn ----------------------------------------------------------------------------------
 
     @cached_property
@@ -233,8 +267,16 @@ class Response:
         return tuple(own.name for own in self.contributors if groups_of(self.draws[own.name]) is None)
 
     def deviations(self, normals: Array) -> Array:
-        """Deviations (n, components) [mm, rad, K] of standard normals (n, dimension), by the laws of the draws."""
+        """Deviations (n, components) [mm, rad, K] of standard normals (n, dimension), by the laws of the draws.
+
+        The normals are independent; those of correlated contributors are mixed here.
+        """
         normals = np.atleast_2d(np.asarray(normals, dtype=np.float64))
+        for block in self.copula.blocks:
+            places = [self.normals[name].start for name in block.names]
+            mixed = block.mixed([normals[:, place] for place in places])
+            normals = normals.copy()
+            normals[:, places] = np.array(mixed).T
         found = np.empty((self.components, len(normals)))
         for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
             uniforms = uniforms_of(own.draw, list(normals[:, self.normals[own.name]].T))
@@ -250,10 +292,14 @@ class Response:
         positions = simulation.system.positions(
             {key: sampler.uniforms(streams[key], 0, count) for key in simulation.system.streams}
         )
+        mixed = self.copula.uniforms(
+            {name: sampler.uniforms(streams[name, "0"], 0, count) for name in self.copula.names}
+        )
         found = np.empty((self.components, count))
         for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
             keys = [(own.name, str(k)) for k in range(own.draw.uniforms)]
             uniforms = [sampler.uniforms(streams[key], 0, count) for key in keys]
+            uniforms = [mixed[own.name]] if own.name in mixed else uniforms
             found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
         return np.ascontiguousarray(found.T), positions
 

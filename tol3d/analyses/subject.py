@@ -19,7 +19,9 @@ from tol3d.simulate import load, simulation_again, simulation_of
 from tol3d.study.simulation import Simulation
 
 FOLDER: Final = "analyses"
-SECTIONS: Final[Mapping[str, str]] = {}
+SECTIONS: Final[Mapping[str, str]] = {
+    "effects": "tol3d.analyses.effects:Effects",
+}
 """The class of each section by its name, as an import path."""
 
 

@@ -60,8 +60,8 @@ def heat_map_figure(summary: RunSummary) -> Figure:
     if rest:
         head.append(f"the {len(shown)} largest of {len(acting)} contributors; all in contributors.csv")
     if not rest:
-        return _figure(shares, shown, names, head)
-    return _figure(np.vstack([shares, others]), [*shown, f"{len(rest)} others"], names, head, coloured=len(shown))
+        return matrix_figure(shares, shown, names, head)
+    return matrix_figure(np.vstack([shares, others]), [*shown, f"{len(rest)} others"], names, head, coloured=len(shown))
 
 
 def _percents(measure: MeasureSummary) -> Mapping[str, float]:
@@ -76,7 +76,7 @@ def _roads(measures: Mapping[str, MeasureSummary]) -> str:
     return "3D simulation" if roads == {"geometric"} else "analytic"
 
 
-def _figure(
+def matrix_figure(
     shares: Array, rows: Sequence[str], columns: Sequence[str], head: Sequence[str], coloured: int | None = None
 ) -> Figure:
     """Shares (rows, columns) as they are named, the first `coloured` rows with colours, all by default."""

@@ -2,7 +2,8 @@
 
 A system has streams of uniforms for positions, and one for each uniform that a contributor draws; the study's sampler
 draws them. A trial depends on (system, seed, trial index) and on nothing else: not on blocks or workers. Contributors
-that read others are drawn after them, from streams of their own.
+that read others are drawn after them, from streams of their own. Uniforms of correlated contributors are mixed, each
+trial's by themselves.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -56,9 +57,9 @@ def drawn_ones(simulation: Simulation, trials: Sequence[int]) -> Trials:
 
 def deviations(simulation: Simulation, first: int, count: int) -> Array:
     """Deviations of trials first ... first + count - 1: (count, components) [mm, rad or K]."""
-    system, streams = simulation.system, streams_of(simulation.system)
+    streams = streams_of(simulation.system)
     sampler = sampler_of(simulation, len(streams))
-    return _deviations(system, lambda key: sampler.uniforms(streams[key], first, count), count)
+    return _deviations(simulation, lambda key: sampler.uniforms(streams[key], first, count), count)
 
 
 def _trials(simulation: Simulation, draw: Callable[[Sampler, Stream], Array], count: int) -> Trials:
@@ -66,15 +67,20 @@ def _trials(simulation: Simulation, draw: Callable[[Sampler, Stream], Array], co
     streams = streams_of(system)
     sampler = sampler_of(simulation, len(streams))
     positions = system.positions({key: draw(sampler, streams[key]) for key in system.streams})
-    return Trials(_deviations(system, lambda key: draw(sampler, streams[key]), count), positions)
+    return Trials(_deviations(simulation, lambda key: draw(sampler, streams[key]), count), positions)
 
 
-def _deviations(system: System, uniforms: Callable[[StreamKey], Array], count: int) -> Array:
+def _deviations(simulation: Simulation, uniforms: Callable[[StreamKey], Array], count: int) -> Array:
+    system, copula = simulation.system, simulation.copula
+    mixed = copula.uniforms({name: uniforms((name, "0")) for name in copula.names})
     columns = np.empty((component_count(system), count))
     slices = component_slices(system)
     for contributor in in_draw_order(system.contributors):
         draw, own = contributor.draw, slices[contributor.name]
-        draws = [uniforms((contributor.name, str(k))) for k in range(draw.uniforms)]
+        if (name := contributor.name) in mixed:
+            draws = [mixed[name]]
+        else:
+            draws = [uniforms((name, str(k))) for k in range(draw.uniforms)]
         if isinstance(draw, Dependent):
             found = draw.deviations_given({name: columns[slices[name]] for name in draw.reads}, *draws)
         else:

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor
 from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
@@ -149,9 +148,9 @@ def of_alike(
     return found
 
 
-def batches(contributors: Sequence[Contributor], rows: Sequence[int], width: int) -> Iterator[Sequence[Contributor]]:
+def batches(contributors: Sequence[T], rows: Sequence[int], width: int) -> Iterator[Sequence[T]]:
     """Contributors whose builds are made together, by the rows that each takes of so many components."""
-    batch: list[Contributor] = []
+    batch: list[T] = []
     size = 0
     for own, count in zip(contributors, rows, strict=True):
         if batch and (size + count) * width > BATCH:

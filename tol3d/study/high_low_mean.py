@@ -19,7 +19,7 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.study.evaluation import Values, batches, measures_alike, of_alike
-from tol3d.system.contributor import Contributor
+from tol3d.system.dependent import Named
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import System
@@ -51,7 +51,8 @@ def to_first_order(system: System, measures: Sequence[Measure]) -> int:
     """How many contributors move most measures by what they do to first order, for not all of their ends are built."""
     found = 0
     for turning, alike in measures_alike(system, measures):
-        asking = sum(own.plain_ends is None for own in _alone(system, alike, turning))
+        mean = mean_deviations(system, alike[0].positions)
+        asking = sum(own.plain_ends is None for own in _alone(system, turning, mean))
         found = max(found, 0 if _all_are_built(asking, len(alike)) else asking)
     return found
 
@@ -60,8 +61,8 @@ def _all_are_built(asking: int, measures: int) -> bool:
     return asking <= MOST_EXACT or 2 * asking * measures <= MOST_ENDS
 
 
-def _alone(system: System, measures: Sequence[Measure], turning: Mapping[str, bool]) -> list["_Alone"]:
-    mean, slices = mean_deviations(system, measures[0].positions), component_slices(system)
+def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_Alone"]:
+    slices = component_slices(system)
     return [_Alone(own, slices[own.name], turning[own.name], mean) for own in system.contributors]
 
 
@@ -70,11 +71,37 @@ def _percents_of(
 ) -> dict[str, Percents]:
     """Shares of measures that share the mean build and what turns at random."""
     mean = mean_deviations(system, measures[0].positions)
+    found = _ranges_of(_alone(system, turning, mean), mean, measures, values)
+    names = [contributor.name for contributor in system.contributors]
+    return {own.name: _percents(names, found.get(own.name)) for own in measures}
+
+
+def ranges(
+    contributors: Sequence[Named], slices: Mapping[str, slice], mean: Array, measures: Sequence[Measure], values: Values
+) -> Mapping[str, Array]:
+    """How far each contributor by itself moves measures: largest less smallest of both ends and the mean build.
+
+    Args:
+        contributors: of some system; none of their directions turns.
+        slices: their components.
+        mean: deviations of the mean build (1, components).
+        measures: one number of each.
+        values: see `high_low_mean_percents`.
+
+    Returns:
+        By measure (contributors,) in its unit, nan where a build does not seat; none where the mean build does not.
+    """
+    alone = [_Alone(own, slices[own.name], turning=False, mean=mean) for own in contributors]
+    return _ranges_of(alone, mean, measures, values)
+
+
+def _ranges_of(
+    alone: Sequence["_Alone"], mean: Array, measures: Sequence[Measure], values: Values
+) -> Mapping[str, Array]:
+    """The range of each contributor (contributors,) by the measures whose mean build seats."""
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
-    names = [contributor.name for contributor in system.contributors]
-    found = _Ranges({name: place for place, name in enumerate(names)}, seated, middle, values)
-    alone = _alone(system, measures, turning)
+    found = _Ranges({own.contributor.name: place for place, own in enumerate(alone)}, seated, middle, values)
     asking = [own for own in alone if own.plain_ends is None]
     if seated:
         found.build([(own, ends) for own in alone if (ends := own.plain_ends) is not None], mean)
@@ -85,7 +112,7 @@ def _percents_of(
         found.ask([by_name[own.name] for own in contributors], all_exact=all_exact)
     if not all_exact:
         found.build_the_largest(asking)
-    return {own.name: _percents(names, found.by_measure.get(own.name)) for own in measures}
+    return found.by_measure
 
 
 @dataclass(frozen=True)
@@ -179,7 +206,7 @@ class _Alone:
         read_at: by measure, components (rows, components) and values (rows,) that were read of it last.
     """
 
-    contributor: Contributor
+    contributor: Named
     columns: slice
     turning: bool
     mean: Array

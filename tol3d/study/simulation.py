@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from tol3d.scene import Scene
 from tol3d.study.study import Study, Until
+from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.faults import Origin
 from tol3d.system.road import ANALYTIC_ROAD, RoadKind
 from tol3d.system.system import Published, System
@@ -22,6 +23,7 @@ class Simulation:
         presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
         mechanism: the one that understood the scene; None of a system made without.
         implausible: what its vocabularies warn of in the scene.
+        copula: which contributors are correlated.
     """
 
     system: System
@@ -31,6 +33,7 @@ class Simulation:
     presenter: str = ""
     mechanism: Origin | None = None
     implausible: tuple[str, ...] = ()
+    copula: Copula = INDEPENDENT
 
     @property
     def road(self) -> RoadKind:

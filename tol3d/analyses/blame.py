@@ -1,0 +1,120 @@
+"""Which contributors are to blame for failures: the share of each in a measure's ppm.
+
+Where failures are frequent among the builds of a simulation these are Sobol' indices of failing itself, a number that
+is 1 where a build is beyond a limit or does not seat, and 0 elsewhere. Where they are rare a simulation says nothing:
+then they are the squared direction cosines of the design points, the most likely builds that fail, averaged over
+positions and limits by how likely each of them is. To first order these are the shares in the reliability index. Where
+contributors are correlated both are Shapley effects: of failing, or of the limit made linear at the design point.
+
+Sources: Perrin and Defaux, Efficient evaluation of reliability-oriented sensitivity indices, J. Sci. Comput. 79
+(2019); Madsen, Krenk, Lind, Methods of Structural Safety (1986), on direction cosines.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.special import ndtr
+
+from tol3d.analyses.pick_freeze import PickFreeze
+from tol3d.analyses.rare import DesignPoint, LimitState, Side, design_points
+from tol3d.analyses.response import Response
+from tol3d.analyses.shapley import ShapleyEffects, linear_shapley
+from tol3d.numerics.arrays import Array
+
+BlameBy = Literal["simulation", "design points"]
+Valued = tuple[float, float]
+"""A share, and its standard error."""
+
+FREQUENT: Final = 200
+"""Builds that fail, of those of all pairs, from which on a simulation says who is to blame."""
+PLACES: Final = 16
+STARTS, STARTS_ALONE = 2, 8
+
+
+@dataclass(frozen=True)
+class Blame:
+    """Shares in the failures of a measure.
+
+    Args:
+        by: how they were found; None where there is nothing to blame for.
+        words: why, or what was left out.
+        first: by contributor, alone.
+        total: likewise, with what it does together with others; of a simulation.
+    """
+
+    by: BlameBy | None
+    words: str
+    first: Mapping[str, Valued] = field(default_factory=dict)
+    total: Mapping[str, Valued] = field(default_factory=dict)
+
+
+def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | None, k: int, seed: int) -> Blame:
+    """The blame for failures of a measure.
+
+    Args:
+        response: of that measure alone.
+        sampled: what pairs of builds said.
+        shapley: likewise, where it was asked for.
+        k: of the measure there.
+        seed: of starts towards design points.
+    """
+    failing, count = int(sampled.failing[:, k].sum()), len(sampled.failing)
+    measure = response.measures[0]
+    if FREQUENT <= failing <= count - FREQUENT:
+        if shapley is not None:
+            words = f"Shapley effects on failing: {failing} of {count} builds fail"
+            pairs = zip(shapley.failures[:, k].tolist(), shapley.failure_errors[:, k].tolist(), strict=True)
+            return Blame("simulation", words, dict(zip(shapley.names, pairs, strict=True)))
+        found = sampled.failures
+        first, total = (
+            {
+                name: (float(shares[i, k]), float(errors[i, k]))
+                for i, own in enumerate(sampled.inputs)
+                for name in own.names
+                if math.isfinite(shares[i, k])
+            }
+            for shares, errors in ((found.first, found.first_errors), (found.total, found.total_errors))
+        )
+        return Blame("simulation", f"Sobol' indices of failing: {failing} of {count} builds fail", first, total)
+    sides: Sequence[tuple[Side, float | None]] = (("low", measure.lower_limit), ("high", measure.upper_limit))
+    limits = [(side, limit * measure.per_internal) for side, limit in sides if limit is not None]
+    if not limits:
+        return Blame(
+            None, "no limits" if failing == 0 else f"{failing} of {count} builds do not seat: too few to blame"
+        )
+    if response.rough:
+        return Blame(None, f"no smooth map from normals: {', '.join(response.rough)}; and {failing} builds fail")
+    points = [own for side, limit in limits for own in _points(LimitState(response, limit, side), seed)]
+    if not points:
+        return Blame(None, f"no design point found; {failing} of {count} builds fail")
+    likely = ndtr(-np.array([own.beta for own in points]))
+    weights = likely / likely.sum() if likely.sum() > 0.0 else np.full(len(points), 1.0 / len(points))
+    shares = _shares(response, points, weights)
+    words = f"{len(points)} design points, the nearest at β = {min(own.beta for own in points):.2f}"
+    return Blame("design points", words, {name: (own, math.nan) for name, own in shares.items()})
+
+
+def _points(state: LimitState, seed: int) -> Sequence[DesignPoint]:
+    generator = np.random.default_rng(seed)
+    places = PLACES if state.response.simulation.system.streams else 1
+    positions = state.response.positions(places, "drawn" if places > 1 else "rest", int(generator.integers(2**31)))
+    starts = STARTS if places > 1 else STARTS_ALONE
+    return [own for its in design_points(state, positions, places, starts, generator) for own in its]
+
+
+def _shares(response: Response, points: Sequence[DesignPoint], weights: Array) -> Mapping[str, float]:
+    squares = np.array([own.sensitivities**2 for own in points])
+    mean = weights @ squares
+    found = {name: float(mean[own].sum()) for name, own in response.normals.items()}
+    for block in response.copula.blocks:
+        places = [response.normals[name].start for name in block.names]
+        divided = np.zeros(len(places))
+        for weight, own in zip(weights, points, strict=True):
+            slopes = solve_triangular(block.factor, own.sensitivities[places], lower=True, trans="T")
+            divided += weight * linear_shapley(slopes, block.correlation)
+        found |= dict(zip(block.names, divided.tolist(), strict=True))
+    return found

@@ -1,0 +1,121 @@
+"""Effects as tables: for each measure what every contributor does to it, and the matrix of all as a file."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from tol3d.analyses.effects import ContributorEffects, Effects, Index, MeasureEffects
+from tol3d.report.number import NOTHING, measured_text, share_text
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
+
+MOST_SHOWN: Final = 15
+"""Contributors of a measure."""
+WORDS: Final = (
+    "per unit: change of the measure per unit of the deviation, at the mean build; over all: largest less smallest "
+    "value over the whole tolerance, the others at their means; first, total: Sobol' indices, the share of the "
+    "variance that a contributor has alone, and with all that it does together with others; ± 95 %"
+)
+POSITIONS: Final[Mapping[str, str]] = {
+    "averaged": "at a position, averaged over positions",
+    "input": "the position is an input",
+    "none": "",
+}
+UNITS: Final[Mapping[str, str]] = {"um": "µm", "arcmin": "′", "1": ""}
+
+
+def effects_report(found: Effects) -> Page:
+    """What contributors do to each measure, the largest first."""
+    head = Line(((found.scene, "bold"), (f" · effects of contributors, {found.evaluations} builds", "")))
+    blocks: list[PageItem] = [head]
+    for name, own in found.measures.items():
+        blocks += [*titled(name, _table(own).shortened(MOST_SHOWN)), *map(note, _words(own))]
+    where = POSITIONS[found.positions]
+    return page(*blocks, BLANK, note(WORDS + (f"; {where}" if where else "")))
+
+
+def _table(own: MeasureEffects) -> Table:
+    unit = UNITS.get(own.unit, own.unit)
+    parts: list[tuple[str, ContributorEffects]] = list(own.contributors.items())
+    if own.position is not None:
+        parts.append(("position", own.position))
+    ranked = sorted(parts, key=lambda each: -_size(each[1]))
+    heads = ["unit", f"per unit [{unit}]", f"over all [{unit}]", "first [%]", "total [%]"]
+    with_shapley = any(each.shapley for _, each in parts)
+    heads += ["Shapley [%]"] if with_shapley else []
+    heads += ["failures [%]"] if own.failures_by else []
+    heads += ["with others [%]"] if own.failures_by == "simulation" else []
+    rows = []
+    for name, each in ranked:
+        cells = [
+            UNITS.get(each.unit, each.unit),
+            _number(each.slope),
+            _number(each.change),
+            _share(each.first),
+            _share(each.total),
+        ]
+        cells += [_share(each.shapley)] if with_shapley else []
+        cells += [_share(each.failures)] if own.failures_by else []
+        cells += [_share(each.failures_total)] if own.failures_by == "simulation" else []
+        rows.append(Row(name, cells))
+    return Table("", [Heading(text, words=text == "unit") for text in heads], rows)
+
+
+def _size(own: ContributorEffects) -> float:
+    """By which contributors are ranked."""
+    shown = own.shapley or own.total
+    return shown.share if shown is not None else -1.0
+
+
+def _words(own: MeasureEffects) -> Sequence[str]:
+    spread = [f"mean {measured_text(own.mean, own.unit)}, sigma {measured_text(own.sigma, own.unit)}"]
+    if own.sum_of_first is not None and own.sum_of_total is not None:
+        first, total = own.sum_of_first, own.sum_of_total
+        spread.append(f"sum of first indices {_plain(first)}, of total ones {_plain(total)}")
+    groups = dict.fromkeys(tuple(each.together) for each in own.contributors.values() if len(each.together) > 1)
+    told = [", ".join(spread)]
+    told += [f"indices of correlated contributors are those of all together: {', '.join(group)}" for group in groups]
+    if own.not_seated:
+        told.append(f"{own.not_seated} of {own.builds} builds do not seat: left out of indices, counted as failures")
+    if own.failing_ppm is not None:
+        told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; by {own.failures_words}")
+    return told
+
+
+def _plain(own: Index) -> str:
+    return f"{own.share:.2f} ±{(own.high - own.low) / 2:.2f}"
+
+
+def _share(own: Index | None) -> Shown:
+    if own is None:
+        return Shown(NOTHING, None)
+    reach = (own.high - own.low) / 2
+    text = f"{100 * own.share:.1f}".replace("-0.0", "0.0")
+    return Shown(f"{text} ±{100 * reach:.1f}" if reach > 0.0 else text, own.share)
+
+
+def _number(value: float | None) -> Shown:
+    """Four digits that count."""
+    if value is None:
+        return Shown(NOTHING, None)
+    digits = 0 if value == 0.0 else max(0, 3 - math.floor(math.log10(abs(value))))
+    return Shown("0" if digits > 9 else f"{value:.{digits}f}", value)
+
+
+COLUMNS: Final = ("first", "total", "shapley", "failures", "failures_total")
+
+
+def effects_csv(found: Effects) -> str:
+    """A row for each measure and contributor, all numbers with all their digits."""
+    heads = ["contributor", "measure unit", "contributor unit", "slope", "change"]
+    heads += [f"{name}{end}" for name in COLUMNS for end in ("", "_low_95", "_high_95")]
+    rows = []
+    for name, own in found.measures.items():
+        parts = {**own.contributors, **({"position": own.position} if own.position else {})}
+        for contributor, each in parts.items():
+            cells = [contributor, own.unit, each.unit, _number(each.slope), _number(each.change)]
+            for column in COLUMNS:
+                index: Index | None = getattr(each, column)
+                numbers = (None,) * 3 if index is None else (index.share, index.low, index.high)
+                cells += [Shown("", number) for number in numbers]
+            rows.append(Row(name, cells))
+    return Table("measure", [Heading(text) for text in heads], rows).csv()
