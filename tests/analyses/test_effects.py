@@ -302,7 +302,7 @@ def test_what_cannot_be_asked_is_refused() -> None:
         effects(own, base=100)
     with pytest.raises(InputError, match="expected measures that are read at random positions, got none"):
         effects(own, position=True)
-    with pytest.raises(InputError, match="got 'normal backlash curve', a curve; read one at a position"):
+    with pytest.raises(InputError, match="got 'normal backlash curve', a curve; ask for '"):
         response_of(simulation_of(load("every_field"))).of("normal backlash curve")
 
 

@@ -120,12 +120,11 @@ class Response:
             InputError: one is not among them, or is a curve.
         """
         known = {own.name: own for own in self.measures}
-        curves = {own.name for own in self.simulation.system.measures if own.take == "curve"}
+        curves = {own.name for own in self.curves.values()}
         for name in names:
-            if name in curves:
-                raise InputError(
-                    f"expected a measure of one number a trial, got {name!r}, a curve; read one at a position"
-                )
+            if name in curves and name not in known:
+                ends = " or ".join(repr(end) for end, own in self.curves.items() if own.name == name)
+                raise InputError(f"expected a measure of one number a trial, got {name!r}, a curve; ask for {ends}")
             if name not in known:
                 raise InputError(f"expected a measure of {', '.join(known)}, got {name!r}{hint(name, known)}")
         return replace(self, measures=tuple(known[name] for name in names))
