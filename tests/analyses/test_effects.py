@@ -23,7 +23,7 @@ from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
 from tol3d.simulate import load, simulation_of
 from tol3d.system.copula import Block
-from tol3d.system.draw import Planar, Scalar
+from tol3d.system.draw import Draw, Planar, Scalar
 
 Array = np.ndarray
 
@@ -80,7 +80,7 @@ def test_indices_of_the_g_function() -> None:
 
 def test_normals_of_a_direction_are_one_input() -> None:
     """x y of a length in a random direction has no part of x or y alone, and all of it is the contributor's."""
-    draws = [Planar(Normal(2.0, 0.5), None), Scalar(Normal(0.0, 1.0))]
+    draws: list[Draw] = [Planar(Normal(2.0, 0.5), None), Scalar(Normal(0.0, 1.0))]
     own = formula(lambda x: x[:, 0] * x[:, 1] + 2 * x[:, 2], draws)
     # E of r⁴ for the law of the length, times 1/8, the mean of (sin 2φ / 2)²
     moment = 2.0**4 + 6 * 2.0**2 * 0.5**2 + 3 * 0.5**4
@@ -163,7 +163,7 @@ def test_contributors_of_a_3k_set_act_together() -> None:
 
 
 def test_changes_of_a_linear_measure_are_slopes_times_ranges() -> None:
-    draws = [Scalar(Normal(0.0, 1.0)), Scalar(Uniform(-2.0, 4.0)), Planar(Normal(0.0, 0.5), None)]
+    draws: list[Draw] = [Scalar(Normal(0.0, 1.0)), Scalar(Uniform(-2.0, 4.0)), Planar(Normal(0.0, 0.5), None)]
     own = formula(lambda x: 3 * x[:, 0] - 2 * x[:, 1] + 3 * x[:, 2] + 4 * x[:, 3], draws)
     found = only(effects(own, base=2)).contributors
     assert [each.slope for each in found.values()] == pytest.approx([3.0, -2.0, 5.0], abs=1e-8)
