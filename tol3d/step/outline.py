@@ -1,0 +1,187 @@
+"""All that the text of a STEP file says of parts, datums, tolerances and dimensions: `read_step_text`."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TypeVar
+
+from tol3d.step.datum import Datum, read_datum
+from tol3d.step.dimension import Dimension, Dimensions
+from tol3d.step.feature import FACES, Features, NamedFeature
+from tol3d.step.frame import SYMBOLS
+from tol3d.step.part21 import Header, Part21, read_part21
+from tol3d.step.read_structure import StructureReader
+from tol3d.step.refused import StepError
+from tol3d.step.structure import Structure
+from tol3d.step.tolerance import Tolerance, Tolerances
+from tol3d.step.values import Reference
+
+Read = TypeVar("Read")
+
+
+@dataclass(frozen=True)
+class Remark:
+    """Something of the file that was not read, or is incomplete, and why.
+
+    Args:
+        id: where it stands.
+        what: `tolerance`, `dimension`, `datum` or `feature`, and its name.
+        why: in one line.
+    """
+
+    id: int
+    what: str
+    why: str
+
+
+@dataclass(frozen=True)
+class StepText:
+    """What the text of a STEP file says.
+
+    Args:
+        file: the instances.
+        structure: products, solids, faces, assemblies.
+        datums: in the file's order.
+        tolerances: likewise.
+        dimensions: likewise.
+        remarks: what was not read, or is incomplete; nothing is left out silently.
+    """
+
+    file: Part21 = field(repr=False)
+    structure: Structure
+    datums: tuple[Datum, ...]
+    tolerances: tuple[Tolerance, ...]
+    dimensions: tuple[Dimension, ...]
+    remarks: tuple[Remark, ...]
+
+    @property
+    def name(self) -> str:
+        """The file's name."""
+        return self.file.name
+
+    @property
+    def header(self) -> Header:
+        """What the file says about itself."""
+        return self.file.header
+
+    @cached_property
+    def faces(self) -> dict[int, str]:
+        """Every face of the file with its name, in the file's order."""
+        found = {}
+        for instance in self.file.of(*FACES):
+            named = instance.record("REPRESENTATION_ITEM") or instance.needed(*FACES)
+            found[instance.id] = named.text(0) if len(named) else ""
+        return found
+
+    @property
+    def features(self) -> Iterator[NamedFeature]:
+        """All that tolerances, dimensions and datums name, some of it repeatedly."""
+        for tolerance in self.tolerances:
+            yield tolerance.feature
+            if tolerance.projected is not None:
+                yield tolerance.projected.end
+        for dimension in self.dimensions:
+            yield from dimension.features
+        for datum in self.datums:
+            yield from datum.features
+            yield from (each.feature for each in datum.targets)
+
+    def datum(self, letter: str) -> Datum | None:
+        """The datum of a letter."""
+        return next((each for each in self.datums if each.letter == letter), None)
+
+    def product(self, feature: NamedFeature) -> int | None:
+        """The product that a feature is of: by its faces, else by its shape."""
+        by_face = next((self.structure.product_of_face.get(each) for each in feature.faces), None)
+        return by_face if by_face is not None else self.structure.product_of_shape.get(feature.shape)
+
+
+def read_step_text(source: Path | bytes, name: str | None = None) -> StepText:
+    """Read the text of a STEP file.
+
+    Args:
+        source: where it lies, or what it holds.
+        name: the name for errors; the file's own if not given.
+
+    Raises:
+        StepError: it is no STEP file, is damaged or too large, or refers to other files. A tolerance, dimension or
+            datum that cannot be read by itself is a remark instead.
+    """
+    file = read_part21(source, name)
+    structure = StructureReader(file).read()
+    features = Features(file)
+    tolerances, dimensions = Tolerances(file, features), Dimensions(file, features)
+    remarks: list[Remark] = []
+
+    def each_of(what: str, ids: tuple[int, ...], read: Callable[[int], Read]) -> Iterator[Read]:
+        for identifier in ids:
+            try:
+                yield read(identifier)
+            except StepError as error:
+                remarks.append(Remark(identifier, what, str(error)))
+
+    datum_ids = tuple(each.id for each in file.of("DATUM"))
+    text = StepText(
+        file,
+        structure,
+        tuple(each_of("datum", datum_ids, lambda each: read_datum(features, each))),
+        tuple(each_of("tolerance", tolerances.ids, tolerances.read)),
+        tuple(each_of("dimension", dimensions.ids, dimensions.read)),
+        (),
+    )
+    remarks.extend(incomplete(text))
+    remarks.extend(unnamed(text, features))
+    return StepText(file, structure, text.datums, text.tolerances, text.dimensions, tuple(remarks))
+
+
+def incomplete(text: StepText) -> Iterator[Remark]:
+    """Remarks on what lacks a value, a kind, a letter or its faces."""
+    for each in text.tolerances:
+        what = f"tolerance {each.name}".strip()
+        if each.magnitude is None:
+            yield Remark(each.id, what, "states no value")
+        if each.kind not in SYMBOLS:
+            yield Remark(each.id, what, "states no kind of tolerance")
+        yield from incomplete_feature(each.id, what, each.feature)
+    for dimension in text.dimensions:
+        what = f"dimension {dimension.name}".strip()
+        if dimension.nominal is None and dimension.limits is None:
+            yield Remark(dimension.id, what, "states no value")
+        for feature in dimension.features:
+            yield from incomplete_feature(dimension.id, what, feature)
+    for datum in text.datums:
+        what = f"datum {datum.letter}".strip()
+        if not datum.letter:
+            yield Remark(datum.id, what, "has no letter")
+        if not datum.features and not datum.targets:
+            yield Remark(datum.id, what, "names neither geometry nor targets")
+        for feature in datum.features:
+            yield from incomplete_feature(datum.id, what, feature)
+
+
+def incomplete_feature(identifier: int, what: str, feature: NamedFeature) -> Iterator[Remark]:
+    """Remarks on what names no faces, or members without any."""
+    if feature.lies_on == "nothing":
+        yield Remark(identifier, what, f"names no geometry (#{feature.id})")
+    elif feature.lies_on == "curves":
+        yield Remark(identifier, what, f"lies on curves, not on faces (#{feature.id})")
+    elif feature.bare:
+        yield Remark(
+            identifier, what, f"has members without geometry ({', '.join(f'#{each}' for each in feature.bare)})"
+        )
+
+
+def unnamed(text: StepText, features: Features) -> Iterator[Remark]:
+    """Remarks on faces that the file groups for tolerances and that nothing refers to: something may be lost."""
+    associations = text.file.of(
+        "DRAUGHTING_MODEL_ITEM_ASSOCIATION", "DRAUGHTING_MODEL_ITEM_ASSOCIATION_WITH_PLACEHOLDER"
+    )
+    shown = [each.records[0].arguments[2] for each in associations if len(each.records[0].arguments) > 2]
+    seen = {aspect: None for each in text.features for aspect in each.aspects}
+    for each in shown:  # of a note, the geometry that it points at
+        if isinstance(each, Reference):
+            features.groups(each, seen)
+    for aspect, items in features.items.items():
+        if aspect not in seen and any(features.keywords(each) & FACES for each in items):
+            yield Remark(aspect, "feature", "has faces that no tolerance, dimension, datum or note refers to")

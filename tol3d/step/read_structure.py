@@ -1,0 +1,241 @@
+"""Reading the products of a STEP file from its text; see structure.py for what is read."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+from tol3d.step.feature import FACES
+from tol3d.step.instance import Record
+from tol3d.step.part21 import Part21
+from tol3d.step.placement import (
+    SCALE_XTOL,
+    Placement,
+    axes,
+    inverse,
+    length_unit,
+    located,
+    placement_of,
+    product,
+    representation,
+    rigid,
+    vector_of,
+)
+from tol3d.step.refused import StepError, shown
+from tol3d.step.structure import Occurrence, Product, Solid, Structure
+from tol3d.step.units import Unit
+from tol3d.step.values import Missing, Reference, Typed, Value
+
+DEFINITIONS: Final = ("PRODUCT_DEFINITION", "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS")
+USES: Final = ("NEXT_ASSEMBLY_USAGE_OCCURRENCE",)
+SOLIDS: Final = ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS", "FACETED_BREP")
+TRANSFORMS: Final = ("CARTESIAN_TRANSFORMATION_OPERATOR_3D",)
+
+
+@dataclass(frozen=True)
+class StructureReader:
+    """The products of a file while they are read."""
+
+    file: Part21
+
+    @cached_property
+    def definitions(self) -> tuple[int, ...]:
+        """The product definitions, without those of documents."""
+        return tuple(each.id for each in self.file.of(*DEFINITIONS))
+
+    @cached_property
+    def shapes(self) -> dict[int, int]:
+        """From each product definition, or use of one, to its shape."""
+        found: dict[int, int] = {}
+        for record in self.file.records("PRODUCT_DEFINITION_SHAPE"):
+            found.setdefault(int(record.reference(2)), record.instance.id)
+        return found
+
+    @cached_property
+    def same_frame(self) -> dict[int, tuple[int, ...]]:
+        """From each representation to those that are related to it without a transformation."""
+        found: dict[int, list[int]] = {}
+        for instance in self.file.of("SHAPE_REPRESENTATION_RELATIONSHIP"):
+            if instance.record("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") is None:
+                record = instance.record("REPRESENTATION_RELATIONSHIP") or instance.needed(
+                    "SHAPE_REPRESENTATION_RELATIONSHIP"
+                )
+                first, second = int(record.reference(2)), int(record.reference(3))
+                found.setdefault(first, []).append(second)
+                found.setdefault(second, []).append(first)
+        return {each: tuple(related) for each, related in found.items()}
+
+    @cached_property
+    def represented(self) -> dict[int, tuple[int, ...]]:
+        """From each product definition shape to its representations, in its own frame."""
+        found: dict[int, list[int]] = {}
+        for record in self.file.records("SHAPE_DEFINITION_REPRESENTATION"):
+            found.setdefault(int(record.reference(0)), []).append(int(record.reference(1)))
+        return {shape: tuple(reached(direct, self.same_frame)) for shape, direct in found.items()}
+
+    def read(self) -> Structure:
+        """The structure.
+
+        Raises:
+            StepError: it says something that cannot be read, or a part stands in another file.
+        """
+        products = {each: self.product(each) for each in self.definitions}
+        occurrences = tuple(self.occurrence(each, products) for each in self.file.records(USES[0]))
+        structure = Structure(self.file.name, products, occurrences)
+        self.refuse_other_files(structure)
+        return structure
+
+    def product(self, definition: int) -> Product:
+        """One product with its solids and faces."""
+        shape = self.shapes.get(definition)
+        representations = self.represented.get(shape, ()) if shape is not None else ()
+        items = list(dict.fromkeys(item for each in representations for item in representation(self.file, each)[0]))
+        solids = tuple(self.solid(each) for each in self.mapped(items) if self.file[each].record(*SOLIDS) is not None)
+        solid_faces = {face for each in solids for face in each.faces}
+        others = [each for each in items if self.file[each].record(*SOLIDS) is None and self.is_surface(each)]
+        loose = dict.fromkeys(face for each in others for face in self.faces_under(each) if face not in solid_faces)
+        return Product(definition, self.product_name(definition), shape, solids, tuple(loose))
+
+    def mapped(self, items: Iterable[int]) -> Iterator[int]:
+        """Items without those that show another representation."""
+        return (each for each in items if self.file[each].record("MAPPED_ITEM") is None)
+
+    def is_surface(self, identifier: int) -> bool:
+        """Whether an item of a representation is made of faces."""
+        words = {each.keyword for each in self.file[identifier].records}
+        return bool(
+            words & {"SHELL_BASED_SURFACE_MODEL", "OPEN_SHELL", "CLOSED_SHELL", "FACE_BASED_SURFACE_MODEL", *FACES}
+        )
+
+    def solid(self, identifier: int) -> Solid:
+        """One solid with its faces."""
+        record = self.file[identifier].needed(*SOLIDS)
+        named = self.file[identifier].record("REPRESENTATION_ITEM") or record
+        return Solid(identifier, named.text(0), record.keyword, tuple(self.faces_under(identifier)))
+
+    def faces_under(self, root: int) -> Iterator[int]:
+        """The faces that an item is made of, in the order of its shells; no face is gone into."""
+        seen = {root}
+        stack = [root]
+        while stack:
+            identifier = stack.pop()
+            instance = self.file[identifier]
+            if any(each.keyword in FACES for each in instance.records):
+                yield identifier
+                continue
+            named = [each for record in instance.records for each in references_in(record.arguments)]
+            fresh = [each for each in dict.fromkeys(named) if each not in seen]
+            seen.update(fresh)
+            stack.extend(reversed(fresh))
+
+    def product_name(self, definition: int) -> str:
+        """The name of a product, else its number in the parts list."""
+        formation = self.file[definition].inherited("PRODUCT_DEFINITION").reference(2)
+        made = self.file[formation].inherited("PRODUCT_DEFINITION_FORMATION").reference(2)
+        record = self.file[made].needed("PRODUCT")
+        return record.text(1).strip() or record.text(0).strip() or f"product_{definition}"
+
+    def occurrence(self, record: Record, products: dict[int, Product]) -> Occurrence:
+        """One use of a product, with its placement."""
+        parent, used = int(record.reference(3)), int(record.reference(4))
+        for each in (parent, used):
+            if each not in products:
+                raise StepError(f"{record.instance.place}: expected a product definition, got #{each}")
+        name = record.text(1).strip() or record.text(0).strip() or products[used].name
+        placement = self.placement(record, parent, used)
+        return Occurrence(record.instance.id, name, parent, used, placement)
+
+    def placement(self, use: Record, parent: int, used: int) -> Placement:
+        """`parent_from_product` of a use.
+
+        Raises:
+            StepError: the file does not say it.
+        """
+        shape = self.shapes.get(use.instance.id)
+        for record in self.file.records("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"):
+            if shape is not None and int(record.reference(1)) == shape:
+                return self.transformation(record.reference(0), used)
+        raise StepError(
+            f"{use.instance.place}: the file does not say where {shown(use.text(1) or use.text(0))!r} stands in its "
+            "assembly (no CONTEXT_DEPENDENT_SHAPE_REPRESENTATION)"
+        )
+
+    def transformation(self, relation: int, used: int) -> Placement:
+        """The placement that a relation of two representations says, from the one of the used product."""
+        instance = self.file[relation]
+        related = instance.needed("REPRESENTATION_RELATIONSHIP")
+        first, second = int(related.reference(2)), int(related.reference(3))
+        operator = self.file[instance.needed("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION").reference(0)]
+        units = self.unit(first), self.unit(second)
+        shape = self.shapes.get(used)
+        own = self.represented.get(shape, ()) if shape is not None else ()
+        swapped = first not in own and second in own  # some exporters relate the assembly to its part
+        items = operator.record("ITEM_DEFINED_TRANSFORMATION")
+        if items is None:
+            found = self.operated(operator.needed(*TRANSFORMS), units[1])
+        else:
+            from_first = placement_of(self.file, items.reference(2), units[0])
+            found = product(placement_of(self.file, items.reference(3), units[1]), inverse(from_first))
+        return inverse(found) if swapped else found
+
+    def unit(self, identifier: int) -> Unit:
+        """The unit of lengths of a representation."""
+        return length_unit(self.file, representation(self.file, identifier)[1])
+
+    def operated(self, record: Record, unit: Unit) -> Placement:
+        """The placement of a CARTESIAN_TRANSFORMATION_OPERATOR_3D, which must not scale nor mirror."""
+        arguments = record.arguments[-6:]  # axis1, axis2, origin, scale, axis3 after the names
+        if len(arguments) < 5:
+            raise record.wrong(0, "axes, an origin and a scale")
+        first, second, origin, scale, third = arguments[-5:]
+        if not isinstance(scale, Missing) and abs(record.number(-2) - 1) > SCALE_XTOL:
+            raise StepError(f"{record.instance.place}: expected a transformation that does not scale")
+        if not isinstance(origin, Reference):
+            raise record.wrong(len(record) - 3, "a reference to a point")
+        z = int(third) if isinstance(third, Reference) else None
+        x = int(first) if isinstance(first, Reference) else None
+        found = axes(self.file, z, x, record.instance.place)
+        if isinstance(second, Reference):
+            y = vector_of(self.file, second, "DIRECTION")
+            if sum(a * b for a, b in zip(y, found[1], strict=True)) < 0:
+                raise StepError(f"{record.instance.place}: expected a transformation that does not mirror")
+        return rigid(*found, located(self.file, origin, unit))
+
+    def refuse_other_files(self, structure: Structure) -> None:
+        """Refuse parts whose shape stands in another file."""
+        files = [each.instance.inherited("DOCUMENT").text(0) for each in self.file.records("DOCUMENT_FILE")]
+        named = [each.text(0) for each in self.file.records("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT")]
+        empty = [
+            each
+            for each in structure.products.values()
+            if each.id not in structure.inside and not each.solids and not each.loose_faces
+        ]
+        if empty and (files or named):
+            told = ", ".join(repr(shown(each)) for each in dict.fromkeys(each for each in (*named, *files) if each))
+            raise StepError(
+                f"{self.file.name}: the shape of {shown(empty[0].name)!r} stands in another file ({shown(told)}): "
+                "expected one file that holds everything; export the assembly into one"
+            )
+
+
+def reached(roots: Iterable[int], related: dict[int, tuple[int, ...]]) -> list[int]:
+    """Everything that is related to the roots, these first."""
+    found = dict.fromkeys(roots)
+    stack = list(found)
+    while stack:
+        for each in related.get(stack.pop(), ()):
+            if each not in found:
+                found[each] = None
+                stack.append(each)
+    return list(found)
+
+
+def references_in(arguments: tuple[Value, ...]) -> Iterator[int]:
+    """All references in the arguments of a record, at any depth that the parser allows."""
+    for each in arguments:
+        if isinstance(each, Reference):
+            yield int(each)
+        elif isinstance(each, Typed):
+            yield from references_in(each.arguments)
+        elif isinstance(each, tuple):
+            yield from references_in(each)

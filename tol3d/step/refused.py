@@ -1,0 +1,15 @@
+"""A STEP file that cannot be used, said in one line with its place."""
+
+from tol3d.errors import InputError
+
+LONGEST_SHOWN = 80  # characters of what the file says that an error shows; names of 10 kB occur
+
+
+class StepError(InputError):
+    """A STEP file is damaged, too large, refers to other files or says something that cannot be read; exit code 2."""
+
+
+def shown(written: object) -> str:
+    """What a file says, on one line of printable characters, cut where it is long."""
+    text = "".join(each if each.isprintable() else "·" for each in str(written))
+    return text if len(text) <= LONGEST_SHOWN else text[: LONGEST_SHOWN - 1] + "…"
