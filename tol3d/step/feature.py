@@ -1,8 +1,8 @@
 """What a tolerance, datum or dimension names: a shape aspect with the faces of each of its members.
 
-An aspect's own geometry hangs on it by GEOMETRIC_ITEM_SPECIFIC_USAGE or ITEM_IDENTIFIED_REPRESENTATION_USAGE; its members
-by SHAPE_ASPECT_RELATIONSHIP, and what a centre is derived from by SHAPE_ASPECT_DERIVING_RELATIONSHIP. Source: CAx-IF
-recommended practices for the representation of PMI, 4.x, sections 5 and 6.
+An aspect's own geometry hangs on it by GEOMETRIC_ITEM_SPECIFIC_USAGE or ITEM_IDENTIFIED_REPRESENTATION_USAGE; its
+members by SHAPE_ASPECT_RELATIONSHIP, and what a centre is derived from by SHAPE_ASPECT_DERIVING_RELATIONSHIP. Source:
+CAx-IF recommended practices for the representation of PMI, 4.x, sections 5 and 6.
 """
 
 from collections.abc import Iterator
@@ -159,7 +159,7 @@ class Features:
         )
 
     def groups(self, identifier: int, seen: dict[int, None]) -> list[tuple[int, ...]]:
-        """The faces of an aspect by member; `seen` takes every aspect on the way. Depth first, with a stack of its own."""
+        """The faces of an aspect by member; `seen` takes every aspect on the way. Depth first, with its own stack."""
         found: list[tuple[int, ...]] = []
         stack = [(identifier, -1)]
         while stack:

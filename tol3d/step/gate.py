@@ -1,7 +1,7 @@
 """The checks that a STEP file's data must pass before anything reads them, each over the whole file at once.
 
-Open CASCADE ends its process on 200 000 brackets in each other and on a coordinate 1E300, hangs on 1E400, and drops faces
-without a word where a reference leads nowhere or a shell holds itself: such files are refused here.
+Open CASCADE ends its process on 200 000 brackets in each other and on a coordinate 1E300, hangs on 1E400, and drops
+faces without a word where a reference leads nowhere or a shell holds itself: such files are refused here.
 """
 
 import math
