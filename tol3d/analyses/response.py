@@ -4,14 +4,15 @@ A response is a simulation, one of its roads and some of its measures. It knows 
 of the contributors, positions those of the system's streams.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.distributions import Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
@@ -27,6 +28,8 @@ from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
+from tol3d.system.other_laws import Following, Stays, Zoned, refuse_impossible, with_law
+from tol3d.system.other_laws import scaled as scaled_draw
 from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
 from tol3d.system.statuses import OK
@@ -35,6 +38,8 @@ from tol3d.system.trials import Trials
 Codes = NDArray[np.int8]
 Standing = Literal["rest", "averaged", "drawn"]
 """Positions of rows: at rest, the same drawn ones in all rows that are compared, or each row's own."""
+
+NOTHING_STAYS: Final[Mapping[str, Stays]] = {}
 
 NUDGE: Final[Mapping[str, float]] = {"um": 1e-3, "arcmin": 1e-5, "K": 0.1, "1": 1e-3}
 """Steps of central differences [mm, rad, K or shares], by the unit of a contributor's columns."""
@@ -322,6 +327,64 @@ class Response:
             if len(own) != len(other):
                 raise InputError(f"{name}: expected a draw of {len(own)} components, got one of {len(other)}")
         return replace(self, draws={**self.draws, **draws})
+
+    def with_laws(self, laws: Mapping[str, Distribution]) -> "Response":
+        """The same system with other tolerances, by contributor: its deviations as a scene draws them that says so.
+
+        Raises:
+            InputError: no such contributor, one that is not drawn by a law, or deviations that cannot be.
+        """
+        return self._made_again({name: partial(with_law, law=law) for name, law in laws.items()})
+
+    def scaled(self, factors: Mapping[str, float], stays: Mapping[str, Stays] = NOTHING_STAYS) -> "Response":
+        """The same system with tolerances that are so many times as wide, by contributor.
+
+        Args:
+            factors: above 0; the others' tolerances are as they are.
+            stays: of some of them, which limit does; the middle if not given.
+
+        Raises:
+            InputError: no such contributor, one whose law cannot be scaled, or deviations that cannot be.
+        """
+        return self._made_again(
+            {
+                name: partial(scaled_draw, factor=factor, stays=stays.get(name, "middle"))
+                for name, factor in factors.items()
+            }
+        )
+
+    def sized(self, widths: Mapping[str, float]) -> "Response":
+        """The same system with zones of other widths [mm], by contributor.
+
+        Raises:
+            InputError: no such contributor, one that lies in no zone, or no width.
+        """
+        return self._made_again({name: partial(_sized, width=width) for name, width in widths.items()})
+
+    def _made_again(self, changes: Mapping[str, Callable[[Draw], Draw]]) -> "Response":
+        """With other draws, and those that follow them."""
+        known = {own.name: own for own in self.contributors}
+        made: dict[str, Draw] = {}
+        for name, change in changes.items():
+            if name not in known:
+                raise InputError(f"expected a contributor, got {name!r}{hint(name, known)}")
+            try:
+                made[name] = change(self.draws[name])
+            except InputError as error:
+                raise InputError(f"{name}: {error}") from None
+            refuse_impossible(known[name], made[name])
+        draws = {**self.draws, **made}
+        for name, own in made.items():
+            for other, draw in draws.items():
+                if other != name and isinstance(draw, Following):
+                    draws[other] = draw.following(name, own)
+        return self.with_draws({name: draw for name, draw in draws.items() if draw is not self.draws[name]})
+
+
+def _sized(draw: Draw, width: float) -> Draw:
+    if not isinstance(draw, Zoned):
+        raise InputError(f"expected a contributor that lies in a zone, got a {type(draw).__name__}")
+    return draw.sized(width)
 
 
 @dataclass(frozen=True, eq=False)

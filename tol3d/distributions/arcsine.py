@@ -1,13 +1,13 @@
 """The arcsine distribution: a sine at a random phase, such as an error that runs through its period."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
@@ -54,6 +54,10 @@ class Arcsine(Distribution):
     def limits(self) -> tuple[float, float]:
         """Lower and upper, as stated."""
         return self.lower, self.upper
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution."""
+        return replace(self, lower=place(self.lower), upper=place(self.upper))
 
 
 class ArcsineSpec(DistributionSpec):

@@ -1,13 +1,15 @@
 """What every distribution of a deviation offers, and what every spec of one in a scene checks."""
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol, Self
 
 import numpy as np
 from pydantic import model_validator
 
+from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.strict import Strict, refused
@@ -18,6 +20,9 @@ HIGH_PROBABILITY = 1 - LOW_PROBABILITY
 CIRCLE_PROBABILITY = HIGH_PROBABILITY - LOW_PROBABILITY
 RADIUS_HALVINGS = 60  # down to the last bits of a double
 LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
+
+Place = Callable[[float], float]
+"""From a deviation to another one [mm, rad or K]."""
 
 
 class DeviationLaw(Protocol):
@@ -111,6 +116,53 @@ class Distribution(ABC):
     def sigma(self) -> float:
         """The standard deviation."""
         return float(np.sqrt(self.variance))
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """The law of place(deviation), which is linear; of a kind of law that has no other widths this refuses it.
+
+        Args:
+            place: of a deviation [mm, rad or K].
+            factor: its slope, above 0.
+
+        Raises:
+            InputError: a kind of law that cannot be scaled, or not so.
+        """
+        raise InputError(f"expected a law that can be scaled, got {type(self).__name__}, which says nothing of it")
+
+    def scaled(self, factor: float, about: float | None = None) -> Self:
+        """A law as many times as wide.
+
+        Args:
+            factor: above 0.
+            about: the deviation that stays [mm, rad or K]; `pivot` if not given.
+
+        Raises:
+            InputError: see `mapped`; a factor that is none.
+        """
+        if not 0.0 < factor < math.inf:
+            raise InputError(f"expected a factor above 0, got {factor:g}")
+        middle = self.pivot if about is None else about
+        return self.mapped(lambda own: middle if own == middle else middle + factor * (own - middle), factor)
+
+    @property
+    def pivot(self) -> float:
+        """The deviation that stays where a law is scaled: its mean; 0 of a length that has no other shape."""
+        return self.mean
+
+    def within(self, low: float, high: float) -> Self:
+        """A law of the same shape between other limits [mm, rad or K].
+
+        Raises:
+            InputError: see `mapped`; a law without limits, or limits in no order.
+        """
+        if self.limits is None or not self.limits[0] < self.limits[1]:
+            raise InputError(f"expected a law with limits, got {type(self).__name__}")
+        if not -math.inf < low < high < math.inf:
+            raise InputError(f"expected a lower limit below the upper one, got {low:g} to {high:g}")
+        first, last = self.limits
+        factor = (high - low) / (last - first)
+        ends = {first: low, last: high}
+        return self.mapped(lambda own: ends[own] if own in ends else low + factor * (own - first), factor)
 
 
 class DistributionSpec(Strict, ABC):

@@ -1,11 +1,12 @@
 """A deviation that does not vary."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
+from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
@@ -39,6 +40,14 @@ class Constant(Distribution):
     def limits(self) -> tuple[float, float]:
         """The value, twice."""
         return self.value, self.value
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError("expected a law that can be scaled, got a constant, which does not spread")
 
 
 class ConstantSpec(DistributionSpec):

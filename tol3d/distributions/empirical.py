@@ -1,14 +1,14 @@
 """A distribution taken from measured values: a column of a CSV file."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import LARGEST_DEVIATION, Distribution, DistributionSpec
+from tol3d.distributions.base import LARGEST_DEVIATION, Distribution, DistributionSpec, Place
 from tol3d.distributions.csv_table import csv_table
 from tol3d.errors import SceneError
 from tol3d.files import Files
@@ -68,6 +68,12 @@ class Empirical(Distribution):
     def extremes(self) -> tuple[float, float]:
         """The smallest and the largest value of the sample."""
         return float(self.values[0]), float(self.values[-1])
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution."""
+        sample = np.array([place(own) for own in self.values.tolist()])
+        sample.flags.writeable = False
+        return replace(self, values=sample)
 
 
 class EmpiricalSpec(DistributionSpec):

@@ -1,16 +1,21 @@
 """The normal distribution, by its limits or by mean and sigma."""
 
-from dataclasses import dataclass
-from typing import Literal, Self
+from dataclasses import dataclass, replace
+from typing import Final, Literal, Self
 
 from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.strict import refused
 from tol3d.units import Quantity
+
+SAME: Final = 1e-12
+"""Of a sigma; a location nearer to the middle of limits than that is it."""
+SIGMAS_DIGITS: Final = 9
+"""Of the number of sigmas at limits, which is one that somebody wrote."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,16 @@ class Normal(Distribution):
         """The limits, or mean -+ 3 sigma where these are wider."""
         low, high = self.limits
         return min(low, self.location - 3 * self.scale), max(high, self.location + 3 * self.scale)
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution; of stated limits the middle and the sigma follow as a scene says them."""
+        if self.stated is None:
+            return replace(self, location=place(self.location), scale=factor * self.scale)
+        low, high = (place(own) for own in self.stated)
+        if abs(sum(self.stated) / 2 - self.location) > SAME * self.scale:
+            return replace(self, location=place(self.location), scale=factor * self.scale, stated=(low, high))
+        sigmas = round((self.stated[1] - self.stated[0]) / (2 * self.scale), SIGMAS_DIGITS)
+        return replace(self, location=(low + high) / 2, scale=(high - low) / (2 * sigmas), stated=(low, high))
 
 
 class NormalSpec(DistributionSpec):

@@ -1,16 +1,20 @@
 """The Rayleigh distribution: the length of a vector whose x and y are independent normals."""
 
 import math
-from dataclasses import dataclass
-from typing import Literal, Self
+from dataclasses import dataclass, replace
+from typing import Final, Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
+from tol3d.errors import InputError
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
+
+SAME: Final = 1e-12
+"""Of a scale; lengths nearer to each other than that are one."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,21 @@ class Rayleigh(Distribution):
     def variance(self) -> float:
         """(2 - pi / 2) scale^2."""
         return (2 - math.pi / 2) * self.scale**2
+
+    @property
+    def pivot(self) -> float:
+        """No length: the vector's components are scaled about their means."""
+        return 0.0
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution.
+
+        Raises:
+            InputError: another length than 0 stays.
+        """
+        if abs(place(0.0)) > SAME * self.scale:
+            raise InputError("expected a Rayleigh law to be scaled about 0, for it begins there")
+        return replace(self, scale=factor * self.scale)
 
 
 class RayleighSpec(DistributionSpec):

@@ -1,12 +1,12 @@
 """The triangular distribution: two limits and the most likely value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.strict import refused
@@ -52,6 +52,10 @@ class Triangular(Distribution):
     def limits(self) -> tuple[float, float]:
         """Lower and upper, as stated."""
         return self.lower, self.upper
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution."""
+        return replace(self, lower=place(self.lower), mode=place(self.mode), upper=place(self.upper))
 
 
 class TriangularSpec(DistributionSpec):

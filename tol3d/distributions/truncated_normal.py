@@ -1,7 +1,7 @@
 """The normal distribution cut off at two limits, as sorted or adjusted parts have it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self
 
@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import model_validator
 
 from tol3d.distributions import standard_normal
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.strict import refused
@@ -72,6 +72,11 @@ class TruncatedNormal(Distribution):
     def limits(self) -> tuple[float, float]:
         """Lower and upper, as stated."""
         return self.lower, self.upper
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution."""
+        location, scale = place(self.location), factor * self.scale
+        return replace(self, location=location, scale=scale, lower=place(self.lower), upper=place(self.upper))
 
 
 class TruncatedNormalSpec(DistributionSpec):

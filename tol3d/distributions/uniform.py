@@ -1,12 +1,12 @@
 """The uniform distribution: every deviation between two limits alike."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
 from pydantic import model_validator
 
-from tol3d.distributions.base import Distribution, DistributionSpec
+from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
 from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
@@ -41,6 +41,10 @@ class Uniform(Distribution):
     def limits(self) -> tuple[float, float]:
         """Lower and upper, as stated."""
         return self.lower, self.upper
+
+    def mapped(self, place: Place, factor: float) -> Self:
+        """See Distribution."""
+        return replace(self, lower=place(self.lower), upper=place(self.upper))
 
 
 class UniformSpec(DistributionSpec):

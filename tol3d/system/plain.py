@@ -59,6 +59,7 @@ class PlainContributor:
         unit: of its columns in results.
         per_unit: one of that unit in mm, rad or K.
         least: smallest physical deviation [mm, rad or K].
+        held: by what else its tolerance acts, such as the gauge that inspects; "" for nothing.
     """
 
     name: str
@@ -68,6 +69,7 @@ class PlainContributor:
     per_unit: float = 1e-3
     description: str = ""
     least: float | None = None
+    held: str = ""
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.from_scene.boundaries import shift_frames
+from tol3d.assembly.from_scene.boundaries import mark_held, shift_frames
 from tol3d.assembly.from_scene.contributors import Effects, effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of
@@ -99,4 +99,5 @@ def understood(scene: Scene) -> Understood:
     add_projected(scene, features)
     measured = measured_of(scene, drawing, frames)
     shift_frames(scene, drawing, effects, frames)
+    mark_held(scene, drawing, effects, frames)
     return Understood(scene, effects, frames, features, measured)

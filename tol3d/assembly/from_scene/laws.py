@@ -1,38 +1,12 @@
 """Draws by the laws of grammar/zone.py: of a feature in its zone, and of a point that touches by its form."""
 
-from dataclasses import dataclass
 from typing import Final
 
 from tol3d.assembly.grammar.zone import LawSpec, ProcessLawSpec
 from tol3d.assembly.zones import Confined, Process, Zone, normal_in, ring_in, uniform_in
+from tol3d.assembly.zones.centred import Centred
 from tol3d.distributions import Distribution, TruncatedNormal, Uniform
 from tol3d.files import Files
-from tol3d.numerics.arrays import Array
-
-
-@dataclass(frozen=True)
-class Centred(Distribution):
-    """Of deviations that spread as another law does, about 0."""
-
-    law: Distribution
-
-    mean = 0.0
-
-    def ppf(self, u: Array) -> Array:
-        return self.law.ppf(u) - self.law.mean
-
-    def cdf(self, x: Array) -> Array:
-        return self.law.cdf(x + self.law.mean)
-
-    @property
-    def variance(self) -> float:
-        return self.law.variance
-
-    @property
-    def limits(self) -> tuple[float, float] | None:
-        found = self.law.limits
-        return None if found is None else (found[0] - self.law.mean, found[1] - self.law.mean)
-
 
 TILTS: Final = ("rise x", "rise y")
 """Components of planes that a process spreads about 0, whatever its mean: an offset does not tilt a face."""

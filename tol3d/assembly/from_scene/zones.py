@@ -125,7 +125,8 @@ def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -
         words = "expected the drawing's limits of size, such as [0 um, 15 um], from which the bonus counts; got none"
         raise scene.refuse(("tolerances", own.entry), f"{words}, and its distribution has none")
     low, high = limits
-    return SizedBy(own.name, law, Bonus.at(modifier, low, high, inner=shape.inner))
+    bonus = Bonus.at(modifier, low, high, inner=shape.inner)
+    return SizedBy(own.name, law, bonus, of_drawing=spec.limits is not None)
 
 
 def drawn_by(law: LawSpec, zone: Zone, files: Files) -> Confined | Process:

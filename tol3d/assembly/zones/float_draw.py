@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Literal
+from typing import Final, Literal, Self
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
 from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.distributions import Distribution, Normal, Uniform
+from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, Given
 from tol3d.system.draw import Values
@@ -140,6 +141,14 @@ class GaugeShift(Widened):
     """
 
     leaning: tuple[Leaning, ...] = ()
+
+    def sized(self, width: float) -> Self:
+        """See Zoned.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError(f"expected a tolerance, got the room of a gauge, which {self.size.name} leaves")
 
     @property
     def words(self) -> str:

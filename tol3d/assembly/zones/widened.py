@@ -20,6 +20,7 @@ from tol3d.distributions import Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Given
+from tol3d.system.draw import Draw
 from tol3d.system.normals import Group
 
 SIZES: Final = 512  # of equal probability, over which a covariance is averaged: 1e-5 of a normal's
@@ -134,11 +135,27 @@ class SizedBy:
         name: of its contributor.
         law: of its deviation from nominal [mm].
         bonus: what it adds.
+        of_drawing: whether the bonus counts from limits that the drawing states beside the law, not from the law's.
     """
 
     name: str
     law: Distribution
     bonus: Bonus
+    of_drawing: bool = False
+
+    def following(self, draw: Draw) -> Self:
+        """The same where the size is drawn otherwise."""
+        law = draw.distribution
+        if not isinstance(law, Distribution):
+            raise InputError(f"{self.name}: expected a size with a law, got {type(law).__name__}")
+        if self.of_drawing:
+            return replace(self, law=law)
+        if law.limits is None:
+            raise InputError(
+                f"{self.name}: expected a law with limits, from which a bonus counts, got {type(law).__name__}"
+            )
+        low, high = law.limits
+        return replace(self, law=law, bonus=replace(self.bonus, low=low, high=high))
 
     def of(self, given: Given) -> Array:
         """Deviations of size (trials,) [mm]."""
@@ -177,6 +194,15 @@ class Widened(ZoneDraw):
         """See Smooth: as where the zone is as wide as in no other trial, if its orientation is limited by itself."""
         _, ratio = self.zone.halves(np.array([self.zone.width]), None)
         return self.confined.law.groups(ratio)
+
+    def sized(self, width: float) -> Self:
+        """See Zoned."""
+        confined = self.confined.sized(width)
+        return replace(self, zone=confined.zone, confined=confined)
+
+    def following(self, name: str, draw: Draw) -> Self:
+        """See Following: the size."""
+        return replace(self, size=self.size.following(draw)) if name == self.size.name else self
 
     @property
     def mean_vector(self) -> Array:
@@ -249,3 +275,7 @@ class JudgedProcess(Process):
         """See DependentlyJudged: outside the zone of the trial's width."""
         widths = self.size.bonus.widths(self.zone, self.size.of(given))
         return ~self.zone.inside(np.stack(components, axis=-1), *widths)
+
+    def following(self, name: str, draw: Draw) -> Self:
+        """See Following: the size."""
+        return replace(self, size=self.size.following(draw)) if name == self.size.name else self

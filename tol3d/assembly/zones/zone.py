@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -151,6 +151,15 @@ class Zone:
     def centre(self) -> float:
         """Where the middle of the zone lies along the first component [mm]."""
         return 0.0 if self.outward is None else self.outward - 0.5 * self.width
+
+    def resized(self, width: float) -> "Zone":
+        """The same of another width, about the same middle.
+
+        Raises:
+            InputError: no width, or one that leaves nothing beside what refines it.
+        """
+        outward = None if self.outward is None else self.centre + 0.5 * width
+        return replace(self, width=width, outward=outward)
 
     def halves(self, width: Ratio | None = None, orientation: Ratio | None = None) -> tuple[Ratio, Ratio]:
         """As `half` and `ratio`, of widths that may be other ones in each trial (trials,) [mm].

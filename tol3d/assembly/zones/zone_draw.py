@@ -3,14 +3,15 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.zones.balls import RingFlat
+from tol3d.assembly.zones.centred import Centred
 from tol3d.assembly.zones.zone import Ratio, UnitLaw, Zone
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
@@ -118,6 +119,21 @@ class ZoneDraw(ABC):
     def middle_sigma(self) -> float:
         """See MiddleDraw."""
         return math.sqrt(max(float(self.zone.middle @ self.covariance @ self.zone.middle), 0.0))
+
+    @property
+    def width(self) -> float:
+        """See Zoned."""
+        return self.zone.width
+
+    def sized(self, width: float) -> Self:
+        """See Zoned."""
+        return replace(self, zone=self.zone.resized(width))
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable."""
+        if not 0.0 < factor < math.inf:
+            raise InputError(f"expected a factor above 0, got {factor:g}")
+        return self.sized(factor * self.width)
 
     def mean(self, *, turning: bool) -> tuple[float, ...]:
         """See Draw; directions are those of the feature, which does not turn."""
@@ -234,6 +250,23 @@ class Process(ZoneDraw):
     @cached_property
     def covariance(self) -> Array:
         return np.diag([law.variance for law in self.laws])
+
+    def sized(self, width: float) -> Self:
+        """See Zoned.
+
+        Raises:
+            InputError: always.
+        """
+        raise InputError(f"expected a law that fills its zone, got {self.words}; state its limits")
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable: the process; the zone stays that of the drawing."""
+        return replace(self, laws=tuple(law.scaled(factor) for law in self.laws))
+
+    def with_law(self, law: Distribution) -> Self:
+        """See Lawful: of each component; what spreads about 0 goes on doing so."""
+        laws = tuple(own.like(law) if isinstance(own, Centred) else law for own in self.laws)
+        return replace(self, laws=laws)
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
         """See Judged: outside the zone of the drawing's width."""

@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar, Final
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
 from tol3d.distributions import Distribution, standard_normal
 from tol3d.distributions.empirical import Empirical
+from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Values
 from tol3d.system.normals import Group, scalars, shifted
@@ -144,6 +145,13 @@ class PitchDraw:
         """See JointDraw."""
         least, most = (f"{100 * share:g}" for share in self.fill)
         return f"{self.pattern.words}, {least} to {most} % of limits, each of {self.teeth}"
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable: both limits."""
+        if not 0.0 < factor < math.inf:
+            raise InputError(f"expected a factor above 0, got {factor:g}")
+        limits = PitchLimits(factor * self.limits.single, factor * self.limits.cumulative)
+        return replace(self, limits=limits)
 
     @property
     def components(self) -> tuple[str, ...]:

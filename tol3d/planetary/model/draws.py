@@ -1,8 +1,8 @@
 """Tolerances of planetary sets: which there are, on what each acts, and how it is drawn."""
 
 import math
-from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from tol3d.assembly.from_scene.zones import drawn_by
 from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
-from tol3d.distributions import DeviationLaw
+from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
 from tol3d.numerics.arrays import Array
@@ -53,6 +53,19 @@ class EachZone(EachOwn):
         """See JointDraw: planets are independent."""
         return np.asarray(np.kron(np.eye(len(self.names)), self.each.covariance), dtype=np.float64)
 
+    @property
+    def width(self) -> float:
+        """See Zoned."""
+        return self.each.width
+
+    def sized(self, width: float) -> Self:
+        """See Zoned: all of them."""
+        return replace(self, each=self.each.sized(width))
+
+    def scaled(self, factor: float) -> Self:
+        """See Scalable: all of them."""
+        return replace(self, each=self.each.scaled(factor))
+
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: all of them along the steepest direction, as far as one reaches along it by itself.
 
@@ -77,6 +90,12 @@ class EachZone(EachOwn):
 @dataclass(frozen=True)
 class EachJudgedZone(EachZone):
     """The same of a process, which the zone judges only."""
+
+    each: Process
+
+    def with_law(self, law: Distribution) -> Self:
+        """See Lawful: all of them."""
+        return replace(self, each=self.each.with_law(law))
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
         """See JudgedDraw: where any bore lies outside its zone."""
@@ -129,7 +148,8 @@ def _bores(scene: Scene, own: PlanetarySet, spec: BorePositionSpec) -> Draw:
     """Each bore in its zone, its axis parallel to the set's."""
     zone = axis_section(spec.zone.diameter.internal)
     draw = drawn_by(spec.law, zone, scene.files)
-    return (EachJudgedZone if isinstance(draw, Process) else EachZone)(draw, planet_names(own))
+    names = planet_names(own)
+    return EachJudgedZone(draw, names) if isinstance(draw, Process) else EachZone(draw, names)
 
 
 def planet_names(own: PlanetarySet) -> tuple[str, ...]:

@@ -1,0 +1,158 @@
+"""Draws of other tolerances: the same features, their deviations by another law, or as many times as wide.
+
+A draw that is a dataclass of a distribution is made again with another one. Others say themselves what their tolerance
+is: a zone's width, limits of pitches. A draw that says nothing of it, such as a measured gear's, has no other one.
+"""
+
+from dataclasses import is_dataclass, replace
+from typing import Any, Literal, Protocol, runtime_checkable
+
+from tol3d.distributions import Distribution
+from tol3d.errors import InputError
+from tol3d.system.contributor import Contributor
+from tol3d.system.draw import Draw, Remembered
+
+Stays = Literal["middle", "low", "high"]
+"""Of a law that is scaled: its mean, or one of its limits."""
+
+
+@runtime_checkable
+class Scalable(Protocol, metaclass=Remembered):
+    """A Draw that says itself how it is drawn with another tolerance."""
+
+    def scaled(self, factor: float) -> Draw:
+        """As many times as wide, about its mean.
+
+        Raises:
+            InputError: that cannot be.
+        """
+        ...
+
+
+@runtime_checkable
+class Lawful(Protocol, metaclass=Remembered):
+    """A Draw that says itself how it is drawn by another law."""
+
+    def with_law(self, law: Distribution) -> Draw:
+        """The same by another law."""
+        ...
+
+
+@runtime_checkable
+class Zoned(Protocol, metaclass=Remembered):
+    """A Draw in a zone of a width [mm]."""
+
+    @property
+    def width(self) -> float:
+        """Of the zone."""
+        ...
+
+    def sized(self, width: float) -> Draw:
+        """The same in a zone of another width.
+
+        Raises:
+            InputError: that is no width, or less than what refines it.
+        """
+        ...
+
+
+@runtime_checkable
+class Following(Protocol, metaclass=Remembered):
+    """A Draw that knows the tolerance of what it reads."""
+
+    def following(self, name: str, draw: Draw) -> Draw:
+        """The same where a contributor that it reads is drawn otherwise."""
+        ...
+
+
+@runtime_checkable
+class Holding(Protocol, metaclass=Remembered):
+    """A Contributor whose tolerance may act by more than its own draw."""
+
+    @property
+    def held(self) -> str:
+        """By what, such as the gauge that inspects; "" for nothing."""
+        ...
+
+
+def with_law(draw: Draw, law: Distribution) -> Draw:
+    """A draw by another law.
+
+    Raises:
+        InputError: it has no law of its own.
+    """
+    if isinstance(draw, Lawful):
+        return draw.with_law(law)
+    own: Any = draw
+    if _is_of_law(draw):
+        made: Draw = replace(own, distribution=law)
+        return made
+    raise InputError(f"expected a contributor that is drawn by a law, got {_words(draw)}")
+
+
+def scaled(draw: Draw, factor: float, stays: Stays = "middle") -> Draw:
+    """A draw as many times as wide.
+
+    Args:
+        draw: its tolerance as it is.
+        factor: above 0.
+        stays: its mean, or one of its limits.
+
+    Raises:
+        InputError: it has no tolerance of its own, its law cannot be scaled, or has no such limit.
+    """
+    if isinstance(draw, Scalable):
+        if stays != "middle":
+            raise InputError(f"expected the middle to stay, got {stays}, of {_words(draw)}")
+        return draw.scaled(factor)
+    if not _is_of_law(draw):
+        raise InputError(f"expected a contributor that can be scaled, got {_words(draw)}")
+    own: Any = draw
+    return with_law(draw, scaled_law(own.distribution, factor, stays))
+
+
+def scaled_law(law: Distribution, factor: float, stays: Stays = "middle") -> Distribution:
+    """A law as many times as wide.
+
+    Raises:
+        InputError: it cannot be scaled, or has no such limit.
+    """
+    if stays == "middle":
+        return law.scaled(factor)
+    if law.limits is None:
+        raise InputError(f"expected a law with limits, of which the {stays} one stays, got {type(law).__name__}")
+    return law.scaled(factor, law.limits[0 if stays == "low" else 1])
+
+
+def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
+    """Refuse a draw below what is physical, or one whose tolerance acts elsewhere too.
+
+    Raises:
+        InputError: naming the contributor.
+    """
+    name = contributor.name
+    if isinstance(contributor, Holding) and contributor.held:
+        raise InputError(
+            f"{name}: expected a tolerance that acts by its deviation alone, got one that {contributor.held}; "
+            "write it into the scene"
+        )
+    least, law, per = contributor.least, draw.distribution, contributor.per_unit
+    if least is not None and law.low < min(least, contributor.distribution.low) - LEAST_OFF:
+        raise InputError(
+            f"{name}: expected at least {least / per:g} {contributor.unit}, for less is not physical, "
+            f"got down to {law.low / per:.4g} {contributor.unit}"
+        )
+
+
+LEAST_OFF = 1e-12
+"""mm, rad or K; rounding."""
+
+
+def _is_of_law(draw: Draw) -> bool:
+    fields: Any = getattr(draw, "__dataclass_fields__", {})
+    return is_dataclass(draw) and "distribution" in fields and isinstance(draw.distribution, Distribution)
+
+
+def _words(draw: Draw) -> str:
+    own = getattr(draw, "words", "")
+    return str(own) if isinstance(own, str) and own else f"a {type(draw).__name__}"
