@@ -79,6 +79,7 @@ NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*"
 DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
 COMMA_SEPARATES: Final = "decimals have a point, for a comma begins another entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
+WRITTEN_DIGITS: Final = 10  # of what is computed and written for users
 KEPT: Final = 4096  # quantities of which a text is read once
 LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
 UNITS: Final[dict[str, Dimension]] = {unit: dimension for dimension, table in FACTORS.items() for unit in table}
@@ -104,6 +105,14 @@ class Quantity:
     def internal(self) -> float:
         """The value in mm, rad, K, 1/K, N, N/mm or kg."""
         return self.number * FACTORS[self.dimension][self.unit]
+
+    def like(self, internal: float) -> "Quantity":
+        """A value in mm, rad, K ... in the unit of this one, to as many digits as anybody writes.
+
+        >>> str(Quantity.parse("20 um").like(0.0123456))
+        '12.3456 um'
+        """
+        return Quantity(float(f"{internal / FACTORS[self.dimension][self.unit]:.{WRITTEN_DIGITS}g}"), self.unit)
 
     def __str__(self) -> str:
         """As a user may write it, with as few digits as give the same number back."""

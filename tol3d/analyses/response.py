@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.distributions import Distribution
+from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
@@ -28,7 +29,7 @@ from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
-from tol3d.system.other_laws import Following, Stays, Zoned, refuse_impossible, with_law
+from tol3d.system.other_laws import Following, Zoned, refuse_impossible, with_law
 from tol3d.system.other_laws import scaled as scaled_draw
 from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
@@ -314,6 +315,16 @@ class Response:
         columns = draw.deviations(*uniforms)
         return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(-1, found.shape[1])
 
+    def drawn_by(self, name: str) -> Draw:
+        """How a contributor is drawn.
+
+        Raises:
+            InputError: no such contributor.
+        """
+        if name not in self.draws:
+            raise InputError(f"expected a contributor, got {name!r}{hint(name, self.draws)}")
+        return self.draws[name]
+
     def with_draws(self, draws: Mapping[str, Draw]) -> "Response":
         """The same system with other tolerances, by contributor; what has been counted goes on.
 
@@ -321,9 +332,7 @@ class Response:
             InputError: no such contributor, or a draw of other components.
         """
         for name, draw in draws.items():
-            if name not in self.draws:
-                raise InputError(f"expected a contributor, got {name!r}{hint(name, self.draws)}")
-            own, other = self.draws[name].components, draw.components
+            own, other = self.drawn_by(name).components, draw.components
             if len(own) != len(other):
                 raise InputError(f"{name}: expected a draw of {len(own)} components, got one of {len(other)}")
         return replace(self, draws={**self.draws, **draws})
@@ -366,10 +375,9 @@ class Response:
         known = {own.name: own for own in self.contributors}
         made: dict[str, Draw] = {}
         for name, change in changes.items():
-            if name not in known:
-                raise InputError(f"expected a contributor, got {name!r}{hint(name, known)}")
+            before = self.drawn_by(name)
             try:
-                made[name] = change(self.draws[name])
+                made[name] = change(before)
             except InputError as error:
                 raise InputError(f"{name}: {error}") from None
             refuse_impossible(known[name], made[name])

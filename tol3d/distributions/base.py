@@ -2,9 +2,9 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Literal, Protocol, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -20,6 +20,9 @@ HIGH_PROBABILITY = 1 - LOW_PROBABILITY
 CIRCLE_PROBABILITY = HIGH_PROBABILITY - LOW_PROBABILITY
 RADIUS_HALVINGS = 60  # down to the last bits of a double
 LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
+
+Stays = Literal["middle", "low", "high"]
+"""Of a law that is scaled: its mean, or one of its limits."""
 
 Place = Callable[[float], float]
 """From a deviation to another one [mm, rad or K]."""
@@ -144,6 +147,26 @@ class Distribution(ABC):
         middle = self.pivot if about is None else about
         return self.mapped(lambda own: middle if own == middle else middle + factor * (own - middle), factor)
 
+    def of_size(self, size: float) -> Self:
+        """A law that one number states, by another one [mm, rad or K].
+
+        Raises:
+            InputError: a law that limits state.
+        """
+        raise InputError(f"expected limits of a law that is {type(self).__name__.lower()}, such as ±10 um")
+
+    def scaled_at(self, factor: float, stays: Stays) -> Self:
+        """A law as many times as wide, of which the middle stays or a limit does.
+
+        Raises:
+            InputError: see `scaled`; a law that has no such limit.
+        """
+        if stays == "middle":
+            return self.scaled(factor)
+        if self.limits is None:
+            raise InputError(f"expected a law with limits, of which the {stays} one stays, got {type(self).__name__}")
+        return self.scaled(factor, self.limits[0 if stays == "low" else 1])
+
     @property
     def pivot(self) -> float:
         """The deviation that stays where a law is scaled: its mean; 0 of a length that has no other shape."""
@@ -186,6 +209,22 @@ class DistributionSpec(Strict, ABC):
         Raises:
             SceneError: a file that it names makes no sense; the text names file and line.
         """
+
+    def stating(self, law: Distribution) -> Self:
+        """As a scene writes another law of the kind, in the same units; to ten digits.
+
+        Raises:
+            InputError: a law that no numbers state.
+        """
+        told = self.numbers(law)
+        given = {name: quantity.like(told[name]) for name, quantity in self.quantities().items() if name in told}
+        if not given:
+            raise InputError(f"expected a law that numbers state, got {self.kind}")
+        return self.model_copy(update=given)
+
+    def numbers(self, law: Distribution) -> Mapping[str, float]:
+        """What the quantities of a spec are of a law [mm, rad or K], by their fields."""
+        return {name: getattr(law, name) for name in self.quantities() if hasattr(law, name)}
 
     @model_validator(mode="after")
     def _refuse_mixed_or_huge(self) -> Self:

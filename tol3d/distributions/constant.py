@@ -1,6 +1,6 @@
 """A deviation that does not vary."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
@@ -40,6 +40,10 @@ class Constant(Distribution):
     def limits(self) -> tuple[float, float]:
         """The value, twice."""
         return self.value, self.value
+
+    def of_size(self, size: float) -> Self:
+        """See Distribution: its value."""
+        return replace(self, value=size)
 
     def mapped(self, place: Place, factor: float) -> Self:
         """See Distribution.

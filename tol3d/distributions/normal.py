@@ -1,5 +1,6 @@
 """The normal distribution, by its limits or by mean and sigma."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal, Self
 
@@ -94,6 +95,13 @@ class NormalSpec(DistributionSpec):
             got = " and ".join(given) or "none of them"
             raise refused("kind", "either lower and upper, or mean and sigma", got)
         return self
+
+    def numbers(self, law: Distribution) -> Mapping[str, float]:
+        """See DistributionSpec."""
+        if not isinstance(law, Normal):
+            return super().numbers(law)
+        low, high = law.limits
+        return {"lower": low, "upper": high, "mean": law.location, "sigma": law.scale}
 
     def resolve(self, files: Files) -> Normal:
         """The law in mm, rad or K."""

@@ -53,6 +53,12 @@ class Rayleigh(Distribution):
         """No length: the vector's components are scaled about their means."""
         return 0.0
 
+    def of_size(self, size: float) -> Self:
+        """See Distribution: by its scale."""
+        if not size > 0.0:
+            raise InputError(f"expected a scale above 0, got {size:g}")
+        return replace(self, scale=size)
+
     def mapped(self, place: Place, factor: float) -> Self:
         """See Distribution.
 

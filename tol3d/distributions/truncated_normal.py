@@ -1,6 +1,7 @@
 """The normal distribution cut off at two limits, as sorted or adjusted parts have it."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, Self
@@ -97,6 +98,13 @@ class TruncatedNormalSpec(DistributionSpec):
             expected = f"limits that keep at least {LEAST_KEPT:.1%} of the normal (else uniform or triangular say it)"
             raise refused("lower", expected, f"{self.lower} to {self.upper}, which keep {kept:.2g}")
         return self
+
+    def numbers(self, law: Distribution) -> Mapping[str, float]:
+        """See DistributionSpec."""
+        if not isinstance(law, TruncatedNormal):
+            return super().numbers(law)
+        low, high = law.limits
+        return {"lower": low, "upper": high, "mean": law.location, "sigma": law.scale}
 
     def resolve(self, files: Files) -> TruncatedNormal:
         """The law in mm, rad or K."""

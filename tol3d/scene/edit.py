@@ -14,12 +14,12 @@ from tol3d.errors import InputError, unwritable
 from tol3d.scene.including import INCLUDE
 from tol3d.scene.load import read_scene
 from tol3d.scene.schema import Scene
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene.tolerance import ToleranceEntry
 
 UNBROKEN: Final = 10_000  # characters; no entry is broken into lines where its author did not
 INDENT: Final = 2
 
-Tolerances = Mapping[str, ToleranceSpec]
+Tolerances = Mapping[str, ToleranceEntry]
 
 
 def tolerance_lines(tolerances: Tolerances) -> str:
@@ -58,7 +58,7 @@ def write_scene(scene: Scene, path: Path) -> None:
 
 
 def _edited(scene: Scene, changed: Tolerances) -> str:
-    """A scene's text with these tolerances: of one that is there only the distribution is written anew.
+    """A scene's text with these tolerances: of one that is there only what changed is written anew.
 
     One of an included file is left out there, and written into the scene.
     """
@@ -74,7 +74,10 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
             tolerances[name] = _flow(plain)
             continue
         entry = copy(tolerances[name])  # another entry may be an alias of it
-        entry["distribution"] = _flow(plain["distribution"])
+        before = _plain(scene.tolerances[name])
+        for key, value in plain.items():
+            if before.get(key) != value:
+                entry[key] = _flow(value)
         tolerances[name] = entry
     return _written(data)
 
@@ -90,13 +93,11 @@ def _leave_out(includes: CommentedMap, name: str) -> None:
     includes[prefix] = spelt
 
 
-def _plain(spec: ToleranceSpec) -> dict[str, Any]:
+def _plain(spec: ToleranceEntry) -> dict[str, Any]:
     """What was said of it, the law last."""
-    plain = spec.model_dump(mode="json", exclude_unset=True)
-    return {
-        **{key: value for key, value in plain.items() if key != "distribution"},
-        "distribution": plain["distribution"],
-    }
+    plain: dict[str, Any] = spec.model_dump(mode="json", exclude_unset=True)
+    last = {key: plain.pop(key) for key in ("distribution",) if key in plain}
+    return {**plain, **last}
 
 
 def _flow(values: Any) -> Any:

@@ -6,11 +6,23 @@ from typing import ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.distributions import StatedDistribution
+from tol3d.distributions import DistributionSpec, StatedDistribution
+from tol3d.distributions.base import Stays
+from tol3d.errors import InputError
+from tol3d.files import Files
 from tol3d.scene.entry import Entry
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.units import Dimension, refuse_dimension
+
+
+def scaled_law(spec: DistributionSpec, factor: float, stays: Stays, files: Files) -> DistributionSpec:
+    """A stated law that is so many times as wide.
+
+    Raises:
+        InputError: it cannot be scaled, or no numbers state it.
+    """
+    return spec.stating(spec.resolve(files).scaled_at(factor, stays))
 
 
 class ToleranceEntry(Entry):
@@ -21,6 +33,19 @@ class ToleranceEntry(Entry):
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:
         """Every name that the tolerance uses."""
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """The tolerance as a scene writes it that is so many times as wide.
+
+        Args:
+            factor: above 0.
+            stays: its middle, or one of its limits.
+            files: those that its law reads.
+
+        Raises:
+            InputError: no numbers in the scene say how wide it is.
+        """
+        raise InputError("expected a tolerance whose width the scene states in numbers")
 
 
 class ToleranceSpec(ToleranceEntry):
@@ -33,6 +58,10 @@ class ToleranceSpec(ToleranceEntry):
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry."""
+        return self.model_copy(update={"distribution": scaled_law(self.distribution, factor, stays, files)})
 
     @model_validator(mode="after")
     def _refuse_other_dimensions(self) -> Self:

@@ -5,15 +5,13 @@ is: a zone's width, limits of pitches. A draw that says nothing of it, such as a
 """
 
 from dataclasses import is_dataclass, replace
-from typing import Any, Literal, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from tol3d.distributions import Distribution
+from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import Draw, Remembered
-
-Stays = Literal["middle", "low", "high"]
-"""Of a law that is scaled: its mean, or one of its limits."""
 
 
 @runtime_checkable
@@ -108,20 +106,7 @@ def scaled(draw: Draw, factor: float, stays: Stays = "middle") -> Draw:
     if not _is_of_law(draw):
         raise InputError(f"expected a contributor that can be scaled, got {_words(draw)}")
     own: Any = draw
-    return with_law(draw, scaled_law(own.distribution, factor, stays))
-
-
-def scaled_law(law: Distribution, factor: float, stays: Stays = "middle") -> Distribution:
-    """A law as many times as wide.
-
-    Raises:
-        InputError: it cannot be scaled, or has no such limit.
-    """
-    if stays == "middle":
-        return law.scaled(factor)
-    if law.limits is None:
-        raise InputError(f"expected a law with limits, of which the {stays} one stays, got {type(law).__name__}")
-    return law.scaled(factor, law.limits[0 if stays == "low" else 1])
+    return with_law(draw, own.distribution.scaled_at(factor, stays))
 
 
 def refuse_impossible(contributor: Contributor, draw: Draw) -> None:

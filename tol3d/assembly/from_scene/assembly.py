@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.from_scene.boundaries import mark_held, shift_frames
+from tol3d.assembly.from_scene.boundaries import shift_frames
 from tol3d.assembly.from_scene.contributors import Effects, effects_of
 from tol3d.assembly.from_scene.datums import DatumFrames, in_order
 from tol3d.assembly.from_scene.features import TouchedPoints, features_of
+from tol3d.assembly.from_scene.held import mark_held
 from tol3d.assembly.from_scene.measures import add_projected, add_twins, measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.warming import warmed

@@ -7,15 +7,13 @@ import numpy as np
 
 from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
-from tol3d.assembly.from_scene.measures import named_by
 from tol3d.assembly.from_scene.zones import sized_by
 from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shifts_alone
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
-from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
+from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
@@ -59,37 +57,6 @@ def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: Datum
             rooms = rooms_of(scene, drawing, frame.part, datums)
             floating = None if datums[-1].mmb == "least" else _floating(effects, frame, datums)
             frames.made[name] = replace(frame, gauges=Gauges(rooms, floating))
-
-
-def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
-    """Say of contributors by what else their tolerances act: gauges, inspections, what is left of a zone."""
-    held: dict[str, str] = {}
-    inspected = {
-        feature
-        for name, names in named_by(scene).items()
-        if getattr(scene.measures[name], "modifier", None) is not None
-        for feature in names
-    }
-    gauged = {
-        f"{own.part}.{feature}"
-        for name, own in frames.made.items()
-        for datum in frames.specs[name]
-        if datum.mmb is not None
-        for feature in datum.features
-    }
-    for own in drawing.stated:
-        if isinstance(own, str):
-            continue
-        sized = isinstance(own.spec, SizeSpec) and own.spec.limits is None
-        if own.feature in gauged and (sized or isinstance(own.spec, LocationSpec | OrientationSpec)):
-            held[own.name] = "sizes a gauge of a datum"
-        elif own.feature in inspected and sized:
-            held[own.name] = "sizes the zone that a measure inspects"
-        elif isinstance(own.spec, FormSpec | OrientationSpec) and drawing.of(own.feature, LocationSpec):
-            held[own.name] = "narrows another zone"
-    for k, each in enumerate(effects.contributors):
-        if each.name in held:
-            effects.contributors[k] = replace(each, held=held[each.name])
 
 
 def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]:

@@ -1,14 +1,18 @@
 """Tolerance zones and the laws of deviations in them, as a scene names them."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Final, Literal, Self, get_args
+from typing import Annotated, Any, ClassVar, Final, Literal, Protocol, Self, TypeVar, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.distributions import StatedDistribution
+from tol3d.distributions.base import Stays
+from tol3d.errors import InputError
+from tol3d.files import Files
 from tol3d.import_path import is_named
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
+from tol3d.scene.tolerance import ToleranceEntry, scaled_law
 from tol3d.scene.vector import Direction
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Quantity, shown
@@ -37,6 +41,14 @@ class ZoneSpec(Strict):
         given = self.diameter or self.width
         return 0.0 if given is None else given.internal
 
+    def scaled(self, factor: float) -> Self:
+        """As many times as wide, about its middle."""
+        given = {name: getattr(self, name) for name in ("diameter", "width")}
+        sizes = {name: own.like(factor * own.internal) for name, own in given.items() if own is not None}
+        if self.outward is not None:
+            sizes["outward"] = self.outward.like(self.outward.internal + 0.5 * (factor - 1.0) * self.size)
+        return self.model_copy(update=sizes)
+
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
         if (self.diameter is None) == (self.width is None):
@@ -47,6 +59,17 @@ class ZoneSpec(Strict):
 
 
 DRAWS: Final = "tol3d.assembly.from_scene.laws"
+
+
+class Resizable(Protocol):
+    """A zone."""
+
+    def scaled(self, factor: float) -> Self:
+        """As many times as wide."""
+        ...
+
+
+Scaled = TypeVar("Scaled", bound=Resizable)
 
 
 class LawSpec(Strict):
@@ -66,6 +89,10 @@ class LawSpec(Strict):
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Files that it reads, each with its field."""
         return iter(())
+
+    def scaled(self, zone: Scaled, factor: float, files: Files) -> tuple[Self, Scaled]:
+        """It and its zone, so that deviations spread so many times as far: by the zone, if not said otherwise."""
+        return self, zone.scaled(factor)
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
@@ -111,6 +138,10 @@ class ProcessLawSpec(LawSpec):
     kind: Literal["process"]
     distribution: StatedDistribution = Field(description="of each coordinate, a length at the end of the feature")
 
+    def scaled(self, zone: Scaled, factor: float, files: Files) -> tuple[Self, Scaled]:
+        law = scaled_law(self.distribution, factor, "middle", files)
+        return self.model_copy(update={"distribution": law}), zone
+
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
@@ -135,3 +166,21 @@ def laws_lacking(annotation: Any) -> Iterator[str]:
     else:
         for own in get_args(annotation):
             yield from laws_lacking(own)
+
+
+Zoned = TypeVar("Zoned", bound=ToleranceEntry)
+
+
+def scaled_in_zone(spec: Zoned, factor: float, stays: Stays, files: Files) -> Zoned:
+    """A tolerance with a zone and a law, whose deviations spread so many times as far.
+
+    Raises:
+        InputError: a limit is to stay, or the law cannot be scaled.
+    """
+    own: Any = spec
+    if stays != "middle":
+        raise InputError(f"expected the middle of a zone to stay, got {stays}")
+    if own.law is None:
+        return spec.model_copy(update={"zone": own.zone.scaled(factor)})
+    law, zone = own.law.scaled(own.zone, factor, files)
+    return spec.model_copy(update={"zone": zone, "law": law})

@@ -1,11 +1,13 @@
 """Kinds of tolerance of planetary sets."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from tol3d.assembly.grammar.zone import LawUnion
+from tol3d.assembly.grammar.zone import LawUnion, scaled_in_zone
+from tol3d.distributions.base import Stays
+from tol3d.files import Files
 from tol3d.planetary.grammar.parts import CarrierSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import Length
@@ -19,6 +21,10 @@ class RoundZoneSpec(Strict):
     """A cylinder about where an axis should be."""
 
     diameter: Length = Field(description="of the cylinder: ⌀ in the frame of the drawing")
+
+    def scaled(self, factor: float) -> Self:
+        """As many times as wide."""
+        return self.model_copy(update={"diameter": self.diameter.like(factor * self.diameter.internal)})
 
 
 class BorePositionSpec(ToleranceEntry):
@@ -38,6 +44,10 @@ class BorePositionSpec(ToleranceEntry):
     def references(self) -> tuple[Reference, ...]:
         """The carrier."""
         return (Reference(("of",), self.of, (CarrierSpec,)),)
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry."""
+        return scaled_in_zone(self, factor, stays, files)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Those that its law reads."""

@@ -1,13 +1,15 @@
 """Zones that say where a feature lies, how it is turned, of what form it is; run-outs are of an axis."""
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
-from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec
+from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec, scaled_in_zone
+from tol3d.distributions.base import Stays
+from tol3d.files import Files
 from tol3d.scene.place import KeyPath
 from tol3d.strict import refused
 
@@ -26,6 +28,10 @@ class LocationSpec(FeatureTolerance):
             laws = "{kind: uniform}, {kind: normal} or {kind: process, distribution: …}"
             raise refused("law", f"how deviations lie in the zone, which drawings leave open: {laws}", "none")
         return value
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry."""
+        return scaled_in_zone(self, factor, stays, files)
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
@@ -85,6 +91,10 @@ class OrientationSpec(Modified, FeatureTolerance):
     )
     datums: Datums
 
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry."""
+        return scaled_in_zone(self, factor, stays, files)
+
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
         return self.datums
@@ -121,6 +131,10 @@ class FormSpec(FeatureTolerance):
     law: LawUnion | None = Field(
         default=None, description="of the points that touch; they lie on the shape if not given"
     )
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry."""
+        return scaled_in_zone(self, factor, stays, files)
 
 
 class FlatnessSpec(FormSpec):

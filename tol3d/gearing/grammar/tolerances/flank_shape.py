@@ -8,7 +8,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tol3d.distributions import Distribution, Normal, StatedDistribution, Uniform
-from tol3d.errors import GeometryError
+from tol3d.distributions.base import Stays
+from tol3d.errors import GeometryError, InputError
 from tol3d.files import Files
 from tol3d.gearing.draws.pitch_draw import GivenDraw, tooth_names
 from tol3d.gearing.effects import FORM, HELIX, SLOPE, FlankDeviation, Place
@@ -25,6 +26,7 @@ from tol3d.gears.iso1328 import FlankTolerances
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
+from tol3d.scene.tolerance import scaled_law
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.units import Of, Quantity, refuse_dimension
@@ -121,6 +123,16 @@ class FlankShapeSpec(FlankToleranceSpec):
             yield from self.law.file_names()
         if isinstance(self.law, StatedShapeSpec):
             yield from ((("law", "distribution", field), name) for field, name in self.law.distribution.file_names())
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry: the limit, or the stated law."""
+        if isinstance(self.law, StatedShapeSpec):
+            law = self.law.model_copy(update={"distribution": scaled_law(self.law.distribution, factor, stays, files)})
+            return self.model_copy(update={"law": law})
+        if stays != "middle" or self.limits is None or self.limits.size is None:
+            raise InputError("expected a limit that is a length, size")
+        size = self.limits.size.like(factor * self.limits.size.internal)
+        return self.model_copy(update={"limits": self.limits.model_copy(update={"size": size})})
 
     @abstractmethod
     def of_class(self, limits: FlankTolerances) -> float:

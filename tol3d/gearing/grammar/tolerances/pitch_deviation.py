@@ -7,7 +7,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.errors import GeometryError, SceneError
+from tol3d.distributions.base import Stays
+from tol3d.errors import GeometryError, InputError, SceneError
 from tol3d.files import Files
 from tol3d.gearing.draws.normal_pitch_draw import NormalPitchDraw
 from tol3d.gearing.draws.pitch_draw import (
@@ -187,6 +188,15 @@ class PitchDeviationSpec(FlankToleranceSpec):
             got = " and ".join(given) or "none"
             raise refused("law", f"{' and '.join(wanted)} for flanks {self.flanks}", got)
         return self
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry: both limits."""
+        limits = self.limits
+        if stays != "middle" or limits is None or limits.single is None or limits.cumulative is None:
+            raise InputError("expected limits that are lengths, single and cumulative")
+        both = {"single": limits.single, "cumulative": limits.cumulative}
+        wider = {name: own.like(factor * own.internal) for name, own in both.items()}
+        return self.model_copy(update={"limits": limits.model_copy(update=wider)})
 
     def draw(self, gear: SpurGear, files: Files) -> Draw:
         """See FlankToleranceSpec."""

@@ -1,0 +1,149 @@
+"""Other tolerances as a user states them: limits, a scale or a width by contributor, or a factor."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tol3d.analyses.response import Response
+from tol3d.distributions import Distribution
+from tol3d.errors import InputError
+from tol3d.scene.nearest import hint
+from tol3d.system.contributor import Contributor
+from tol3d.system.draw import Draw
+from tol3d.system.other_laws import Zoned
+from tol3d.units import UNITS, Quantity, expectation
+
+PLUS_MINUS: Final = re.compile(r"\s*(?:±|\+-|\+/-)\s*(?P<size>[^±+-].*)")
+RANGE: Final = re.compile(r"(?P<low>.*[^.\s])\s*\.\.\s*(?P<high>[^.].*|\.\d.*)")
+EXAMPLES: Final = "±10 um, -5 um..+10 um, or 5 um of a zone or a scale"
+
+
+@dataclass(frozen=True)
+class Change:
+    """Of one contributor.
+
+    Args:
+        name: of it.
+        limits: between which it is drawn [mm, rad or K].
+        size: of its zone, or of a law that one number states.
+        factor: by which it is wider.
+    """
+
+    name: str
+    limits: tuple[float, float] | None = None
+    size: float | None = None
+    factor: float | None = None
+
+
+def change_of(response: Response, text: str) -> Change:
+    """What `--set NAME=VALUE` says: `±10um`, `+-10 um`, `-5 um..+10 um`, `5 um`.
+
+    Raises:
+        InputError: no such contributor, or no such value of it.
+    """
+    name, value = _split(response, "--set", text)
+    contributor = next(own for own in response.contributors if own.name == name)
+    if found := PLUS_MINUS.fullmatch(value):
+        size = _length(contributor, text, found["size"])
+        return Change(name, limits=(-size, size))
+    if found := RANGE.fullmatch(value):
+        return Change(name, limits=(_length(contributor, text, found["low"]), _length(contributor, text, found["high"])))
+    return Change(name, size=_length(contributor, text, value))
+
+
+def factor_of(response: Response, text: str, option: str = "--factor") -> Change:
+    """What `--factor NAME=0.5` says.
+
+    Raises:
+        InputError: no such contributor, or no factor above 0.
+    """
+    name, value = _split(response, option, text)
+    try:
+        factor = float(value)
+    except ValueError:
+        factor = 0.0
+    if not 0.0 < factor < float("inf"):
+        raise InputError(f"{option} {text!r}: expected a factor above 0 such as 0.5, got {value!r}")
+    return Change(name, factor=factor)
+
+
+def changed(response: Response, changes: Sequence[Change]) -> Response:
+    """The same system with other tolerances.
+
+    Raises:
+        InputError: one that cannot be, by the name of its contributor; two of one contributor.
+    """
+    names = [own.name for own in changes]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{name}: expected one change of it, got {names.count(name)}")
+    factors = {own.name: own.factor for own in changes if own.factor is not None}
+    laws: dict[str, Distribution] = {}
+    widths: dict[str, float] = {}
+    for own in changes:
+        draw = response.drawn_by(own.name)
+        if own.size is not None and isinstance(draw, Zoned):
+            widths[own.name] = own.size
+        elif own.factor is None:
+            laws[own.name] = _law(draw, own)
+    return response.scaled(factors).sized(widths).with_laws(laws)
+
+
+def _law(draw: Draw, change: Change) -> Distribution:
+    law = draw.distribution
+    if isinstance(draw, Zoned):
+        raise InputError(f"{change.name}: expected the width of its zone, such as 10 um, got limits")
+    if not isinstance(law, Distribution):
+        raise InputError(f"{change.name}: expected a contributor that is drawn by a law; say --factor")
+    try:
+        return law.within(*change.limits) if change.limits is not None else law.of_size(change.size or 0.0)
+    except InputError as error:
+        raise InputError(f"{change.name}: {error}") from None
+
+
+def _split(response: Response, option: str, text: str) -> tuple[str, str]:
+    name, sign, value = (own.strip() for own in text.rpartition("="))
+    if not (sign and name and value):
+        raise InputError(f"{option}: expected NAME=VALUE, such as {EXAMPLES}, got {text!r}")
+    return known(response, option, name), value
+
+
+def known(response: Response, option: str, name: str) -> str:
+    """The name of a contributor.
+
+    Raises:
+        InputError: nobody is called so.
+    """
+    names = {own.name: own for own in response.contributors}
+    if name not in names:
+        raise InputError(f"{option}: expected a contributor, got {name!r}{hint(name, names)}")
+    return name
+
+
+def _length(contributor: Contributor, text: str, value: str) -> float:
+    dimension = UNITS.get(contributor.unit)
+    try:
+        quantity = Quantity.parse(value.strip())
+    except ValueError as error:
+        wanted = EXAMPLES if dimension is None else f"{expectation(dimension)}: {EXAMPLES}"
+        raise InputError(f"--set {text!r}: expected {wanted}; {error}") from None
+    if quantity.dimension != dimension:
+        wanted = f"in {contributor.unit}" if dimension is None else expectation(dimension)
+        raise InputError(f"--set {text!r}: expected {wanted}, got {quantity}")
+    return quantity.internal
+
+
+def told(contributor: Contributor, draw: Draw) -> str:
+    """The tolerance of a draw in words and numbers, such as `normal -20 … 20 um`."""
+    law, per, unit = draw.distribution, contributor.per_unit, contributor.unit
+    sign = {"um": "µm", "1": ""}.get(unit, unit)
+    if isinstance(draw, Zoned):
+        return f"zone of {draw.width / per:.5g} {sign}".strip()
+    name = type(law).__name__.lower() if isinstance(law, Distribution) else ""
+    limits = law.limits if isinstance(law, Distribution) else None
+    if limits is not None:
+        return f"{name} {limits[0] / per:.5g} … {limits[1] / per:.5g} {sign}".strip()
+    return f"{name} mean {law.mean / per:.5g}, sigma {law.sigma / per:.5g} {sign}".strip()
+
+

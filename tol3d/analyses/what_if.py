@@ -1,0 +1,282 @@
+"""What if a tolerance were another one: sigma by rates and ppm by FORM at once, then by simulation with the same draws.
+
+Rates are slopes at the mean build, taken once; other tolerances change the spreads alone. Design points are sought anew
+with the other laws. The simulation draws the same uniforms before and after, so that what differs is the tolerance; how
+often limits are left is found by importance sampling about the design points, from the same seed. Kept trials are not
+weighed anew: in the tails that is off by a factor.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+from pydantic import Field
+from scipy.special import ndtr
+
+from tol3d.analyses.changes import Change, changed, told
+from tol3d.analyses.rare import LimitState, Side, design_points, rare_event
+from tol3d.analyses.rates import Rates
+from tol3d.analyses.response import Response
+from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Number, Numbers, Ppm, PpmRange, Section, made
+from tol3d.statistics.limits import Proportion
+from tol3d.system.dependent import reads_of
+from tol3d.system.measure import Measure
+
+PLACES: Final = 16
+STARTS: Final = 2
+LOW, HIGH = 0.00135, 0.99865
+BINS: Final = 60
+MOST_TRIALS: Final = 100_000
+
+SIDES: Final[tuple[Side, Side]] = ("low", "high")
+
+
+class ChangeMade(Section):
+    """A tolerance before and after, in words."""
+
+    contributor: Label
+    before: Label
+    after: Label
+
+
+class LimitNumbers(Section):
+    """How often a limit is left [ppm]: by the first order; by importance sampling, or counted where draws have no map."""
+
+    first_order: Ppm | None
+    ppm: Ppm
+    interval: PpmRange
+    beta: Known
+
+
+class StateNumbers(Section):
+    """A measure with some tolerances, in its unit.
+
+    `low` and `high` are the quantiles 0.135 % and 99.865 % of the trials; `counts` are trials a bin.
+    """
+
+    sigma_by_rates: Known
+    mean: Known
+    sigma: Known
+    low: Known
+    high: Known
+    failed: Count
+    counts: Numbers
+    limits: dict[str, LimitNumbers] = Field(description="low, high: those that the measure has")
+
+
+class MeasureWhatIf(Section):
+    """A measure before and after."""
+
+    unit: Label
+    lower_limit: Known
+    upper_limit: Known
+    edges: KnownNumbers
+    before: StateNumbers
+    after: StateNumbers
+
+
+class WhatIf(Section):
+    """What other tolerances do to measures."""
+
+    changes: list[ChangeMade]
+    trials: Count
+    draws: Count
+    rough: list[Label] = Field(description="contributors without a smooth map from normals: limits are counted")
+    measures: dict[Label, MeasureWhatIf]
+    evaluations: Count
+
+
+class Quick(Section):
+    """What is known at once: sigma by rates and ppm by FORM, before and after."""
+
+    sigma: Number
+    ppm: dict[str, Known]
+
+
+def first_order_ppm(response: Response, side: Side, limit: float, *, seed: int = 1) -> tuple[float | None, float | None]:
+    """How often a limit is left by FORM [ppm], averaged over positions, and the least distance β of a design point.
+
+    Args:
+        response: of one measure.
+        side, limit: which, in its unit.
+        seed: of the positions and starts.
+
+    Returns:
+        None for both where no design point is found, or a contributor has no smooth map from normals.
+    """
+    if response.rough:
+        return None, None
+    generator = np.random.default_rng(seed)
+    count = PLACES if response.simulation.system.streams else 1
+    positions = response.positions(count, "drawn" if count > 1 else "rest", int(generator.integers(2**31)))
+    found = design_points(LimitState(response, limit, side), positions, count, STARTS, generator)
+    betas = [own[0].beta for own in found if own]
+    if not betas:
+        return None, None
+    return 1e6 * float(np.mean(ndtr(-np.array(betas)))), min(betas)
+
+
+def limits_of(measure: Measure) -> dict[Side, float]:
+    """The limits of a measure by their sides, in its unit."""
+    both = zip(SIDES, (measure.lower_limit, measure.upper_limit), strict=True)
+    return {side: limit * measure.per_internal for side, limit in both if limit is not None}
+
+
+def quick_what_if(response: Response, changes: Sequence[Change]) -> dict[str, tuple[Quick, Quick]]:
+    """Before and after by first order, of every measure: no trial is drawn.
+
+    Raises:
+        InputError: see `changed`.
+    """
+    after, rates = changed(response, changes), Rates(response)
+    found: dict[str, tuple[Quick, Quick]] = {}
+    for k, measure in enumerate(response.measures):
+        both = [
+            made(
+                Quick,
+                sigma=float(rates.sigmas(own)[k]),
+                ppm={
+                    side: first_order_ppm(own.of(measure.name), side, limit)[0]
+                    for side, limit in limits_of(measure).items()
+                },
+            )
+            for own in (response, after)
+        ]
+        found[measure.name] = (both[0], both[1])
+    return found
+
+
+def what_if(
+    response: Response,
+    changes: Sequence[Change],
+    measure: str | None = None,
+    *,
+    trials: int | None = None,
+    draws: int = 5600,
+    seed: int = 1,
+    activity: Callable[[str], None] = lambda text: None,
+) -> WhatIf:
+    """What other tolerances do to measures that depend on them.
+
+    Args:
+        response: with the tolerances of the scene.
+        changes: one a contributor.
+        measure: of which; of all that depend on them if not given.
+        trials: of the simulation; the study's if not given, 100 000 at most.
+        draws: of importance sampling, for each limit before and after.
+        seed: of importance sampling; trials have the study's.
+        activity: callback that gets what goes on, in words.
+
+    Raises:
+        InputError: no change, one that cannot be, or no measure that depends on them.
+    """
+    if not changes:
+        raise InputError("expected a change such as --set NAME=±10um or --factor NAME=0.5, got none")
+    asked = response.of(*_concerned(response, changes, measure))
+    before, count = asked.evaluations, min(trials or asked.simulation.study.trials, MOST_TRIALS)
+    states = {"before": asked, "after": changed(asked, changes)}
+    activity("rates")
+    rates = Rates(asked)
+    sampled = {}
+    for word, own in states.items():
+        activity(f"{count} trials {word}")
+        read = own.values(*own.drawn(count))
+        sampled[word] = np.where(read.seated | np.isfinite(read.values), read.values, np.nan)
+    found = {}
+    for k, one in enumerate(asked.measures):
+        values = {word: own[:, k] for word, own in sampled.items()}
+        edges = _edges(values)
+        both = {}
+        for word, own in states.items():
+            activity(f"{one.name}, limits {word}")
+            alone, sigma = own.of(one.name), float(rates.sigmas(own)[k])
+            both[word] = _numbers(alone, sigma, values[word], edges, draws, seed)
+        found[one.name] = made(
+            MeasureWhatIf,
+            unit=one.unit,
+            lower_limit=limits_of(one).get("low"),
+            upper_limit=limits_of(one).get("high"),
+            edges=edges.tolist(),
+            before=both["before"],
+            after=both["after"],
+        )
+    by_name = {own.name: own for own in asked.contributors}
+    rows = [
+        made(
+            ChangeMade,
+            contributor=own.name,
+            before=told(by_name[own.name], states["before"].drawn_by(own.name)),
+            after=told(by_name[own.name], states["after"].drawn_by(own.name)),
+        )
+        for own in changes
+    ]
+    return made(
+        WhatIf,
+        changes=rows,
+        trials=count,
+        draws=draws,
+        rough=list(asked.rough),
+        measures=found,
+        evaluations=asked.evaluations - before,
+    )
+
+
+def _concerned(response: Response, changes: Sequence[Change], measure: str | None) -> list[str]:
+    """Measures that depend on changed contributors, or on what reads these."""
+    names = {own.name for own in changes}
+    system = response.simulation.system
+    names |= {own.name for own in system.contributors if names & set(reads_of(own))}
+    asked = response.measures if measure is None else response.of(measure).measures
+    found = [own.name for own in asked if names & {each.name for each in system.acting(own)}]
+    if not found:
+        which = "a measure" if measure is None else repr(measure)
+        changed_ones = ", ".join(own.name for own in changes)
+        raise InputError(f"expected contributors on which {which} depends, got {changed_ones}")
+    return found
+
+
+def _numbers(response: Response, by_rates: float, values: Array, edges: Array, draws: int, seed: int) -> StateNumbers:
+    good = values[np.isfinite(values)]
+    low, high = np.quantile(good, [LOW, HIGH]) if good.size else (None, None)
+    return made(
+        StateNumbers,
+        sigma_by_rates=by_rates if np.isfinite(by_rates) else None,
+        mean=float(good.mean()) if good.size else None,
+        sigma=float(good.std(ddof=1)) if good.size > 1 else None,
+        low=None if low is None else float(low),
+        high=None if high is None else float(high),
+        failed=len(values) - len(good),
+        counts=np.histogram(good, edges)[0].astype(float).tolist(),
+        limits={
+            side: _limit(response, side, limit, values, draws, seed)
+            for side, limit in limits_of(response.measures[0]).items()
+        },
+    )
+
+
+def _limit(response: Response, side: Side, limit: float, values: Array, draws: int, seed: int) -> LimitNumbers:
+    if response.rough:
+        with np.errstate(invalid="ignore"):
+            within = values >= limit if side == "low" else values <= limit
+        counted = Proportion(int((~within).sum()), len(values))
+        return made(
+            LimitNumbers, first_order=None, ppm=counted.ppm or 0.0, interval=list(counted.interval_ppm()), beta=None
+        )
+    event = rare_event(response, side, limit, draws=draws, seed=seed)
+    return made(
+        LimitNumbers,
+        first_order=None if event.first_order is None else 1e6 * event.first_order,
+        ppm=min(1e6 * event.probability, 1e6),
+        interval=[1e6 * own for own in event.interval],
+        beta=event.points[0].beta if event.points else None,
+    )
+
+
+def _edges(values: dict[str, Array]) -> Array:
+    every = np.concatenate([own[np.isfinite(own)] for own in values.values()])
+    if not every.size or not every.max() > every.min():
+        middle = float(every[0]) if every.size else 0.0
+        return np.array([middle - 0.5, middle + 0.5])
+    return np.linspace(float(every.min()), float(every.max()), BINS + 1)
