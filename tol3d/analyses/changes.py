@@ -48,7 +48,9 @@ def change_of(response: Response, text: str) -> Change:
         size = _length(contributor, text, found["size"])
         return Change(name, limits=(-size, size))
     if found := RANGE.fullmatch(value):
-        return Change(name, limits=(_length(contributor, text, found["low"]), _length(contributor, text, found["high"])))
+        return Change(
+            name, limits=(_length(contributor, text, found["low"]), _length(contributor, text, found["high"]))
+        )
     return Change(name, size=_length(contributor, text, value))
 
 
@@ -145,5 +147,3 @@ def told(contributor: Contributor, draw: Draw) -> str:
     if limits is not None:
         return f"{name} {limits[0] / per:.5g} … {limits[1] / per:.5g} {sign}".strip()
     return f"{name} mean {law.mean / per:.5g}, sigma {law.sigma / per:.5g} {sign}".strip()
-
-

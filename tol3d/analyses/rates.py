@@ -1,5 +1,6 @@
 """Sigma by rates: slopes of measures at the mean build and the spreads of the draws, averaged over positions."""
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -26,21 +27,17 @@ def covariance_of(draw: Draw) -> Array:
     return np.diag(np.square(component_sigmas(draw)))
 
 
+@dataclass(frozen=True, eq=False)
 class Rates:
     """Slopes of the measures of a response, for any tolerances of the same system.
 
     Args:
-        response: at whose mean build they are taken.
+        slopes: at the mean build, at some positions (places, measures, components), in measures' units a mm, rad or K.
+        of_positions: variance of the mean build over positions (measures,).
     """
 
-    def __init__(self, response: Response) -> None:
-        count, how = (PLACES, "drawn") if response.simulation.system.streams else (1, "rest")
-        mean = response.mean
-        positions = response.positions(count, "drawn" if how == "drawn" else "rest")
-        self.slopes = response.gradient(np.tile(mean, (count, 1)), positions)
-        many = MANY_PLACES if how == "drawn" else 1
-        read = response.values(np.tile(mean, (many, 1)), response.positions(many, "drawn" if how == "drawn" else "rest"))
-        self.of_positions = np.asarray(np.nanvar(read.values, axis=0)) if many > 1 else np.zeros(read.values.shape[1])
+    slopes: Array
+    of_positions: Array
 
     def variances(self, response: Response) -> dict[str, Array]:
         """Parts of the variance (measures,) by contributor, in the squares of the measures' units."""
@@ -52,4 +49,16 @@ class Rates:
 
     def sigmas(self, response: Response) -> Array:
         """Of the measures, positions included (measures,)."""
-        return np.sqrt(sum(self.variances(response).values(), self.of_positions))
+        return np.asarray(np.sqrt(sum(self.variances(response).values(), self.of_positions)))
+
+
+def rates_of(response: Response) -> Rates:
+    """The rates at the mean build of a response."""
+    moves = bool(response.simulation.system.streams)
+    mean = response.mean
+    read: list[Array] = []
+    for count in (PLACES, MANY_PLACES) if moves else (1, 1):
+        builds, positions = np.tile(mean, (count, 1)), response.positions(count, "drawn" if moves else "rest")
+        read.append(response.values(builds, positions).values if read else response.gradient(builds, positions))
+    slopes, values = read
+    return Rates(slopes, np.asarray(np.nanvar(values, axis=0)) if moves else np.zeros(values.shape[1]))

@@ -350,16 +350,13 @@ class Response:
 
         Args:
             factors: above 0; the others' tolerances are as they are.
-            stays: of some of them, which limit does; the middle if not given.
+            stays: of some of them, which limit does; see `naturally_stays`, if not given.
 
         Raises:
             InputError: no such contributor, one whose law cannot be scaled, or deviations that cannot be.
         """
         return self._made_again(
-            {
-                name: partial(scaled_draw, factor=factor, stays=stays.get(name, "middle"))
-                for name, factor in factors.items()
-            }
+            {name: partial(scaled_draw, factor=factor, stays=stays.get(name)) for name, factor in factors.items()}
         )
 
     def sized(self, widths: Mapping[str, float]) -> "Response":

@@ -21,6 +21,7 @@ from tol3d.study.simulation import Simulation
 FOLDER: Final = "analyses"
 SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
+    "what-if": "tol3d.analyses.what_if:WhatIf",
 }
 """The class of each section by its name, as an import path."""
 
@@ -36,6 +37,11 @@ class Subject:
 
     simulation: Simulation
     run: Run | None = None
+
+    @property
+    def name(self) -> str:
+        """The scene's own."""
+        return self.simulation.system.name
 
     @cached_property
     def response(self) -> Response:

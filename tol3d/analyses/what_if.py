@@ -15,11 +15,11 @@ from scipy.special import ndtr
 
 from tol3d.analyses.changes import Change, changed, told
 from tol3d.analyses.rare import LimitState, Side, design_points, rare_event
-from tol3d.analyses.rates import Rates
+from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Number, Numbers, Ppm, PpmRange, Section, made
+from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Numbers, Ppm, PpmRange, Section, made
 from tol3d.statistics.limits import Proportion
 from tol3d.system.dependent import reads_of
 from tol3d.system.measure import Measure
@@ -27,7 +27,7 @@ from tol3d.system.measure import Measure
 PLACES: Final = 16
 STARTS: Final = 2
 LOW, HIGH = 0.00135, 0.99865
-BINS: Final = 60
+BINS: Final = 40
 MOST_TRIALS: Final = 100_000
 
 SIDES: Final[tuple[Side, Side]] = ("low", "high")
@@ -42,11 +42,14 @@ class ChangeMade(Section):
 
 
 class LimitNumbers(Section):
-    """How often a limit is left [ppm]: by the first order; by importance sampling, or counted where draws have no map."""
+    """How often a limit is left [ppm]: by the first order, and by importance sampling.
+
+    Trials that leave it are counted where draws have no map from normals; None of a simulation that was not asked for.
+    """
 
     first_order: Ppm | None
-    ppm: Ppm
-    interval: PpmRange
+    ppm: Ppm | None
+    interval: PpmRange | None
     beta: Known
 
 
@@ -88,14 +91,9 @@ class WhatIf(Section):
     evaluations: Count
 
 
-class Quick(Section):
-    """What is known at once: sigma by rates and ppm by FORM, before and after."""
-
-    sigma: Number
-    ppm: dict[str, Known]
-
-
-def first_order_ppm(response: Response, side: Side, limit: float, *, seed: int = 1) -> tuple[float | None, float | None]:
+def first_order_ppm(
+    response: Response, side: Side, limit: float, *, seed: int = 1
+) -> tuple[float | None, float | None]:
     """How often a limit is left by FORM [ppm], averaged over positions, and the least distance β of a design point.
 
     Args:
@@ -124,30 +122,6 @@ def limits_of(measure: Measure) -> dict[Side, float]:
     return {side: limit * measure.per_internal for side, limit in both if limit is not None}
 
 
-def quick_what_if(response: Response, changes: Sequence[Change]) -> dict[str, tuple[Quick, Quick]]:
-    """Before and after by first order, of every measure: no trial is drawn.
-
-    Raises:
-        InputError: see `changed`.
-    """
-    after, rates = changed(response, changes), Rates(response)
-    found: dict[str, tuple[Quick, Quick]] = {}
-    for k, measure in enumerate(response.measures):
-        both = [
-            made(
-                Quick,
-                sigma=float(rates.sigmas(own)[k]),
-                ppm={
-                    side: first_order_ppm(own.of(measure.name), side, limit)[0]
-                    for side, limit in limits_of(measure).items()
-                },
-            )
-            for own in (response, after)
-        ]
-        found[measure.name] = (both[0], both[1])
-    return found
-
-
 def what_if(
     response: Response,
     changes: Sequence[Change],
@@ -164,8 +138,8 @@ def what_if(
         response: with the tolerances of the scene.
         changes: one a contributor.
         measure: of which; of all that depend on them if not given.
-        trials: of the simulation; the study's if not given, 100 000 at most.
-        draws: of importance sampling, for each limit before and after.
+        trials: of the simulation; the study's if not given, 100 000 at most; 0 for none.
+        draws: of importance sampling, for each limit before and after; 0 for none.
         seed: of importance sampling; trials have the study's.
         activity: callback that gets what goes on, in words.
 
@@ -175,15 +149,14 @@ def what_if(
     if not changes:
         raise InputError("expected a change such as --set NAME=±10um or --factor NAME=0.5, got none")
     asked = response.of(*_concerned(response, changes, measure))
-    before, count = asked.evaluations, min(trials or asked.simulation.study.trials, MOST_TRIALS)
+    before, count = asked.evaluations, min(asked.simulation.study.trials if trials is None else trials, MOST_TRIALS)
     states = {"before": asked, "after": changed(asked, changes)}
     activity("rates")
-    rates = Rates(asked)
+    rates = rates_of(asked)
     sampled = {}
     for word, own in states.items():
         activity(f"{count} trials {word}")
-        read = own.values(*own.drawn(count))
-        sampled[word] = np.where(read.seated | np.isfinite(read.values), read.values, np.nan)
+        sampled[word] = own.values(*own.drawn(count)).values if count else np.zeros((0, len(asked.measures)))
     found = {}
     for k, one in enumerate(asked.measures):
         values = {word: own[:, k] for word, own in sampled.items()}
@@ -261,9 +234,11 @@ def _limit(response: Response, side: Side, limit: float, values: Array, draws: i
         with np.errstate(invalid="ignore"):
             within = values >= limit if side == "low" else values <= limit
         counted = Proportion(int((~within).sum()), len(values))
-        return made(
-            LimitNumbers, first_order=None, ppm=counted.ppm or 0.0, interval=list(counted.interval_ppm()), beta=None
-        )
+        interval = list(counted.interval_ppm()) if len(values) else None
+        return made(LimitNumbers, first_order=None, ppm=counted.ppm, interval=interval, beta=None)
+    if not draws:
+        first, beta = first_order_ppm(response, side, limit, seed=seed)
+        return made(LimitNumbers, first_order=first, ppm=None, interval=None, beta=beta)
     event = rare_event(response, side, limit, draws=draws, seed=seed)
     return made(
         LimitNumbers,

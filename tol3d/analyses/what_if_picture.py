@@ -13,6 +13,8 @@ from tol3d.report.number import UNIT_SIGNS, limit_text, share_text
 WIDTH: Final = 9.0  # inch
 ROW: Final = 3.0
 HEAD: Final = 0.6
+LONGEST: Final = 120
+"""Characters of the head."""
 MOST: Final = 8
 """Measures that are drawn."""
 
@@ -26,7 +28,9 @@ def draw_what_if(name: str, found: WhatIf, path: Path) -> None:
     shown = list(found.measures.items())[:MOST]
     figure = new_figure(WIDTH, ROW * len(shown) + HEAD)
     words = "; ".join(f"{own.contributor}: {own.before} → {own.after}" for own in found.changes)
-    figure.suptitle(legible(f"{name} · what if {words}"), fontsize=10, color=BLACK, x=0.01, ha="left", wrap=True)
+    figure.suptitle(
+        legible(f"{name} · what if {words}", LONGEST), fontsize=10, color=BLACK, x=0.01, ha="left", wrap=True
+    )
     rows = figure.subplots(len(shown), 1, squeeze=False)[:, 0]
     for axes, (measure, own) in zip(rows, shown, strict=True):
         plain_axes(axes)

@@ -15,11 +15,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import adjustment, analyses, design, effects, records, showing, studies
+from tol3d.cli import adjustment, analyses, deciding, design, effects, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["adjustment", "analyses", "app", "design", "effects", "main", "records", "showing", "studies"]
+__all__ = ["adjustment", "analyses", "app", "deciding", "design", "effects", "main", "records", "showing", "studies"]
 
 COMMANDS = (
     studies.run,
@@ -31,6 +31,7 @@ COMMANDS = (
     adjustment.compensate,
     analyses.rare,
     effects.effects,
+    deciding.what_if,
     records.identify,
     records.rig,
     records.plan_rig,

@@ -179,7 +179,7 @@ class Distribution(ABC):
             InputError: see `mapped`; a law without limits, or limits in no order.
         """
         if self.limits is None or not self.limits[0] < self.limits[1]:
-            raise InputError(f"expected a law with limits, got {type(self).__name__}")
+            raise InputError(f"expected a law with limits, got {type(self).__name__}; state one number, such as 5 um")
         if not -math.inf < low < high < math.inf:
             raise InputError(f"expected a lower limit below the upper one, got {low:g} to {high:g}")
         first, last = self.limits

@@ -5,13 +5,14 @@ is: a zone's width, limits of pitches. A draw that says nothing of it, such as a
 """
 
 from dataclasses import is_dataclass, replace
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 from tol3d.distributions import Distribution
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import Draw, Remembered
+from tol3d.system.normals import groups_of
 
 
 @runtime_checkable
@@ -88,25 +89,33 @@ def with_law(draw: Draw, law: Distribution) -> Draw:
     raise InputError(f"expected a contributor that is drawn by a law, got {_words(draw)}")
 
 
-def scaled(draw: Draw, factor: float, stays: Stays = "middle") -> Draw:
+def naturally_stays(draw: Draw) -> Stays:
+    """What stays of a draw that is scaled: its mean; 0 of a length in any direction that begins there."""
+    law = draw.distribution
+    if any(own.kind in DIRECTED for own in groups_of(draw) or ()) and isinstance(law, Distribution):
+        return "low" if law.limits is not None and law.limits[0] == 0.0 else "middle"
+    return "middle"
+
+
+def scaled(draw: Draw, factor: float, stays: Stays | None = None) -> Draw:
     """A draw as many times as wide.
 
     Args:
         draw: its tolerance as it is.
         factor: above 0.
-        stays: its mean, or one of its limits.
+        stays: its mean, or one of its limits; see `naturally_stays`, if not given.
 
     Raises:
         InputError: it has no tolerance of its own, its law cannot be scaled, or has no such limit.
     """
     if isinstance(draw, Scalable):
-        if stays != "middle":
+        if stays not in (None, "middle"):
             raise InputError(f"expected the middle to stay, got {stays}, of {_words(draw)}")
         return draw.scaled(factor)
     if not _is_of_law(draw):
         raise InputError(f"expected a contributor that can be scaled, got {_words(draw)}")
     own: Any = draw
-    return with_law(draw, own.distribution.scaled_at(factor, stays))
+    return with_law(draw, own.distribution.scaled_at(factor, stays or naturally_stays(draw)))
 
 
 def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
@@ -129,7 +138,8 @@ def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
         )
 
 
-LEAST_OFF = 1e-12
+DIRECTED: Final = ("plane", "space")
+LEAST_OFF: Final = 1e-12
 """mm, rad or K; rounding."""
 
 

@@ -1,0 +1,136 @@
+"""Other tolerances of a response: its deviations are those of a scene that says so, bit for bit."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from linear_stacks import stack
+
+from tol3d import InputError
+from tol3d.analyses.response import Response, response_of
+from tol3d.distributions.constant import Constant
+from tol3d.distributions.normal import Normal
+from tol3d.distributions.uniform import Uniform
+from tol3d.scene import Scene
+from tol3d.scene.bundled import bundled_scenes
+from tol3d.scene.edit import with_tolerances, write_scene
+from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.simulate import load, simulation_of
+from tol3d.system.draw import Planar, Scalar
+from tol3d.system.other_laws import naturally_stays, scaled
+
+TRIALS = 40
+
+
+def meant(scene: Scene, response: Response, entry: str) -> list[str]:
+    """The contributors of a tolerance: itself, or one for each feature that it is of."""
+    others = set(scene.tolerances) - {entry}
+    return [
+        own.name
+        for own in response.contributors
+        if own.name == entry or (own.name.startswith(f"{entry} ") and own.name not in others)
+    ]
+
+
+def _same(scene: Scene, response: Response, entry: str, factor: float) -> bool:
+    """Whether a scene with a scaled tolerance draws and measures as the response does; False where it is refused."""
+    names = meant(scene, response, entry)
+    if not names:
+        return False
+    try:
+        stays = naturally_stays(response.draws[names[0]])
+        spec = scene.tolerances[entry].scaled(factor, stays, scene.files)
+        own = response.scaled(dict.fromkeys(names, factor))
+    except InputError:
+        return False
+    written = response_of(simulation_of(with_tolerances(scene, {entry: spec})))
+    if isinstance(spec, ToleranceSpec):  # the law as it is written, to ten digits
+        law = spec.distribution.resolve(scene.files)
+        if type(law) is type(response.draws[names[0]].distribution):
+            own = response.with_laws(dict.fromkeys(names, law))
+    drawn, positions = own.drawn(TRIALS)
+    assert np.array_equal(drawn, written.drawn(TRIALS)[0]), entry
+    assert not np.array_equal(drawn, response.drawn(TRIALS)[0]), entry
+    found, expected = (each.values(drawn, positions).values for each in (own, written))
+    assert np.array_equal(found, expected, equal_nan=True), entry
+    return True
+
+
+@pytest.mark.parametrize(
+    ("name", "entries"),
+    [
+        ("spur_pair", ("centre distance", "wheel eccentricity", "bearing clearance")),
+        ("bolted_cover", ("base hole 1 size", "base hole 1", "cover hole 2")),
+        ("gearbox_in_housing", ("dowel 1 seat", "inside profile", "first wheel tooth thickness")),
+        ("reducer_3k", ("sun thinning", "P1 eccentricity", "pins outwards")),
+    ],
+)
+def test_a_scene_with_other_tolerances_draws_the_same(name: str, entries: tuple[str, ...]) -> None:
+    scene = load(name)
+    response = response_of(simulation_of(scene))
+    for entry in entries:
+        assert _same(scene, response, entry, 0.5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(bundled_scenes()))
+def test_every_scene_with_other_tolerances_draws_the_same(name: str) -> None:
+    scene = load(name)
+    response = response_of(simulation_of(scene))
+    held = [_same(scene, response, entry, factor) for entry in scene.tolerances for factor in (0.5, 0.9)]
+    assert any(held) or not held
+
+
+def test_a_bonus_follows_the_size_that_gives_it() -> None:
+    """Half of a size's tolerance leaves at most half of the bonus: the axes of a hole at MMC lie nearer."""
+    scene = load("bolted_cover")
+    response = response_of(simulation_of(scene))
+    size, hole = "base hole 1 size", "base hole 1"
+    law = response.draws[size].distribution
+    assert isinstance(law, Normal)
+    other = response.with_laws({size: law.within(law.limits[0], sum(law.limits) / 2)})
+    most = [float(np.abs(own.drawn(2000)[0][:, own.slices[hole]]).max()) for own in (response, other)]
+    assert most[1] < most[0]
+
+
+def test_tolerances_that_act_elsewhere_too_are_refused() -> None:
+    response = response_of(simulation_of(load("bolted_cover")))
+    with pytest.raises(InputError, match="cover hole 1 size: expected a tolerance that acts by its deviation alone"):
+        response.scaled({"cover hole 1 size": 0.5})
+
+
+def test_a_scene_is_written_with_them(tmp_path: Path) -> None:
+    scene = load("gearbox_in_housing")
+    factors = {"dowel 1 seat": 0.5, "first wheel eccentricity": 1.25, "inside profile": 0.7}
+    changed = {name: scene.tolerances[name].scaled(factor, "middle", scene.files) for name, factor in factors.items()}
+    write_scene(with_tolerances(scene, changed), tmp_path / "other.yaml")
+    written = (tmp_path / "other.yaml").read_text(encoding="utf-8")
+    assert "zone: {diameter: 5 um}" in written
+    assert "{kind: rayleigh, scale: 5 um}" in written
+    assert "zone: {width: 0.07 mm}" in written
+    assert load(tmp_path / "other.yaml").tolerances["edge profile"] == scene.tolerances["edge profile"]
+
+
+def test_a_length_that_begins_at_nothing_goes_on_doing_so() -> None:
+    own = Planar(Uniform(0.0, 0.006), None)
+    assert scaled(own, 2.0) == Planar(Uniform(0.0, 0.012), None)
+    assert scaled(Planar(Uniform(0.003, 0.013), None), 0.5) == Planar(Uniform(0.0055, 0.0105), None)
+    assert scaled(Scalar(Uniform(0.0, 0.006)), 0.5) == Scalar(Uniform(0.0015, 0.0045))
+
+
+def test_a_limit_that_stays() -> None:
+    own = stack([1.0], [0.0], laws=[Normal(-0.0245, 0.0055 / 3, (-0.030, -0.019))])
+    upper = own.scaled({"x0": 0.5}, {"x0": "high"}).draws["x0"].distribution
+    assert (upper.low, upper.high, upper.mean) == pytest.approx((-0.0245, -0.019, -0.02175))
+
+
+def test_what_cannot_be_is_refused() -> None:
+    own = stack([1.0, 1.0], [0.0, 0.0], least=0.0, laws=[Normal(0.016, 0.014 / 3, (0.002, 0.030)), Constant(0.1)])
+    with pytest.raises(InputError, match=r"x0: expected at least 0 um, for less is not physical, got down to -0\.8 um"):
+        own.scaled({"x0": 1.2})
+    with pytest.raises(InputError, match="x1: expected a law that can be scaled, got a constant"):
+        own.scaled({"x1": 1.2})
+    with pytest.raises(InputError, match="expected a contributor, got 'x7'; known here: x0, x1"):
+        own.scaled({"x7": 1.2})
+    with pytest.raises(InputError, match="x0: expected a contributor that lies in a zone, got a Scalar"):
+        own.sized({"x0": 1.2})

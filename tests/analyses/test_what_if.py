@@ -1,0 +1,169 @@
+"""What-if: sums of normals in closed form, and the tail of the spur pair against importance sampling and trials."""
+
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fixtures import Command
+from linear_stacks import stack
+from scipy.stats import norm
+from toys.parabola import PARABOLA
+from toys.registered import TOYS, known
+
+from tol3d import InputError, Overrides, run_scene
+from tol3d.analyses.changes import Change, change_of, changed, factor_of
+from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.subject import sections_of
+from tol3d.analyses.what_if import WhatIf, first_order_ppm, what_if
+from tol3d.runs.run import open_run
+from tol3d.simulate import load, simulation_of
+
+CENTRE = "centre distance"
+
+
+def test_of_a_sum_of_normals_all_is_known() -> None:
+    """sigma² = Σ (a σ)²; below -0.03 lie Φ(-0.03/σ). By rates and first order exactly, by draws within their errors."""
+    slopes, sigmas = np.array([1.0, -2.0, 0.5]), np.array([0.003, 0.002, 0.008])
+    own = stack(slopes, sigmas, low=-0.03)
+    found = what_if(own, [Change("x1", factor=2.0)], trials=20_000).measures["gap"]
+    for state, scale in ((found.before, 1.0), (found.after, 2.0)):
+        sigma = float(np.linalg.norm(slopes * sigmas * [1.0, scale, 1.0]))
+        assert state.sigma_by_rates == pytest.approx(sigma, rel=1e-9)
+        assert state.sigma == pytest.approx(sigma, rel=4 / math.sqrt(2 * 20_000))
+        limit, ppm = state.limits["low"], 1e6 * norm.cdf(-0.03 / sigma)
+        assert limit.first_order == pytest.approx(ppm, rel=1e-4)
+        assert limit.interval is not None
+        assert limit.interval[0] * 0.9 < ppm < limit.interval[1] * 1.1
+    assert found.before.failed == found.after.failed == 0
+
+
+def test_both_sides_see_the_same_draws() -> None:
+    """With ten times the spread of what does not act on the tail the difference of the means is not noise."""
+    own = stack([1.0, 1.0], [0.1, 0.001])
+    found = what_if(own, [Change("x1", limits=(0.001, 0.007))], trials=500).measures["gap"]
+    assert found.after.mean is not None
+    assert found.before.mean is not None
+    assert found.after.mean - found.before.mean == pytest.approx(0.004, abs=4 * 0.002 / math.sqrt(500))
+
+
+@pytest.fixture(scope="module")
+def spur() -> Response:
+    return response_of(simulation_of(load("spur_pair"))).of("normal backlash")
+
+
+TRUTH = {10: 1.28, 15: 7.34, 20: 40.9, 25: 184.4, 30: 639.5}
+"""ppm below 25 um by half tolerance of the centre distance [um]: 40 000 draws of importance sampling each, to 1 %."""
+
+
+@pytest.mark.parametrize("half", TRUTH)
+def test_the_tail_of_the_spur_pair_by_first_order(spur: Response, half: int) -> None:
+    found, _ = first_order_ppm(changed(spur, [change_of(spur, f"{CENTRE}=±{half}um")]), "low", 25.0)
+    assert found == pytest.approx(TRUTH[half], rel=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("half", TRUTH)
+def test_the_tail_of_the_spur_pair_by_plain_trials(spur: Response, half: int) -> None:
+    own, count, below = changed(spur, [change_of(spur, f"{CENTRE}=±{half}um")]), 1_000_000, 0
+    for seed in range(4):
+        below += int((own.values(*own.drawn(count, seed)).values[:, 0] < 25.0).sum())
+    expected = 4 * count * TRUTH[half] / 1e6
+    assert abs(below - expected) < 4 * math.sqrt(expected) + 0.02 * expected
+
+
+@pytest.mark.slow
+def test_the_first_order_is_there_at_once(spur: Response) -> None:
+    first_order_ppm(spur, "low", 25.0)
+    begun = time.perf_counter()
+    first_order_ppm(changed(spur, [change_of(spur, f"{CENTRE}=±10um")]), "low", 25.0)
+    assert time.perf_counter() - begun < 0.2
+
+
+@pytest.mark.parametrize(
+    ("text", "limits"),
+    [
+        ("±10um", (-0.01, 0.01)),
+        ("+-10 um", (-0.01, 0.01)),
+        ("+/- 0.01 mm", (-0.01, 0.01)),
+        ("-5 um..+10 um", (-0.005, 0.01)),
+        (" -5um .. 0.01mm ", (-0.005, 0.01)),
+    ],
+)
+def test_values_are_read_as_scenes_say_them(spur: Response, text: str, limits: tuple[float, float]) -> None:
+    assert change_of(spur, f"{CENTRE}={text}").limits == pytest.approx(limits)
+    assert changed(spur, [change_of(spur, f"{CENTRE}={text}")]).draws[CENTRE].distribution.low == limits[0]
+
+
+def test_one_number_is_a_width_or_a_scale(spur: Response) -> None:
+    own = changed(spur, [change_of(spur, "wheel eccentricity=4 um")]).draws["wheel eccentricity"].distribution
+    assert own.mean == pytest.approx(0.004 * math.sqrt(math.pi / 2))
+    gearbox = response_of(simulation_of(load("gearbox_in_housing")))
+    seat = changed(gearbox, [change_of(gearbox, "dowel 1 seat=5 um")])
+    same = gearbox.scaled({"dowel 1 seat": 0.5})
+    assert np.array_equal(seat.drawn(20)[0], same.drawn(20)[0])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("centre=±10um", "--set: expected a contributor, got 'centre'"),
+        ("centre distance", "--set: expected NAME=VALUE"),
+        ("centre distance=10", "a bare number without its unit"),
+        ("centre distance=±10 arcmin", "expected a length with its unit"),
+        ("centre distance=5 um", "centre distance: expected limits of a law that is normal, such as ±10 um"),
+        ("centre distance=3um..-3um", "expected a lower limit below the upper one"),
+        ("wheel eccentricity=±3um", "wheel eccentricity: expected a law with limits, got Rayleigh; state one number"),
+        ("bearing clearance=±3um", "bearing clearance: expected at least 0 um, for less is not physical"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(spur: Response, text: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        changed(spur, [change_of(spur, text)])
+
+
+def test_what_nobody_changes_is_refused(spur: Response) -> None:
+    with pytest.raises(InputError, match="expected a change such as"):
+        what_if(spur, [])
+    with pytest.raises(InputError, match="expected a factor above 0 such as"):
+        factor_of(spur, f"{CENTRE}=-1")
+    with pytest.raises(InputError, match="centre distance: expected one change of it, got 2"):
+        changed(spur, [Change(CENTRE, factor=0.5), Change(CENTRE, factor=0.5)])
+    gearbox = response_of(simulation_of(load("gearbox_in_housing")))
+    with pytest.raises(InputError, match="expected contributors on which 'cover gap' depends, got second wheel ecc"):
+        what_if(gearbox, [Change("second wheel eccentricity", factor=0.5)], "cover gap")
+
+
+def test_the_command_of_a_run_keeps_what_it_found(tol3d: Command, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    run_scene("spur_pair", overrides=Overrides(trials=200), out=folder)
+    files = ("--csv", f"{tmp_path}/numbers.csv", "--picture", f"{tmp_path}/picture.png")
+    code, said, _ = tol3d("what-if", str(folder), "--set", f"{CENTRE}=±10um", "--draws", "400", *files)
+    assert code == 0
+    assert "normal -20 … 20 µm" in said
+    assert "normal -10 … 10 µm" in said
+    assert "sigma by rates" in (tmp_path / "numbers.csv").read_text(encoding="utf-8")
+    assert (tmp_path / "picture.png").stat().st_size > 10_000
+    kept = sections_of(open_run(folder))["what-if"]
+    assert isinstance(kept, WhatIf)
+    assert kept.changes[0].contributor == CENTRE
+    assert kept.trials == 200
+
+
+def test_the_command_refuses_in_one_line(tol3d: Command) -> None:
+    code, _, said = tol3d("what-if", "spur_pair", "--factor", "bearing clearance=1.2", "--quick")
+    assert code == 2
+    assert said.strip().splitlines() == [
+        "bearing clearance: expected at least 0 um, for less is not physical, got down to -0.8 um"
+    ]
+
+
+def test_a_mechanism_that_a_test_registers() -> None:
+    with known(PARABOLA):
+        own = response_of(simulation_of(load(TOYS / "parabola" / "spring.yaml")))
+        name = own.contributors[0].name
+        found = what_if(own, [Change(name, factor=0.5)], trials=100, draws=0)
+    assert found.evaluations > 0
+    for measure in found.measures.values():
+        assert (measure.after.sigma_by_rates or 0.0) <= (measure.before.sigma_by_rates or 0.0)
