@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
+from formulas import formula
 from linear_stacks import stack
 from scipy.stats import norm
 from toys.parabola import PARABOLA
@@ -17,8 +18,11 @@ from tol3d.analyses.changes import Change, change_of, changed, factor_of
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.what_if import WhatIf, first_order_ppm, what_if
+from tol3d.distributions.normal import Normal
 from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
+from tol3d.system.copula import Block
+from tol3d.system.draw import Scalar
 
 CENTRE = "centre distance"
 
@@ -37,6 +41,15 @@ def test_of_a_sum_of_normals_all_is_known() -> None:
         assert limit.interval is not None
         assert limit.interval[0] * 0.9 < ppm < limit.interval[1] * 1.1
     assert found.before.failed == found.after.failed == 0
+
+
+def test_correlated_contributors_add_up_by_their_correlation() -> None:
+    """Var(x + y) = σ² + τ² + 2 ρ σ τ of normals; of a change of one as well."""
+    draws = [Scalar(Normal(0.0, 3.0)), Scalar(Normal(1.0, 2.0))]
+    own = formula(lambda x: x[:, 0] + x[:, 1], draws, blocks=[Block(("x0", "x1"), ((1.0, 0.6), (0.6, 1.0)))])
+    found = what_if(own, [Change("x0", factor=2.0)], trials=0).measures["value"]
+    assert found.before.sigma_by_rates == pytest.approx(math.sqrt(9 + 4 + 2 * 0.6 * 6), rel=1e-9)
+    assert found.after.sigma_by_rates == pytest.approx(math.sqrt(36 + 4 + 2 * 0.6 * 12), rel=1e-9)
 
 
 def test_both_sides_see_the_same_draws() -> None:

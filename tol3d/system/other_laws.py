@@ -1,7 +1,7 @@
 """Draws of other tolerances: the same features, their deviations by another law, or as many times as wide.
 
 A draw that is a dataclass of a distribution is made again with another one. Others say themselves what their tolerance
-is: a zone's width, limits of pitches. A draw that says nothing of it, such as a measured gear's, has no other one.
+is, such as a zone's width. A draw that says nothing of it, such as one of measured values, has no other one.
 """
 
 from dataclasses import is_dataclass, replace
