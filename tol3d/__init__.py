@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from tol3d.kinds import load_scene
     from tol3d.kinds import register as register
     from tol3d.notebook import Replay as Replay
-    from tol3d.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial
+    from tol3d.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial, write_report
     from tol3d.runs.run import Run as Run
     from tol3d.runs.run import open_run
     from tol3d.scene import Scene
@@ -57,6 +57,7 @@ _HOMES = {
     "replay": "tol3d.notebook",
     "run_scene": "tol3d.simulate",
     "view_trial": "tol3d.notebook",
+    "write_report": "tol3d.notebook",
 }
 """Where each name lives; what functions return and raise, and gears, are here for annotations and `except`."""
 
@@ -73,6 +74,7 @@ __all__ = [
     "replay",
     "run_scene",
     "view_trial",
+    "write_report",
 ]
 
 

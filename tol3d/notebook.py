@@ -7,8 +7,11 @@ picture lies. Libraries that draw are loaded by who asks for a drawing.
 import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from functools import cached_property
+from importlib.metadata import version
 from pathlib import Path
+from platform import machine, python_version
 from typing import TYPE_CHECKING, Final
 
 from tol3d import report, simulate
@@ -24,6 +27,8 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.page import Page
 from tol3d.report.presenter import Display, Which, presenter_at
 from tol3d.report.sheet import as_text
+from tol3d.report.verdict import ACCEPTED_PPM
+from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -231,6 +236,38 @@ def compare_runs(runs: Sequence[Run | Path | str], *, out: Path | str | None = N
     if out is not None:
         report.draw_comparison(opened, Path(out))
     return Comparison(report.comparison_report(opened), None if out is None else Picture(Path(out)))
+
+
+def write_report(
+    runs: Sequence[Run | Path | str] | Run | Path | str,
+    out: Path | str,
+    *,
+    accepted_ppm: float = ACCEPTED_PPM,
+    force: bool = False,
+) -> Path:
+    """Write a run, or several compared, as one page of HTML, as `tol3d report` does.
+
+    Args:
+        runs: finished runs, or their folders.
+        out: the file.
+        accepted_ppm: share of trials that may be out of a measure's limits.
+        force: replace a file that is there.
+
+    Raises:
+        RunError: one is no run, or changed since. InputError: the file is there, or cannot be written.
+    """
+    path = Path(out)
+    if path.exists() and not force:
+        raise InputError(f"{path}: expected the name of a new file, there is one already; --force replaces it")
+    several = [runs] if isinstance(runs, Run | Path | str) else runs
+    now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
+    made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
+    text = report.report_html([opened_run(run) for run in several], accepted_ppm=accepted_ppm, made=made)
+    try:
+        write_whole(path, text.encode())
+    except OSError as error:
+        raise unwritable(path, error, "choose another file") from None
+    return path
 
 
 def export_trial(

@@ -27,6 +27,7 @@ COMMANDS = (
     showing.check,
     showing.workspace,
     showing.compare,
+    showing.report,
     adjustment.shim,
     adjustment.compensate,
     analyses.rare,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path, whole
+from tol3d.cli.arguments import AcceptOption, RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path, whole
 from tol3d.cli.console import err_console, out_console, seconds, tell
 
 if TYPE_CHECKING:
@@ -153,6 +153,20 @@ def compare(
     draw_comparison(opened, out)
     out_console.print(comparison_report(opened))
     tell(f"picture: {out}")
+
+
+def report(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
+    out: Annotated[Path, typer.Option(help="The page to write.")] = Path("report.html"),
+    accept: AcceptOption = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+) -> None:
+    """Write a run, or several compared, as one page that opens anywhere: verdict, tables, charts, provenance."""
+    from tol3d.notebook import write_report
+    from tol3d.report.verdict import ACCEPTED_PPM
+
+    write_report(runs, out, accepted_ppm=ACCEPTED_PPM if accept is None else accept, force=force)
+    tell(str(out))
 
 
 TrialOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="This trial.")]

@@ -111,14 +111,23 @@ def label_angles(axis: Axis, unit: str) -> None:
     """Ticks of an axis in arc minutes as minutes and seconds; other units are left as they are."""
     if unit != "arcmin":
         return
-    low, high = axis.get_view_interval()
-    step = next((step for step in ANGLE_STEPS if (high - low) * 60 <= MOST_TICKS * step), None)
+    step = angle_step(*axis.get_view_interval())
     if step is not None:
         axis.set_major_locator(MultipleLocator(step / 60))
-    axis.set_major_formatter(FuncFormatter(lambda value, position: _minutes_seconds(value)))
+    axis.set_major_formatter(FuncFormatter(lambda value, position: minutes_seconds(value)))
 
 
-def _minutes_seconds(arcmin: float) -> str:
+def angle_step(low: float, high: float) -> float | None:
+    """The step [arc seconds] between ticks of an axis in arc minutes; None where it is too long for one."""
+    return next((step for step in ANGLE_STEPS if (high - low) * 60 <= MOST_TICKS * step), None)
+
+
+def minutes_seconds(arcmin: float) -> str:
+    """The words of a tick in minutes and seconds, to a tenth of a second.
+
+    >>> minutes_seconds(-1.5), minutes_seconds(61.0)
+    ('−1′30″', '1°01′')
+    """
     tenths = round(abs(arcmin) * 600)
     minutes, rest = divmod(tenths, 600)
     seconds = f"{rest / 10:.1f}″" if rest % 10 else f"{rest // 10}″"

@@ -46,7 +46,7 @@ def heat_map_figure(summary: RunSummary) -> Figure:
     """A row a contributor, a column a measure, each share [%] as a colour and a number; not yet written."""
     every = of_scalars(summary)
     names = shown_measures(every, MOST_COLUMNS)
-    percents = {name: _percents(every[name]) for name in names}
+    percents = {name: percents_of(every[name]) for name in names}
     acting = list(dict.fromkeys(contributor for own in percents.values() for contributor in own))
     sums = {contributor: sum(own.get(contributor, 0.0) for own in percents.values()) for contributor in acting}
     ranked = sorted(acting, key=lambda contributor: -sums[contributor])
@@ -64,7 +64,7 @@ def heat_map_figure(summary: RunSummary) -> Figure:
     return matrix_figure(np.vstack([shares, others]), [*shown, f"{len(rest)} others"], names, head, coloured=len(shown))
 
 
-def _percents(measure: MeasureSummary) -> Mapping[str, float]:
+def percents_of(measure: MeasureSummary) -> Mapping[str, float]:
     """Share of each contributor by the best road that knows it [%]."""
     columns = [column for column in shares_of(measure) if column.road != "published"]
     own = next((column for column in columns if column.road == measure.best_road), columns[0])

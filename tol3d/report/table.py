@@ -163,15 +163,15 @@ def run_report(
     blocks: list[PageItem] = [_run_line(run)]
     if detail is Detail.MEASURES:
         for name in shown_measures(shown.measures):
-            blocks += _measure_blocks(name, shown.measures[name], shown, own)
+            blocks += measure_blocks(name, shown.measures[name], shown, own)
     blocks += own.sections(run)
     blocks += published_blocks(run)
     blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
-    if detail is Detail.MEASURES and (meanings := list(_meanings(shown))):
-        blocks += [title("notes"), *map(note, meanings)]
+    if detail is Detail.MEASURES and (words := list(meanings(shown))):
+        blocks += [title("notes"), *map(note, words)]
     blocks += verdict
     blocks += [] if detail is Detail.MEASURES else [note(_more_tables(run))]
-    return page(*blocks, _status_line(run), _time_line(run, elapsed), *warnings)
+    return page(*blocks, status_line(run), _time_line(run, elapsed), *warnings)
 
 
 def _more_tables(run: RunSummary) -> str:
@@ -183,7 +183,8 @@ def _run_line(run: RunSummary) -> Line:
     return Line(((run.scene, "bold"), (f" · {trials} · seed {run.seed} · engine {run.engine}", "bold dim")))
 
 
-def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[PageItem]:
+def measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, presenter: Presenter) -> list[PageItem]:
+    """A measure: its title, what it is, its table and notes, then its contributors."""
     head = [title(name), line(f"{measure.words} · {limits_text(measure)}", "dim"), BLANK]
     if measure.curve is not None and measure.take == "curve":
         notes = [*_curve_notes(measure, measure.curve), *_witness_notes(name, measure, run), *published_notes(measure)]
@@ -198,8 +199,8 @@ def _measure_blocks(name: str, measure: MeasureSummary, run: RunSummary, present
     return blocks
 
 
-def _meanings(run: RunSummary) -> Iterator[str]:
-    """What words in the tables of measures mean, each once for all of them."""
+def meanings(run: RunSummary) -> Iterator[str]:
+    """Meanings of the words in tables of measures, each once for all of them."""
     scalars = [measure for measure in run.measures.values() if measure.take != "curve"]
     if any(measure.contributors for measure in scalars):
         yield SHARES_MEAN
@@ -294,7 +295,8 @@ def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
             )
 
 
-def _status_line(run: RunSummary) -> Line:
+def status_line(run: RunSummary) -> Line:
+    """Counts of the trials that seated, and of those that failed, by their statuses."""
     failed = {text: count for text, count in run.status.items() if text != SEATED and count}
     pieces = [(f"\ntrials: {run.status.get(SEATED, 0)} seated", "")]
     for status, count in failed.items():

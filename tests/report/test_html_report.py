@@ -1,0 +1,158 @@
+"""A report as one page: its numbers against the summary, nothing from outside, and names that do nothing."""
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tol3d import InputError, load_scene, run_scene
+from tol3d.notebook import write_report
+from tol3d.report.html.document import report_html
+from tol3d.report.html.tags import escaped, tag
+from tol3d.runs.run import Run
+from tol3d.simulate import Execution, Overrides
+
+HOSTILE = ("<script>alert(1)</script>", "\"'>", "</script>", "a" * 2000, "&lt;", "javascript:alert(1)")
+
+
+class _Read(HTMLParser):
+    """Elements of a page with their attributes, and the text in each kind of element."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[tuple[str, str]] = []
+        self._open: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, name: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.elements.append((name, dict(attributes)))
+        if name not in ("meta", "br"):
+            self._open.append(name)
+
+    def handle_endtag(self, name: str) -> None:
+        assert self._open.pop() == name, "elements are closed in order"
+
+    def handle_data(self, text: str) -> None:
+        if self._open:
+            self.texts.append((self._open[-1], text))
+
+    def inside(self, name: str) -> Iterator[str]:
+        return (text for own, text in self.texts if own == name)
+
+
+@pytest.fixture(scope="module")
+def spur(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    folder = tmp_path_factory.mktemp("spur") / "spur"
+    return run_scene("spur_pair", overrides=Overrides(trials=300, witness=0), out=folder)
+
+
+def _no_way_out(text: str) -> _Read:
+    """A page that asks nothing of anybody, whose scripts and styles are those that its policy allows."""
+    page = _Read(text)
+    policy = next(own["content"] or "" for name, own in page.elements if own.get("http-equiv"))
+    assert page.elements[2][1].get("http-equiv") == "Content-Security-Policy", "before anything that it rules"
+    for kind in ("script", "style"):
+        allowed = re.search(rf"{kind}-src 'sha256-([^']+)'", policy)
+        own = [text for text in page.inside(kind) if not text.startswith("{")]
+        assert allowed
+        assert [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in own] == [allowed[1]]
+    for name, attributes in page.elements:
+        for key, value in attributes.items():
+            assert key != "style"
+            assert not key.startswith("on")
+            assert key not in ("src", "srcset", "action")
+            assert key != "href" or str(value).startswith("#"), f"{name} leads out: {value}"
+    return page
+
+
+def test_numbers_of_a_page_are_those_of_its_summary(spur: Run) -> None:
+    page = _no_way_out(report_html([spur]))
+    told = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
+    for measure in spur.found.measures.values():
+        for sample in (measure.analytic, measure.geometric):
+            assert sample is not None
+            assert {sample.mean, sample.sigma, sample.p50, sample.sample_min} <= told
+    assert "too few trials to say" in [*page.inside("p")], "of 300 trials none is out: less than 1.2 % are, at 95 %"
+
+
+def test_bars_hold_every_trial_and_name_some_of_theirs(spur: Run) -> None:
+    page = _no_way_out(report_html([spur]))
+    counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
+    measures = len(spur.found.measures)
+    assert sum(counted) == 2 * measures * spur.trials, "each in its histogram, and in that of the differences"
+    data = [json.loads(text) for text in page.inside("script") if text.startswith("{")]
+    assert len(data) == measures
+    edges = [own for own in page.elements if own[1].get("data-bar")]
+    assert {own[1]["data-bar"] for own in edges} >= {bar for own in data for bar in own["bars"]}
+    values = spur.columns("geometric:normal backlash")["geometric:normal backlash"]
+    groups = [values[trials].max() - values[trials].min() for trials in data[0]["bars"].values()]
+    assert max(groups) < 0.1 * (values.max() - values.min()), "trials of one bar are alike"
+
+
+def test_the_same_run_gives_the_same_bytes(spur: Run, tmp_path: Path) -> None:
+    assert report_html([spur]) == report_html([spur])
+    written = write_report(spur, tmp_path / "report.html")
+    first, second = (
+        re.sub(r'<p class="note" id="made">.*?</p>', "", own) for own in (written.read_text(), report_html([spur]))
+    )
+    assert first == second
+    with pytest.raises(InputError, match="there is one already"):
+        write_report(spur, written)
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_name_is_a_text_and_nothing_else(name: str) -> None:
+    page = _Read(tag("p", name, title=name, class_=name))
+    assert page.elements == [("p", {"title": name, "class": name})]
+    assert "".join(text for _, text in page.texts) == name
+
+
+def test_signs_that_turn_or_hide_text_are_told() -> None:
+    assert escaped("a\u202eb\u0000c") == "a\\u202eb\\u0000c"
+
+
+def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
+    hostile = "<script>alert(1)<img onerror=x>"
+    text = load_scene("spur_pair").source.read_text()
+    for name in ("scene: spur pair at the drive end", "normal backlash:"):
+        text = text.replace(
+            name, name.replace("spur pair at the drive end", f"'{hostile}'").replace("normal backlash", f"'{hostile}'")
+        )
+    text = re.sub("^description: .*$", "description: </script><script>alert(1)</script>", text, flags=re.MULTILINE)
+    path = tmp_path / "hostile.yaml"
+    path.write_text(text)
+    run = run_scene(path, overrides=Overrides(trials=50, witness=0), out=tmp_path / "run")
+    page = _no_way_out(report_html([run]))
+    assert hostile in "".join(page.inside("h1"))
+    assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 1
+
+
+def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run, tmp_path: Path) -> None:
+    bare = run_scene(
+        "spur_pair",
+        overrides=Overrides(trials=200, engine="analytic"),
+        out=tmp_path / "bare",
+        execution=Execution(keep_trials=False),
+    )
+    assert not [text for text in _no_way_out(report_html([bare])).inside("script") if text.startswith("{")]
+    together = _no_way_out(report_html([spur, bare]))
+    assert {"spur", "bare"} <= set(together.inside("th"))
+    other = run_scene("door", overrides=Overrides(trials=50), out=tmp_path / "door")
+    with pytest.raises(InputError, match="expected runs that share a measure"):
+        report_html([spur, other])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["two_sided_te", "gearbox_in_housing", "spherical_drive", "rv_250aii", "reducer_3k"])
+def test_every_kind_of_system_has_a_page(name: str, tmp_path: Path) -> None:
+    """Curves, limits, failed trials, sections of its own."""
+    run = run_scene(name, overrides=Overrides(trials=60, witness=0), out=tmp_path / name)
+    page = _no_way_out(report_html([run]))
+    assert sum(own == "svg" for own, _ in page.elements) >= len(run.found.measures)

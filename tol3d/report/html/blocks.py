@@ -1,0 +1,67 @@
+"""Pages as HTML: the same lines and tables as on a terminal, and no second list of numbers."""
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from tol3d.report.html.tags import Inside, Markup, lines, tag, together
+from tol3d.report.page import Branch, Heading, Line, PageItem, Row, Shown, Table
+
+SECTION = "bold cyan"  # style of titles
+
+
+def page_blocks(blocks: Iterable[PageItem], level: int = 3) -> Markup:
+    """Blocks below each other; titles are headings of a level."""
+    return together(*(_block(own, level) for own in blocks if not _is_blank(own)))
+
+
+def _is_blank(block: PageItem) -> bool:
+    return isinstance(block, Line) and not str(block).strip()
+
+
+def _block(block: PageItem, level: int) -> Markup:
+    if isinstance(block, Table):
+        return table(block)
+    if isinstance(block, Branch):
+        return tag("ul", _branch(block), class_="tree")
+    return _line(block, level)
+
+
+def _branch(branch: Branch) -> Markup:
+    below = [tag("ul", *map(_branch, branch.branches))] if branch.branches else []
+    return tag("li", branch.text, *below)
+
+
+def _line(block: Line, level: int) -> Markup:
+    pieces = [(text, style) for text, style in block.pieces if text.strip("\n") or text.strip()]
+    if any(style == SECTION for _, style in pieces):
+        return tag(f"h{level}", *_pieces([(text, "" if style == SECTION else style) for text, style in pieces]))
+    kind = "note" if block.note else "warning" if any("yellow" in style for _, style in pieces) else None
+    return tag("p", *_pieces(pieces), class_=kind)
+
+
+def _pieces(pieces: Sequence[tuple[str, str]]) -> Iterator[Inside]:
+    for text, style in pieces:
+        own = together(*lines(text.strip("\n")))
+        yield tag("span", own, class_=style) if style else own
+
+
+def table(own: Table) -> Markup:
+    """A table; numbers stand right, each with its value to copy, and what is left out is told."""
+    shown = own.shown
+    head = tag("tr", tag("th", shown.corner, scope="col"), *(_head(heading) for heading in shown.headings))
+    body = together(*(_row(row, shown.headings) for row in shown.rows))
+    return tag("div", tag("table", tag("thead", head), tag("tbody", body)), class_="wide")
+
+
+def _head(heading: Heading) -> Markup:
+    return tag("th", heading.text, scope="col", class_="words" if heading.words else "number")
+
+
+def _row(row: Row, headings: Sequence[Heading]) -> Markup:
+    cells = (_cell(cell, heading, row) for cell, heading in zip(row.cells, headings, strict=True))
+    return tag("tr", tag("th", row.label, scope="row"), *cells, class_=row.style or None)
+
+
+def _cell(cell: str, heading: Heading, row: Row) -> Markup:
+    value = cell.value if isinstance(cell, Shown) else None
+    words = "words" if heading.words else "number"
+    return tag("td", cell, class_=words, data_value=None if value is None else repr(float(value)))

@@ -1,0 +1,291 @@
+"""The whole report of a run, or of several: one file, nothing of it from outside, the same bytes for the same runs."""
+
+import base64
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from typing import Final
+
+import numpy as np
+
+from tol3d.errors import InputError, RunError, SceneError
+from tol3d.report.bars import Bars
+from tol3d.report.compare import comparison_report, difference_of, labelled, measures_of
+from tol3d.report.distribution import samples_of
+from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
+from tol3d.report.html.blocks import page_blocks, table
+from tol3d.report.html.curve_chart import curve_chart
+from tol3d.report.html.difference_chart import difference_chart
+from tol3d.report.html.histogram_chart import histogram_chart
+from tol3d.report.html.matrix_chart import matrix_chart
+from tol3d.report.html.pareto_chart import pareto_chart
+from tol3d.report.html.tags import Inside, Markup, tag, together
+from tol3d.report.joint import correlation_blocks
+from tol3d.report.number import number_text, share_text
+from tol3d.report.page import Heading, Page, PageItem, Row, Table, note, warning
+from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.published import published_blocks
+from tol3d.report.shown_unit import shown_run
+from tol3d.report.table import meanings, measure_blocks, status_line
+from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, verdict_report
+from tol3d.runs.run import Run
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.run import RunSummary
+from tol3d.scene.node import plain
+from tol3d.scene.text import scene_text
+from tol3d.system.outcome import value_column
+
+TRIALS_A_BAR: Final = 5
+MOST_READ: Final = 200_000
+"""Trials that are looked through for those of each bar."""
+POLICY: Final = (
+    "default-src 'none'; script-src 'sha256-{script}'; style-src 'sha256-{style}'; img-src data:; base-uri 'none'; "
+    "form-action 'none'"
+)
+VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to say", "none": "no limits to judge"}
+
+
+def report_html(
+    runs: Sequence[Run],
+    *,
+    accepted_ppm: float = ACCEPTED_PPM,
+    analyses: Mapping[str, Page] | None = None,
+    made: str = "",
+) -> str:
+    """One run, or several beside each other, as a page.
+
+    Args:
+        runs: finished ones.
+        accepted_ppm: share of trials that may be out of a measure's limits.
+        analyses: sections of the first run by their titles.
+        made: when and where, the one element that differs between two reports of the same runs.
+
+    Raises:
+        InputError: no run, or runs that share no measure.
+        RunError: a run was changed since it was made.
+    """
+    first = runs[0].found if runs else None
+    if first is None:
+        raise InputError("nothing to report: give the folder of at least one run")
+    body = [tag("h1", first.scene), *_head(runs[0])]
+    body += [*_compared(runs)] if len(runs) > 1 else [*_single(runs[0], accepted_ppm, analyses or {})]
+    body.append(tag("footer", tag("p", made, class_="note", id="made")))
+    return _document(first.scene, body)
+
+
+def _head(run: Run) -> Iterator[Markup]:
+    found = run.found
+    trials = f"{found.trials} trial{'' if found.trials == 1 else 's'}"
+    yield tag("p", f"{trials} · seed {found.seed} · engine {found.engine}", class_="dim")
+    if description := _described(run):
+        yield tag("p", description)
+
+
+def _described(run: Run) -> str:
+    """What the scene says of itself."""
+    try:
+        node, _ = scene_text(run.scene_path, run.scene_path.read_bytes())
+        found = plain(node).get("description")
+    except (SceneError, RunError, OSError, AttributeError):
+        return ""
+    return found.strip() if isinstance(found, str) else ""
+
+
+# one run ------------------------------------------------------------------------------------------
+
+
+def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page]) -> Iterator[Markup]:
+    found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
+    sections: dict[str, Inside] = {"verdict": together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
+    sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
+    sections["measures"] = together(*_measures(run, shown, presenter))
+    if own := page_blocks([*presenter.sections(found), *published_blocks(found)]):
+        sections["more"] = own
+    if matrix := matrix_chart(shown):
+        sections["which tolerance matters where"] = tag(
+            "figure", matrix, tag("figcaption", "share of the variance [%]")
+        )
+    if pairs := page_blocks(correlation_blocks(found)):
+        sections["correlations"] = pairs
+    sections["trials"] = together(*_trials(shown))
+    sections["provenance"] = together(*_provenance(run))
+    anchors = {name: f"section-{number}" for number, name in enumerate(sections)}
+    yield tag("nav", tag("ul", *(tag("li", tag("a", name, href=f"#{own}")) for name, own in anchors.items())))
+    for name, inside in sections.items():
+        yield tag("section", tag("h2", name), inside, id=anchors[name])
+
+
+def _presenter(run: RunSummary) -> Presenter:
+    """What shows more of the run's system; nothing more where its mechanism is not installed here."""
+    return presenter_of(run)
+
+
+def _badge(run: RunSummary, accepted_ppm: float) -> Markup:
+    verdicts = {JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values()}
+    kind = "not-ok" if "NOT OK" in verdicts else "open" if "too few trials" in verdicts else "ok"
+    kind = "none" if verdicts == {"no limits"} else kind
+    return tag("p", VERDICTS[kind], class_=f"verdict {kind}")
+
+
+def _verdict(run: RunSummary, accepted_ppm: float) -> Markup:
+    blocks = verdict_report(run, accepted_ppm, blame=True)
+    accepted = tag("p", f"accepted: {share_text(accepted_ppm)} out of limits", class_="dim")
+    return together(accepted, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
+
+
+def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Markup]:
+    names = shown_measures(shown.measures)
+    if len(names) < len(shown.measures):
+        yield tag("p", f"the {len(names)} worst of {len(shown.measures)} measures {WORST_FIRST}", class_="note")
+    for number, name in enumerate(names):
+        measure = shown.measures[name]
+        blocks = measure_blocks(name, measure, shown, presenter)
+        first = next((k for k, own in enumerate(blocks) if isinstance(own, Table)), len(blocks))
+        yield page_blocks(blocks[:first])
+        if measure.take == "curve":
+            yield _figure(curve_chart(name, measure), measure)
+        else:
+            yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
+        yield page_blocks(blocks[first:], 4)
+        if pareto := pareto_chart(measure) if measure.take != "curve" else None:
+            yield _figure(pareto, None)
+        if (
+            run.keeps_trials
+            and (difference := difference_of(run, name))
+            and measure.unit == run.found.measures[name].unit
+        ):
+            yield _figure(difference_chart(measure, difference), None)
+    yield page_blocks(map(note, meanings(shown)))
+
+
+def _figure(chart: Markup, measure: MeasureSummary | None, *behind: Markup, **data: str) -> Markup:
+    marks = _marks(measure) if measure is not None else ()
+    trials = "trials" if behind else None
+    caption = [tag("figcaption", *marks)] if marks else []
+    attributes = {"data_trials": _id_of(behind[0])} if trials else {}
+    return tag("figure", chart, *caption, *behind, **attributes)
+
+
+def _id_of(data: Markup) -> str:
+    return data.partition('id="')[2].partition('"')[0]
+
+
+def _marks(measure: MeasureSummary) -> Sequence[Markup]:
+    """The legend of a histogram or a curve."""
+    known = {"geometric": "3D simulation", "analytic": "analytic", "closed": "closed form", "limit": "out of limits"}
+    there = {"analytic"} | ({"geometric"} if measure.best_road == "geometric" else set())
+    there |= {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
+    there |= {"limit"} if measure.has_limits else set()
+    return [tag("span", tag("i", class_=key), words) for key, words in known.items() if key in there]
+
+
+def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> Iterator[Markup]:
+    """The first kept trials of each bar as data, and the place where they are listed."""
+    samples = samples_of(measure)
+    if not run.keeps_trials or not samples:
+        return
+    factor = 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
+    bars = _first_trials(run, value_column(measure.best_road, name), samples[0].bars, factor)
+    data = {"run": str(run.path.name), "bars": bars}
+    text = json.dumps(data, sort_keys=True).replace("<", "\\u003c")
+    yield tag("script", Markup(text), type="application/json", id=f"trials-{number}")
+    yield tag("p", "Click a bar to list trials in it.", class_="picked note")
+
+
+def _first_trials(run: Run, column: str, bars: Bars, factor: float) -> Mapping[str, list[int]]:
+    found: dict[int, list[int]] = {}
+    first = 0
+    for piece in run.pieces(column):
+        values = np.asarray(piece[column], dtype=np.float64) * factor
+        places = np.searchsorted(bars.edges, values, side="right") - 1
+        for bar in range(len(bars.counts)):
+            own = found.setdefault(bar, [])
+            room = TRIALS_A_BAR - len(own)
+            own += (first + np.flatnonzero(places == bar)[:room]).tolist() if room else []
+        first += len(values)
+        if first >= MOST_READ:
+            break
+    return {str(bar): own for bar, own in found.items() if own}
+
+
+def _trials(run: RunSummary) -> Iterator[Markup]:
+    """How many trials ended how, and why."""
+    yield page_blocks([status_line(run)])
+    reasons = {
+        (name, reason): count for name, own in run.measures.items() for reason, count in (own.reasons or {}).items()
+    }
+    if reasons:
+        rows = [Row(name, (reason, str(count))) for (name, reason), count in list(reasons.items())[:MOST_MEASURES]]
+        yield table(Table("measure", [Heading("why builds failed", words=True), Heading("trials")], rows))
+    if run.witness:
+        words = f"witness: {run.witness.engine.upper()} measured {run.witness.trials} of these trials again"
+        yield tag("p", f"{words}; what it found stands with each measure", class_="note")
+
+
+def _provenance(run: Run) -> Iterator[Markup]:
+    found = run.found
+    chords = number_text(found.chord_error_um)
+    rows = [
+        Row("seed", (str(found.seed),)),
+        Row("sampler", (found.study.sampler.replace("_", " "),)),
+        Row("engine", (found.engine,)),
+        Row("chord error [µm]", (chords,)),
+        *(Row(f"SHA-256 of {name}", (own,)) for name, own in found.files.items()),
+        *(Row(name, (version,)) for name, version in found.versions.items()),
+    ]
+    yield table(Table("made from", [Heading("", words=True)], rows))
+
+
+# several runs -------------------------------------------------------------------------------------
+
+
+def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
+    """Runs of one scene, or of scenes that share measures, beside each other."""
+    named = [set(run.found.measures) for run in runs]
+    if not set.intersection(*named):
+        labels = ", ".join(label for label, _ in labelled(runs))
+        raise InputError(f"{labels}: expected runs that share a measure, got none; report each by itself")
+    blocks: list[PageItem] = [*comparison_report(runs).blocks]
+    rows = [
+        Row(label, (run.found.scene, str(run.trials), str(run.found.seed), run.found.engine))
+        for label, run in labelled(runs)
+    ]
+    heads = [Heading("scene", words=True), Heading("trials"), Heading("seed"), Heading("engine", words=True)]
+    yield tag("section", tag("h2", "runs"), table(Table("run", heads, rows)), id="section-0")
+    yield tag("section", tag("h2", "measures"), page_blocks(blocks), id="section-1")
+    for measure in measures_of(runs):
+        for label, run in measure.found_in(runs):
+            own = shown_run(run.found).measures[measure.name]
+            drawn = curve_chart if own.take == "curve" else histogram_chart
+            yield tag("h3", f"{measure.name} · {label}")
+            yield _figure(drawn(measure.name, own), own)
+
+
+# the file -----------------------------------------------------------------------------------------
+
+
+def _document(name: str, body: Sequence[Inside]) -> str:
+    style, script = _resource("style.css"), _resource("script.js")
+    policy = POLICY.format(script=_hash_of(script), style=_hash_of(style))
+    head = tag(
+        "head",
+        tag("meta", http_equiv="Content-Security-Policy", content=policy),
+        tag("meta", charset="utf-8"),
+        tag("meta", name_="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name_="color-scheme", content="light dark"),
+        tag("title", f"{name} · tol3d"),
+        tag("style", Markup(style)),
+    )
+    inside = tag("body", tag("main", *body), tag("script", Markup(script)))
+    return f"<!doctype html>\n{tag('html', head, inside, lang='en')}\n"
+
+
+def _hash_of(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+@cache
+def _resource(name: str) -> str:
+    return resources.files(__package__).joinpath(name).read_text("utf-8")

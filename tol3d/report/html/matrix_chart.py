@@ -1,0 +1,72 @@
+"""The matrix of contributors and measures: which tolerance matters where."""
+
+from typing import Final
+
+from tol3d.report.heading import largest, shown_measures
+from tol3d.report.heat_map import LEAST_WRITTEN, of_scalars, percents_of
+from tol3d.report.html.axis import WIDTH, chart
+from tol3d.report.html.tags import Markup, tag
+from tol3d.report.label import legible
+from tol3d.runs.summary.run import RunSummary
+
+MOST_COLUMNS, MOST_ROWS = 24, 40
+NAMES, HEADS, CELL = 230.0, 150.0, 18.0
+LONGEST: Final = 38
+FEWEST: Final = 2
+"""Measures of a matrix; of one the contributors' bars say all."""
+
+
+def matrix_chart(run: RunSummary) -> Markup | None:
+    """Shares of the variance [%] of the largest contributors in the worst measures; None of fewer than two."""
+    every = of_scalars(run)
+    if len(every) < FEWEST:
+        return None
+    names = shown_measures(every, MOST_COLUMNS)
+    shares = {name: percents_of(every[name]) for name in names}
+    sums: dict[str, float] = {}
+    for own in shares.values():
+        for contributor, share in own.items():
+            sums[contributor] = sums.get(contributor, 0.0) + share
+    rows = largest(sorted(sums, key=lambda each: -sums[each]), sums, MOST_ROWS)
+    wide = min(CELL * 2, (WIDTH - NAMES - 10) / len(names))
+    most = max([share for own in shares.values() for share in own.values()], default=0.0) or 1.0
+    inside = [
+        tag(
+            "text",
+            tag("title", name),
+            legible(name, 26),
+            class_="name",
+            transform=f"translate({NAMES + wide * (k + 0.65):.1f} {HEADS - 6:.0f}) rotate(-90)",
+            text_anchor="start",
+        )
+        for k, name in enumerate(names)
+    ]
+    for row, contributor in enumerate(rows):
+        y = HEADS + CELL * row
+        inside.append(
+            tag("text", tag("title", contributor), legible(contributor, LONGEST), x=NAMES - 8, y=y + 13, class_="name")
+        )
+        for k, name in enumerate(names):
+            if contributor not in shares[name]:
+                continue
+            share = shares[name][contributor]
+            words = f"{contributor}, {name}: {share:.1f} %"
+            strength = max(0.0, min(1.0, share / most))
+            place = {"x": NAMES + wide * k, "y": y}
+            inside.append(
+                tag(
+                    "rect",
+                    tag("title", words),
+                    **place,
+                    width=wide - 1,
+                    height=CELL - 1,
+                    class_="cell",
+                    fill_opacity=0.06 + 0.94 * strength,
+                )
+            )
+            if share >= LEAST_WRITTEN:
+                dark = "tick strong" if strength > 0.5 else "tick"
+                inside.append(
+                    tag("text", f"{share:.0f}", x=place["x"] + wide / 2, y=y + 13, text_anchor="middle", class_=dark)
+                )
+    return chart("shares of the variance of contributors in measures", HEADS + CELL * len(rows) + 8, *inside)
