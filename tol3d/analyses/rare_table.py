@@ -1,68 +1,90 @@
 """Rare events as tables: how often each limit is left, and the build by which it most likely is."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Final
 
-import numpy as np
-
-from tol3d.analyses.rare import RareEvent
-from tol3d.analyses.response import Response
-from tol3d.report.number import limit_text, number_text, ppm_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, note, page, titled
+from tol3d.analyses.rare_section import DesignBuild, LimitLeft, RareEvents
+from tol3d.report.number import NOTHING, limit_text, number_text, ppm_text
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
 
 MOST_SHOWN: Final = 8
 """Contributors of a design point."""
-WORDS: Final = (
+METHOD_WORDS: Final = {
+    "importance": "importance sampling about the design points",
+    "subset": "subset simulation",
+    "form": "first order alone",
+    "sorm": "second order alone",
+}
+BETA_WORDS: Final = (
     "β: distance of the design point, the most likely build beyond the limit, in standard normals; first order: Φ(−β), "
-    "averaged over positions; by sampling: importance sampling about the design points, with its interval of 95 %; "
-    "builds that do not seat fail"
+    "averaged over positions"
+)
+SUBSET_WORDS: Final = (
+    "subset simulation takes about 100000 builds for 10 % at 0.1 ppm; β: of the failing build nearest to the mean that "
+    "was met, an upper bound"
 )
 
 
-def rare_report(name: str, response: Response, events: Sequence[RareEvent]) -> Page:
-    """How often limits are left, then the design point of each.
+def limit_words(own: LimitLeft) -> str:
+    """A limit as it is left: `< 15 µm`."""
+    return f"{'<' if own.side == 'low' else '>'} {limit_text(own.limit, own.unit)}"
 
-    Args:
-        name: of the scene.
-        response: of all of its measures.
-        events: of its limits.
-    """
-    units = {own.name: own.unit for own in response.measures}
-    rows = [
-        Row(
-            own.measure,
-            (
-                f"{'<' if own.side == 'low' else '>'} {limit_text(own.limit, units[own.measure])}",
-                ppm_text(1e6 * own.probability),
-                f"{ppm_text(1e6 * own.interval[0])} … {ppm_text(1e6 * own.interval[1])}",
-                ppm_text(None if own.first_order is None else 1e6 * own.first_order),
-                f"{own.points[0].beta:.3f}" if own.points else "–",
-                str(own.evaluations),
-            ),
-        )
-        for own in events
-    ]
-    heads = ("limit", "by sampling", "95 %", "first order", "β", "builds")
+
+def rare_report(found: RareEvents) -> Page:
+    """How often limits are left, then the design point of each."""
+    second = any(own.second_order_ppm is not None for own in found.limits)
+    heads = ["limit", "ppm", "95 %", "first order", *(["second order"] if second else []), "β", "points", "builds"]
+    rows = [Row(own.measure, _cells(own, second=second)) for own in found.limits]
     table = Table("", [Heading(own, words=own == "limit") for own in heads], rows)
-    blocks: list[PageItem] = [Line(((name, "bold"), (" · how often limits are left", ""))), BLANK, table, note(WORDS)]
-    for own in events:
-        if own.points:
-            blocks += [BLANK, *_design_point(response, own)]
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · how often limits are left", ""))), BLANK, table]
+    blocks += [note(words) for words in _notes(found.limits)]
+    for own in found.limits:
+        blocks += [warning(f"{own.measure}, {limit_words(own)}: {words}") for words in own.warnings]
+    for own in found.limits:
+        if own.design_point is not None:
+            blocks += [BLANK, *_design_point(own, own.design_point)]
     return page(*blocks)
 
 
-def _design_point(response: Response, event: RareEvent) -> Sequence[PageItem]:
+def _cells(own: LimitLeft, *, second: bool) -> list[str]:
+    interval = own.ppm_interval
+    return [
+        limit_words(own),
+        _cell(own.ppm),
+        NOTHING if interval is None else f"{ppm_text(interval[0])} … {ppm_text(interval[1])}",
+        _cell(own.first_order_ppm),
+        *([_cell(own.second_order_ppm)] if second else []),
+        NOTHING if own.design_point is None else Shown(f"{own.design_point.beta:.3f}", own.design_point.beta),
+        str(own.design_points),
+        str(own.evaluations),
+    ]
+
+
+def _cell(ppm: float | None) -> Shown:
+    return Shown(ppm_text(ppm), ppm)
+
+
+def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
+    methods = dict.fromkeys(own.method for own in limits)
+    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that do not seat fail"
+    yield SUBSET_WORDS if set(methods) == {"subset"} else BETA_WORDS
+    if any(own.second_order_ppm is not None for own in limits):
+        yield "second order: with the curvatures of the limit, by Hohenbichler and Rackwitz"
+    for own in limits:
+        if own.unseated_percent > 0.0:
+            yield f"{own.measure}, {limit_words(own)}: {own.unseated_percent:.1f} % of what fails does not seat"
+
+
+def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
     """Deviations of the contributors that lead there, the largest parts first."""
-    nearest = event.points[0]
-    deviations = response.deviations(nearest.normals[None])[0]
-    shares = {name: float((nearest.sensitivities[own] ** 2).sum()) for name, own in response.normals.items()}
     rows = []
-    for own in sorted(response.contributors, key=lambda each: -shares[each.name])[:MOST_SHOWN]:
-        values = deviations[response.slices[own.name]] / own.per_unit
-        told = ", ".join(number_text(float(value)) for value in np.round(values, 3) + 0.0)
-        unit = "µm" if own.unit == "um" else own.unit
-        rows.append(Row(own.name, (told, unit, f"{100 * shares[own.name]:.1f}")))
-    side = "below" if event.side == "low" else "above"
-    title = f"{event.measure}: the most likely build {side} its limit"
+    for each in build.contributors[:MOST_SHOWN]:
+        told = ", ".join(number_text(round(value, 3) + 0.0) for value in each.deviations)
+        unit = "µm" if each.unit == "um" else each.unit
+        rows.append(Row(each.name, (told, unit, Shown(f"{each.percent:.1f}", each.percent))))
+    side = "below" if own.side == "low" else "above"
+    kind = "within" if build.beta < 0.0 else side
+    title = f"{own.measure}: the most likely build {kind} its {'lower' if own.side == 'low' else 'upper'} limit"
+    at = ", ".join(f"{name} {number_text(round(value, 2))}" for name, value in build.positions.items())
     heads = [Heading("deviation"), Heading("unit", words=True), Heading("share of the way [%]")]
-    return titled(title, Table("", heads, rows))
+    return [*titled(title, Table("", heads, rows)), *([note(at)] if at else [])]

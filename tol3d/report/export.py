@@ -64,7 +64,21 @@ def export_run(
         raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     if fmt == "step" and magnify != 1.0:
         raise InputError("a STEP file holds the real parts: leave out --magnify, or choose stl, ply or glb")
-    display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
+    return export_build(presenter_of(run.found, presenter).display(run, which, magnify=magnify), fmt, out)
+
+
+def export_build(display: Display, fmt: str, out: Path) -> Exported:
+    """Write the parts of a build that is shown; files are named by its label.
+
+    Args:
+        display: the build.
+        fmt, out: see export_run.
+
+    Raises:
+        InputError: see export_run.
+    """
+    if fmt not in FORMATS:
+        raise InputError(f"format: expected one of {', '.join(FORMATS)}, got {fmt!r}")
     require_bodies(display)
     missing = [body.name for world in display.worlds for body in world.bodies if body.posed is None]
     if fmt == "step":

@@ -48,9 +48,25 @@ def view_run(
         InputError: no such build or close-up, nothing to show, no display to open a window on, or the picture cannot
             be written.
     """
-    if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
-        raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
+    _refuse_other(screenshot)
     display = presenter_of(run.found, presenter).display(run, which, magnify=magnify)
+    return view_build(display, screenshot=screenshot, close_up=close_up)
+
+
+def view_build(display: Display, *, screenshot: Path | None = None, close_up: str | None = None) -> tuple[str, ...]:
+    """Show a build in a window, or write a picture of it.
+
+    Args:
+        display: the build.
+        screenshot, close_up: see view_run.
+
+    Returns:
+        what the user should know.
+
+    Raises:
+        InputError: see view_run.
+    """
+    _refuse_other(screenshot)
     view = display.view(close_up)
     if not view.panels:
         require_bodies(display)
@@ -66,6 +82,11 @@ def view_run(
     finally:
         plotter.close()
     return (*display.notes, *view.notes)
+
+
+def _refuse_other(screenshot: Path | None) -> None:
+    if screenshot is not None and screenshot.suffix.lower() not in PICTURES:
+        raise InputError(f"{screenshot}: expected a picture ending in {', '.join(PICTURES)}")
 
 
 def _first_world(display: Display, plotter: pv.Plotter, width_by_height: float) -> None:

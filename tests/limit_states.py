@@ -1,0 +1,291 @@
+"""Limit states whose probabilities are known in closed form or by quadrature, as systems that analyses may ask."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad
+from scipy.stats import chi2, norm
+
+from tol3d.analyses.limit_state import Side
+from tol3d.analyses.response import Response, response_of
+from tol3d.distributions import Distribution
+from tol3d.distributions.normal import Normal
+from tol3d.distributions.uniform import Uniform
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
+from tol3d.system.draw import Draw, Scalar
+from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.system.road import Answers, Road, RoadKind
+from tol3d.system.statuses import Statuses
+from tol3d.system.system import StreamKey
+
+Array = NDArray[np.float64]
+Value = Callable[[Array, Array], Array]
+"""Of deviations (n, components) and the position [rad] (n,); not a number where a build does not seat."""
+
+
+class FormulaRoad:
+    """A function of deviations and the position as a road; not a number does not seat."""
+
+    chord_error: ClassVar[float] = 0.0
+
+    def __init__(self, value: Value) -> None:
+        self.value = value
+
+    def answers(self, trials: Any, measures: Sequence[Any]) -> Answers:
+        angle = trials.positions.get("shaft", np.zeros(len(trials)))
+        values = np.asarray(self.value(trials.deviations, angle), dtype=np.float64)
+        codes = np.isnan(values).astype(np.int8)
+        return Answers({own.name: values[:, None] for own in measures}, status={own.name: codes for own in measures})
+
+
+@dataclass(frozen=True)
+class Formula(PlainSystem):
+    """A measure that is a function of deviations and, where it turns, of a position."""
+
+    value: Value = len  # type: ignore[assignment]
+    turns: bool = False
+
+    roads: ClassVar[Mapping[str, RoadKind]] = {"analytic": RoadKind("model"), "exact": RoadKind("model")}
+    statuses: ClassVar[Statuses] = Statuses(("ok", "no build"))
+
+    def road(self, name: str, materials: Any) -> Road:
+        return FormulaRoad(self.value)
+
+    @property
+    def streams(self) -> Sequence[StreamKey]:
+        return (("shaft", ""),) if self.turns else ()
+
+    def positions(self, uniforms: Mapping[StreamKey, Array]) -> Mapping[str, Array]:
+        return {name: 2 * math.pi * own for (name, _), own in uniforms.items()}
+
+
+def formula(value: Value, laws: Sequence[Distribution | Draw] | int, *, turns: bool = False) -> Response:
+    """A response of one measure, of so many standard normals or of stated laws."""
+    given = [Normal(0.0, 1.0)] * laws if isinstance(laws, int) else laws
+    draws = [Scalar(own) if isinstance(own, Distribution) else own for own in given]
+    contributors = tuple(PlainContributor(f"x{k}", "x", own, "1", 1.0) for k, own in enumerate(draws))
+    measure = PlainMeasure("value", "value", unit="1", per_internal=1.0)
+    return response_of(Simulation(Formula("formula", contributors, (measure,), value, turns), Study(trials=1000)))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A limit state with its probability.
+
+    Args:
+        name: what is hard about it.
+        value, laws, turns: see `formula`.
+        side, limit: that is left.
+        probability: exactly.
+        methods: that are expected to know it.
+    """
+
+    name: str
+    value: Value
+    laws: Sequence[Distribution | Draw] | int
+    side: Side
+    limit: float
+    probability: float
+    turns: bool = False
+    methods: tuple[str, ...] = field(default=("importance", "subset"))
+
+    def response(self) -> Response:
+        return formula(self.value, self.laws, turns=self.turns)
+
+
+def averaged(of_angle: Callable[[float], float]) -> float:
+    """The mean over a turn."""
+    angles = (np.arange(4096) + 0.5) / 4096 * 2 * math.pi
+    return float(np.mean([of_angle(own) for own in angles]))
+
+
+SIXTY = np.linspace(1.0, 2.0, 60)
+
+
+def _curved(kappa: float, beta: float) -> float:
+    """P(z1 > β + κ z2²/2) by quadrature."""
+    found: float = quad(lambda y: norm.pdf(y) * norm.sf(beta + kappa * y * y / 2), -12, 12, points=[0.0], limit=400)[0]
+    return found
+
+
+def _paraboloid(kappa: float, beta: float, across: int) -> float:
+    """P(z1 > β + κ/2 |y|²), y of so many dimensions."""
+    law = chi2(across)
+    found: float = quad(lambda s: law.pdf(s) * norm.sf(beta + kappa * s / 2), 0, 400, points=[across], limit=2000)[0]
+    return found
+
+
+def _hypot(x: Array, _: Array) -> Array:
+    return np.asarray(np.hypot(x[:, 0], x[:, 1]))
+
+
+CASES = (
+    Case("a plane", lambda x, _: 3 * x[:, 0] - x[:, 1] + 0.5 * x[:, 2], 3, "high", 4 * math.sqrt(10.25), norm.sf(4)),
+    Case("60 contributors", lambda x, _: x @ SIXTY, 60, "low", -4.5 * float(np.linalg.norm(SIXTY)), norm.sf(4.5)),
+    Case(
+        "two symmetric design points",
+        lambda x, _: np.abs(x[:, 0]) + 0.01 * x[:, 1],
+        2,
+        "high",
+        4.0,
+        2 * norm.sf(4 / math.hypot(1, 0.01)),
+    ),
+    Case(
+        "a design point behind another",
+        lambda x, _: np.maximum(0.025 - np.abs(x[:, 0] - 4.025), x[:, 0] - 4.4) + 0.0 * x[:, 1],
+        2,
+        "high",
+        0.0,
+        norm.cdf(4.05) - norm.cdf(4.0) + norm.sf(4.4),
+    ),
+    Case(
+        "a wide one behind a narrow one",
+        lambda x, _: np.maximum(x[:, 0] - 4.0 - 20 * x[:, 1] ** 2, -x[:, 0] - 4.2),
+        2,
+        "high",
+        0.0,
+        _curved(40.0, 4.0) + norm.sf(4.2),
+    ),
+    Case(
+        "four design points at different distances",
+        lambda x, _: np.max([x[:, 0] - 3.6, -x[:, 0] - 3.9, x[:, 1] - 3.7, -x[:, 1] - 4.4], axis=0),
+        2,
+        "high",
+        0.0,
+        1 - (norm.cdf(3.6) - norm.cdf(-3.9)) * (norm.cdf(3.7) - norm.cdf(-4.4)),
+    ),
+    Case(
+        "four of them among 20 contributors",
+        lambda x, _: np.max([x[:, 0] - 3.6, -x[:, 3] - 3.9, x[:, 1] - 3.7, -x[:, 1] - 4.4], axis=0),
+        20,
+        "high",
+        0.0,
+        1 - norm.cdf(3.6) * norm.cdf(3.9) * (norm.cdf(3.7) - norm.cdf(-4.4)),
+    ),
+    Case("a ball", _hypot, 2, "high", 5.0, math.exp(-12.5)),
+    Case("a ball in 8 dimensions", lambda x, _: np.sqrt((x * x).sum(axis=1)), 8, "high", 6.5, chi2.sf(6.5**2, 8)),
+    Case("a corner", lambda x, _: np.minimum(x[:, 0], x[:, 1]), 2, "high", 3.0, norm.sf(3.0) ** 2),
+    Case("a corner of three", lambda x, _: x[:, :3].min(axis=1), 6, "high", 2.2, norm.sf(2.2) ** 3),
+    Case("a kink", lambda x, _: np.maximum(x[:, 0], x[:, 1]), 3, "high", 4.2, 1 - norm.cdf(4.2) ** 2),
+    Case("curved towards the origin", lambda x, _: x[:, 0] + 0.1 * x[:, 1] ** 2, 2, "high", 4.0, _curved(-0.2, 4.0)),
+    Case(
+        "curved towards the origin in 12 dimensions",
+        lambda x, _: x[:, 0] + 0.05 * (x[:, 1:] ** 2).sum(axis=1),
+        12,
+        "high",
+        4.0,
+        _paraboloid(-0.1, 4.0, 11),
+    ),
+    Case(
+        "curved much in 12 dimensions",
+        lambda x, _: x[:, 0] + 0.1 * (x[:, 1:] ** 2).sum(axis=1),
+        12,
+        "high",
+        5.0,
+        _paraboloid(-0.2, 5.0, 11),
+    ),
+    Case(
+        "curved in 60 dimensions",
+        lambda x, _: x[:, 0] + 0.02 * (x[:, 1:] ** 2).sum(axis=1),
+        60,
+        "high",
+        5.5,
+        _paraboloid(-0.04, 5.5, 59),
+    ),
+    Case("curved away", lambda x, _: x[:, 0] - 0.5 * x[:, 1] ** 2, 2, "high", 4.0, _curved(1.0, 4.0)),
+    Case(
+        "the limit inside the mean",
+        lambda x, _: x[:, 0] + 0.1 * x[:, 1],
+        2,
+        "high",
+        -0.8,
+        norm.cdf(0.8 / math.hypot(1, 0.1)),
+    ),
+    Case("almost all fail", lambda x, _: x[:, 0] + 0.1 * x[:, 1], 2, "high", -4.0, norm.cdf(4.0 / math.hypot(1, 0.1))),
+    Case(
+        "frequent",
+        lambda x, _: x[:, 0] + x[:, 1] ** 2,
+        2,
+        "high",
+        3.0,
+        quad(lambda y: norm.pdf(y) * norm.sf(3.0 - y * y), -9, 9, limit=200)[0],
+    ),
+    Case(
+        "a jam",
+        lambda x, _: np.where(x[:, 0] > 3.6, np.nan, x[:, 1]),
+        6,
+        "low",
+        -4.5,
+        norm.sf(3.6) + norm.cdf(3.6) * norm.sf(4.5),
+    ),
+    Case(
+        "a jam alone",
+        lambda x, _: np.where(x[:, 0] - x[:, 1] > 5.5, np.nan, 0.1 * x[:, 2]),
+        4,
+        "low",
+        -2.0,
+        norm.sf(5.5 / math.sqrt(2)),
+        methods=("importance",),
+    ),
+    Case("beyond bounded laws", lambda x, _: x[:, 0] + x[:, 1], [Uniform(-1.0, 1.0)] * 2, "high", 2.5, 0.0),
+    Case(
+        "at the end of bounded laws",
+        lambda x, _: x[:, 0] + x[:, 1],
+        [Uniform(-1.0, 1.0)] * 2,
+        "high",
+        1.99,
+        0.01**2 / 8,
+    ),
+    Case("flat", lambda x, _: np.full(len(x), 3.0), 2, "high", 4.0, 0.0),
+    Case("flat, and out", lambda x, _: np.full(len(x), 5.0), 2, "high", 4.0, 1.0),
+    Case(
+        "a fixed direction",
+        lambda x, a: x[:, 0] + 2.0 * np.cos(a) + 0.3 * x[:, 1],
+        2,
+        "high",
+        6.0,
+        averaged(lambda a: norm.sf((6.0 - 2 * math.cos(a)) / math.hypot(1, 0.3))),
+        turns=True,
+    ),
+    Case(
+        "a strong fixed direction",
+        lambda x, a: x[:, 0] + 10.0 * np.cos(a),
+        1,
+        "high",
+        14.0,
+        averaged(lambda a: norm.sf(14.0 - 10 * math.cos(a))),
+        turns=True,
+    ),
+    Case(
+        "few positions fail",
+        lambda x, a: x[:, 0] + 3.0 * np.exp(-((a - 2.0) ** 2) / 0.02),
+        1,
+        "high",
+        6.5,
+        averaged(lambda a: norm.sf(6.5 - 3 * math.exp(-((a - 2.0) ** 2) / 0.02))),
+        turns=True,
+    ),
+    Case(
+        "a random direction",
+        lambda x, a: x[:, 0] * np.cos(7 * a) + x[:, 1] * np.sin(7 * a) + 0.5 * x[:, 2],
+        3,
+        "low",
+        -5.0,
+        norm.sf(5.0 / math.sqrt(1.25)),
+        turns=True,
+    ),
+    Case(
+        "two of random directions",
+        lambda x, a: np.abs(x[:, 0] * np.cos(7 * a) + x[:, 1] * np.sin(7 * a)) + 0.1 * x[:, 2],
+        3,
+        "high",
+        4.5,
+        2 * norm.sf(4.5 / math.hypot(1, 0.1)),
+        turns=True,
+    ),
+)

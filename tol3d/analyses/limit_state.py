@@ -1,0 +1,104 @@
+"""The limit state of a measure: how far a build in standard normals is within a limit."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analyses.response import Response
+from tol3d.numerics.arrays import Array
+from tol3d.system.dependent import Dependent
+from tol3d.system.measure import Measure
+
+Side = Literal["low", "high"]
+Positions = Mapping[str, Array]
+
+STEP: Final = 1e-3
+"""Central differences, in standard normals."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """A measure and one of its limits: below 0 where the measure is beyond it. A build that does not seat fails.
+
+    Args:
+        response: of that measure alone.
+        limit: in its unit.
+        side: low, where less than the limit fails; high, where more does.
+    """
+
+    response: Response
+    limit: float
+    side: Side
+
+    @property
+    def measure(self) -> Measure:
+        """The measure."""
+        return self.response.measures[0]
+
+    @property
+    def dimension(self) -> int:
+        """Number of standard normals."""
+        return self.response.dimension
+
+    @cached_property
+    def acting(self) -> NDArray[np.int64]:
+        """Normals of the contributors that act on the measure, and of those whose draws these read."""
+        draws = self.response.draws
+        names = {own.name for own in self.response.simulation.system.acting(self.measure)}
+        waiting = list(names)
+        while waiting:
+            draw = draws[waiting.pop()]
+            more = set(draw.reads) - names if isinstance(draw, Dependent) else set()
+            names |= more
+            waiting += more
+        kept = [own for name, own in self.response.normals.items() if name in names]
+        return np.array([k for own in kept for k in range(own.start, own.stop)], dtype=np.int64)
+
+    def at(self, normals: Array, positions: Positions | None) -> tuple[Array, NDArray[np.bool_]]:
+        """Distance of builds (n, dimension) within the limit (n,), and which seat; one that does not has no number."""
+        found = self.response.values(self.response.deviations(normals), positions)
+        values = found.values[:, 0]
+        return (values - self.limit if self.side == "low" else self.limit - values), found.seated[:, 0]
+
+    def failing(self, normals: Array, positions: Positions | None) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Builds that are beyond the limit or do not seat (n,), and those that do not seat (n,)."""
+        inside, seated = self.at(normals, positions)
+        with np.errstate(invalid="ignore"):
+            unseated = ~seated & ~(inside < 0.0)
+            return np.asarray(~seated | ~(inside >= 0.0)), unseated
+
+    def gradient(self, normals: Array, positions: Positions) -> Array:
+        """Change of the limit state with the normals (n, dimension), by central differences in one batch."""
+        acting, count = self.acting, len(self.acting)
+        shifts = np.zeros((2 * count, normals.shape[1]))
+        shifts[np.arange(count), acting] = STEP
+        shifts[count + np.arange(count), acting] = -STEP
+        builds = (normals[:, None] + shifts).reshape(-1, normals.shape[1])
+        found = self.at(builds, repeated(positions, 2 * count))[0].reshape(len(normals), 2, count)
+        gradient = np.zeros(normals.shape)
+        gradient[:, acting] = np.nan_to_num((found[:, 0] - found[:, 1]) / (2 * STEP))
+        return gradient
+
+
+def repeated(positions: Positions, times: int) -> Positions:
+    """Each position so many times in a row."""
+    return {name: np.repeat(own, times, axis=0) for name, own in positions.items()}
+
+
+def taken(positions: Positions, rows: NDArray[np.int64]) -> Positions:
+    """Positions of some rows."""
+    return {name: own[rows] for name, own in positions.items()}
+
+
+def at_place(positions: Positions, place: int) -> Positions:
+    """One of several positions, as a row."""
+    return {name: own[place : place + 1] for name, own in positions.items()}
+
+
+def beside(first: Positions, then: Positions) -> Positions:
+    """Positions one after the other."""
+    return {name: np.concatenate([own, then[name]]) for name, own in first.items()}

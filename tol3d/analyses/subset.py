@@ -1,0 +1,201 @@
+"""Subset simulation: failures as the last of nested events, each of which one build in ten of the former one is in.
+
+It needs no gradient and no smooth map; positions are among what is drawn. Ten independent repetitions give its error,
+for the formula of one leaves out how much its chains depend on each other.
+
+Sources: Au and Beck 2001; Papaioannou, Betz, Zwirglmaier and Straub 2015 (adaptive conditional sampling).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analyses.design_points import FURTHEST, DesignPoint
+from tol3d.analyses.estimate import Estimate, counted, effective, weighted_interval
+from tol3d.analyses.limit_state import LimitState, Positions, at_place
+from tol3d.numerics.arrays import Array
+
+SHARE: Final = 0.1
+"""Of each event in the former one."""
+REPETITIONS: Final = 10
+LEVELS: Final = 24
+"""After which it gives up: 1e-24."""
+ACCEPTED: Final = 0.44
+"""Share of the steps of a chain that is aimed at."""
+FIRST_STEP: Final = 0.6
+FREQUENT: Final = 0.05
+"""Probability from which on its first level is enough."""
+UNLIKE: Final = 0.6
+"""Spread of the repetitions, by their mean, from which on it is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Builds on their way: (repetitions, builds of each, ...).
+
+    Args:
+        normals: of deviations and then of positions, two for each stream, whose angle is the position.
+        inside: the limit state; -inf where a build does not seat.
+        unseated: which do not seat.
+    """
+
+    normals: Array
+    inside: Array
+    unseated: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """Found by subset simulation.
+
+    Args:
+        estimate: of the probability.
+        point: the failing build nearest to the origin that was met; None where none was.
+    """
+
+    estimate: Estimate
+    point: DesignPoint | None
+
+
+def subset_simulated(
+    state: LimitState, draws: int, generator: np.random.Generator, activity: Callable[[str], None] = lambda text: None
+) -> Sampled:
+    """The probability by subset simulation.
+
+    Args:
+        state: whose.
+        draws: of each level, all repetitions together.
+        generator: of all draws.
+        activity: told at each level.
+    """
+    streams = len(state.response.simulation.system.streams)
+    each = max(20, round(draws / REPETITIONS / 10) * 10)
+    z = generator.standard_normal((REPETITIONS, each, state.dimension + 2 * streams))
+    rows = _evaluated(state, z)
+    fails = rows.inside < 0.0
+    spent = z.shape[0] * each
+    if fails.mean() > FREQUENT:
+        return Sampled(counted(fails.ravel(), rows.unseated.ravel()), _nearest(state, rows, fails))
+    logs, steps = np.zeros(REPETITIONS), np.full(REPETITIONS, FIRST_STEP)
+    ended, last = np.zeros(REPETITIONS, dtype=bool), np.full(REPETITIONS, np.inf)
+    shares = np.zeros(REPETITIONS)
+    for level in range(LEVELS):
+        activity(f"level {level + 1}")
+        bounds = np.maximum(np.partition(rows.inside, int(SHARE * each) - 1, axis=1)[:, int(SHARE * each) - 1], 0.0)
+        below = np.where(bounds[:, None] > 0.0, rows.inside <= bounds[:, None], rows.inside < 0.0)
+        there, stuck = ~ended & (bounds <= 0.0), ~ended & (bounds > 0.0) & (bounds >= last)
+        shares[there] = below[there].mean(axis=1)
+        ended |= there | stuck
+        if ended.all():
+            break
+        going = np.flatnonzero(~ended)
+        logs[going] += np.log(below[going].mean(axis=1))
+        last = bounds
+        moved, steps[going] = _chains(state, rows, below, bounds, going, steps[going], generator)
+        spent += moved.inside.size
+        for own, new in ((rows.normals, moved.normals), (rows.inside, moved.inside), (rows.unseated, moved.unseated)):
+            own[going] = new
+    found = np.where(shares > 0.0, np.exp(logs) * shares, 0.0)
+    return Sampled(_estimate(rows, found, spent, each), _nearest(state, rows, rows.inside < 0.0))
+
+
+def _estimate(rows: Rows, found: Array, spent: int, each: int) -> Estimate:
+    """Mean and spread of the repetitions."""
+    probability, error = float(found.mean()), float(found.std(ddof=1)) / math.sqrt(REPETITIONS)
+    fails = rows.inside < 0.0
+    reached = found > 0.0
+    per = np.where(reached, found / np.maximum(fails.sum(axis=1), 1), 0.0)
+    unseated = float((per[:, None] * (rows.unseated & fails)).sum()) / (probability * REPETITIONS or 1.0)
+    notes: list[str] = []
+    if not reached.all():
+        missing = int((~reached).sum())
+        told = "no repetition" if missing == REPETITIONS else f"{missing} of {REPETITIONS} repetitions"
+        none = " reached the limit; the bound is that of the plain draws of the first level"
+        notes.append(told + (none if missing == REPETITIONS else " did not reach the limit"))
+    elif found.std(ddof=1) > UNLIKE * probability:
+        notes.append("the repetitions differ by much: take more draws a level (--draws)")
+    freedoms = effective(found) - 1.0  # fewer where some repetitions make most of the mean
+    interval = weighted_interval(probability, error, freedoms, -math.log(0.025) / (REPETITIONS * each))
+    return Estimate(probability, error, interval, unseated, spent, tuple(notes))
+
+
+def _positions(state: LimitState, z: Array) -> Positions:
+    """Positions by two normals of each stream (n, 2 streams): their angle."""
+    system = state.response.simulation.system
+    turns = np.arctan2(z[:, 1::2], z[:, 0::2]) / (2 * math.pi) % 1.0
+    return system.positions({key: turns[:, k] for k, key in enumerate(system.streams)})
+
+
+def _evaluated(state: LimitState, z: Array) -> Rows:
+    flat, dimension = z.reshape(-1, z.shape[2]), state.dimension
+    if state.response.simulation.system.streams:
+        positions = _positions(state, flat[:, dimension:])
+    else:
+        positions = state.response.positions(len(flat), "rest")
+    inside, seated = state.at(flat[:, :dimension], positions)
+    unseated = ~seated & ~(inside < 0.0)
+    inside = np.where(seated | (inside < 0.0), inside, -np.inf)
+    inside[np.isnan(inside)] = -np.inf
+    return Rows(z, inside.reshape(z.shape[:2]), unseated.reshape(z.shape[:2]))
+
+
+def _chains(
+    state: LimitState,
+    rows: Rows,
+    below: NDArray[np.bool_],
+    bounds: Array,
+    going: NDArray[np.int64],
+    steps: Array,
+    generator: np.random.Generator,
+) -> tuple[Rows, Array]:
+    """As many builds again within each event, by chains from those that are in it; and the steps' lengths."""
+    each = rows.inside.shape[1]
+    seeds = max(1, int(SHARE * each))
+    length = each // seeds
+    starts = np.array([_chosen(np.flatnonzero(below[k]), seeds, generator) for k in going])
+    z = rows.normals[going[:, None], starts]
+    here = Rows(z, rows.inside[going[:, None], starts], rows.unseated[going[:, None], starts])
+    spread = np.minimum(z.std(axis=1), 1.0)[:, None]
+    kept: list[Rows] = []
+    for _ in range(length):
+        sigma = np.clip(steps[:, None, None] * spread / max(float(spread.max()), 1e-12), 1e-4, 1.0)
+        noise = generator.standard_normal(here.normals.shape)
+        moved = _evaluated(state, np.sqrt(1.0 - sigma**2) * here.normals + sigma * noise)
+        limits = bounds[going][:, None]
+        good = np.where(limits > 0.0, moved.inside <= limits, moved.inside < 0.0)
+        here = Rows(
+            np.where(good[:, :, None], moved.normals, here.normals),
+            np.where(good, moved.inside, here.inside),
+            np.where(good, moved.unseated, here.unseated),
+        )
+        kept.append(here)
+        steps = np.clip(steps * np.exp(good.mean(axis=1) - ACCEPTED), 0.05, 1.0)
+    joined = Rows(
+        np.concatenate([own.normals for own in kept], axis=1),
+        np.concatenate([own.inside for own in kept], axis=1),
+        np.concatenate([own.unseated for own in kept], axis=1),
+    )
+    return joined, steps
+
+
+def _chosen(rows: NDArray[np.int64], count: int, generator: np.random.Generator) -> NDArray[np.int64]:
+    return generator.permutation(rows)[:count] if len(rows) >= count else generator.choice(rows, count)
+
+
+def _nearest(state: LimitState, rows: Rows, fails: NDArray[np.bool_]) -> DesignPoint | None:
+    """The failing build nearest to the origin, as a design point of which no gradient is known."""
+    if not fails.any():
+        return None
+    z = rows.normals[fails]
+    dimension = state.dimension
+    own = z[np.argmin((z[:, :dimension] ** 2).sum(axis=1))][None]
+    positions = (
+        _positions(state, own[:, dimension:])
+        if state.response.simulation.system.streams
+        else state.response.positions(1, "rest")
+    )
+    return DesignPoint(own[0, :dimension], at_place(positions, 0), np.zeros(dimension), smooth=False)
