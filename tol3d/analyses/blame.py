@@ -19,8 +19,9 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.special import ndtr
 
+from tol3d.analyses.design_points import DesignPoint, design_points
+from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.pick_freeze import PickFreeze
-from tol3d.analyses.rare import DesignPoint, LimitState, Side, design_points
 from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects, linear_shapley
 from tol3d.numerics.arrays import Array

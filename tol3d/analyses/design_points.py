@@ -98,7 +98,13 @@ def design_points(
 
 
 def points_from(state: LimitState, starts: Array, positions: Positions, beyond: NDArray[np.bool_]) -> list[DesignPoint]:
-    """Design points from builds (n, dimension) that fail, at their positions, where the build at the origin does not."""
+    """Design points from builds (n, dimension) that fail, at their positions.
+
+    Args:
+        state: whose.
+        starts, positions: of the builds.
+        beyond: where the build at the origin fails; without a gradient none is sought there.
+    """
     if not len(starts):
         return []
     walked, _ = _walked(state, starts, positions, beyond, known=True)

@@ -301,7 +301,7 @@ def _sampled(state: LimitState, places: Places, draws: int, generator: np.random
     likely = places.weights * np.minimum(places.rare, 0.5)
     shares = FLAT / places.count + (1 - FLAT) * likely / (likely.sum() or 1.0)
     counts = np.maximum(LEAST_DRAWS, np.floor(draws * shares)).astype(np.int64)
-    shapes = places.shapes or [None] * places.count
+    shapes: Sequence[Sequence[Shape] | None] = places.shapes or [None] * places.count
     mixtures = [_Mixture.about(own, state, each) for own, each in zip(places.points, shapes, strict=True)]
     rows = np.repeat(np.arange(places.count), counts)
     normals = np.concatenate([own.drawn(int(n), generator) for own, n in zip(mixtures, counts, strict=True)])

@@ -1,7 +1,7 @@
 """How often a measure leaves a limit, where that is too rare to wait for: design points and sampling.
 
 In standard normals the most likely build that fails is the design point: the one of the limit nearest to the origin. By
-the first order (FORM) the probability is Φ(-β), β its distance; the second order (SORM) sees the limit's curvatures too.
+the first order (FORM) the probability is Φ(-β), β its distance; the second order (SORM) knows curvatures too.
 A measure that is read at random positions has a design point at each, and deviations with directions may have several:
 they are sought from many starts, at several positions. Importance sampling draws about all of them; subset simulation
 needs none.
@@ -116,9 +116,11 @@ def rare_event(
     state, before = LimitState(response, limit, side), response.evaluations
     generator = np.random.default_rng(seed)
     first, second = None, None
+    points: tuple[DesignPoint, ...]
     if method == "subset":
         found = subset_simulated(state, draws or LEVEL_DRAWS, generator, activity)
-        points, estimate = (found.point,) if found.point else (), found.estimate
+        estimate = found.estimate
+        points = (found.point,) if found.point else ()
     else:
         activity("design points")
         where = searched(state, places, starts, alone, generator)

@@ -82,8 +82,9 @@ def _draw_limits(axes: Axes, limits: Sequence[LimitLeft]) -> None:
     axes.set_yticks(range(len(limits)), names, fontsize=NAME_SIZE)
     axes.set_ylim(len(limits) - 0.5, -0.5)
     axes.set_xlabel("builds beyond the limit [ppm]", fontsize=10)
+    low, high = axes.get_xlim() if shown else (1e-3, 1e6)
+    axes.set_xlim(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
     if not shown:
-        axes.set_xlim(1e-3, 1e6)
         say_instead(axes, "nothing is known of these limits", GREY)
     legend_below(axes)
 

@@ -35,14 +35,14 @@ def rare_report(found: RareEvents) -> Page:
     second = any(own.second_order_ppm is not None for own in found.limits)
     heads = ["limit", "ppm", "95 %", "first order", *(["second order"] if second else []), "β", "points", "builds"]
     rows = [Row(own.measure, _cells(own, second=second)) for own in found.limits]
-    table = Table("", [Heading(own, words=own == "limit") for own in heads], rows)
+    table = Table("", [Heading(own, optional=own == "points") for own in heads], rows)
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · how often limits are left", ""))), BLANK, table]
     blocks += [note(words) for words in _notes(found.limits)]
     for own in found.limits:
         blocks += [warning(f"{own.measure}, {limit_words(own)}: {words}") for words in own.warnings]
     for own in found.limits:
         if own.design_point is not None:
-            blocks += [BLANK, *_design_point(own, own.design_point)]
+            blocks += _design_point(own, own.design_point)
     return page(*blocks)
 
 

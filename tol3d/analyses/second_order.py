@@ -77,7 +77,8 @@ def corrected(beta: float, curved: Array) -> tuple[float, float] | None:
 def curvatures(state: LimitState, point: DesignPoint) -> tuple[Array, Array]:
     """Main curvatures of the limit at a design point (n - 1,) and their directions (n - 1, dimension).
 
-    They are above 0 where the limit bends away from the origin, of n normals that act. The Hessian in a frame whose last axis is the design point's, without that axis, by the slope there.
+    They are above 0 where the limit bends away from the origin; n normals act. By the Hessian in a frame whose last
+    axis is the design point's, without that axis, by the slope there.
     """
     acting, size = state.acting, float(np.linalg.norm(point.gradient))
     count = len(acting)

@@ -15,11 +15,19 @@ from typing import Annotated, TextIO
 
 import typer
 
+<<<<<<< HEAD
 from tol3d.cli import adjustment, analyses, deciding, design, effects, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
 __all__ = ["adjustment", "analyses", "app", "deciding", "design", "effects", "main", "records", "showing", "studies"]
+=======
+from tol3d.cli import adjustment, design, effects, rare, records, showing, studies
+from tol3d.cli.arguments import app
+from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
+
+__all__ = ["adjustment", "app", "design", "effects", "main", "rare", "records", "showing", "studies"]
+>>>>>>> f63a757 (Tell of rare events: methods, their intervals, and what they cannot know)
 
 COMMANDS = (
     studies.run,
@@ -30,7 +38,7 @@ COMMANDS = (
     showing.report,
     adjustment.shim,
     adjustment.compensate,
-    analyses.rare,
+    rare.rare,
     effects.effects,
     deciding.what_if,
     records.identify,
