@@ -21,11 +21,8 @@ from tol3d.study.simulation import Simulation
 FOLDER: Final = "analyses"
 SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
-<<<<<<< HEAD
     "what-if": "tol3d.analyses.what_if:WhatIf",
-=======
     "rare": "tol3d.analyses.rare_section:RareEvents",
->>>>>>> f63a757 (Tell of rare events: methods, their intervals, and what they cannot know)
 }
 """The class of each section by its name, as an import path."""
 

@@ -14,7 +14,9 @@ from pydantic import Field
 from scipy.special import ndtr
 
 from tol3d.analyses.changes import Change, changed, told
-from tol3d.analyses.rare import LimitState, Side, design_points, rare_event
+from tol3d.analyses.design_points import design_points
+from tol3d.analyses.limit_state import LimitState, Side
+from tol3d.analyses.rare import DRAWS, rare_event
 from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
 from tol3d.errors import InputError
@@ -128,7 +130,7 @@ def what_if(
     measure: str | None = None,
     *,
     trials: int | None = None,
-    draws: int = 5600,
+    draws: int = DRAWS,
     seed: int = 1,
     activity: Callable[[str], None] = lambda text: None,
 ) -> WhatIf:

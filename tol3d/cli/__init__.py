@@ -15,19 +15,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-<<<<<<< HEAD
-from tol3d.cli import adjustment, analyses, deciding, design, effects, records, showing, studies
+from tol3d.cli import adjustment, deciding, design, effects, rare, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["adjustment", "analyses", "app", "deciding", "design", "effects", "main", "records", "showing", "studies"]
-=======
-from tol3d.cli import adjustment, design, effects, rare, records, showing, studies
-from tol3d.cli.arguments import app
-from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
-
-__all__ = ["adjustment", "app", "design", "effects", "main", "rare", "records", "showing", "studies"]
->>>>>>> f63a757 (Tell of rare events: methods, their intervals, and what they cannot know)
+__all__ = ["adjustment", "app", "deciding", "design", "effects", "main", "rare", "records", "showing", "studies"]
 
 COMMANDS = (
     studies.run,

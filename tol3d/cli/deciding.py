@@ -28,7 +28,7 @@ def what_if(
     ] = None,
     draws: Annotated[
         Any, typer.Option(parser=whole(100), metavar="N", help="Of importance sampling, for each limit.")
-    ] = 5600,
+    ] = 4800,
     quick: Annotated[bool, typer.Option("--quick", help="Rates and first order alone, without a simulation.")] = False,
     seed: Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="Of importance sampling.")] = 1,
     csv: CsvOption = None,
