@@ -31,7 +31,16 @@ if TYPE_CHECKING:
     from tol3d.kinds import load_scene
     from tol3d.kinds import register as register
     from tol3d.notebook import Replay as Replay
-    from tol3d.notebook import check_scene, compare_runs, export_trial, find_shims, replay, view_trial, write_report
+    from tol3d.notebook import (
+        check_scene,
+        compare_runs,
+        export_trial,
+        find_shims,
+        replay,
+        response,
+        view_trial,
+        write_report,
+    )
     from tol3d.runs.run import Run as Run
     from tol3d.runs.run import open_run
     from tol3d.scene import Scene
@@ -55,6 +64,7 @@ _HOMES = {
     "open_run": "tol3d.runs.run",
     "register": "tol3d.kinds",
     "replay": "tol3d.notebook",
+    "response": "tol3d.notebook",
     "run_scene": "tol3d.simulate",
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
@@ -72,6 +82,7 @@ __all__ = [
     "load_scene",
     "open_run",
     "replay",
+    "response",
     "run_scene",
     "view_trial",
     "write_report",

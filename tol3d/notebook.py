@@ -19,6 +19,7 @@ from tol3d.adjustment import ShimPlan, ShimQuestion, length_of, shim_plan, stock
 from tol3d.adjustment.shim import Rounding
 from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
+from tol3d.analyses.response import Response, response_of
 from tol3d.errors import InputError, unwritable
 from tol3d.gearing.model import Model
 from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of
@@ -354,6 +355,29 @@ def find_shims(
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
     plan = shim_plan(simulate.load(scene, trust_parts=trust_parts), question, overrides)
     return Shims(shim_report(plan), plan)
+
+
+def response(
+    scene: Scene | Path | str,
+    *,
+    overrides: Overrides = AS_WRITTEN,
+    analytic: bool = False,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Response:
+    """Measures of builds whose deviations are stated, in batches, as every analysis asks them.
+
+    Args:
+        scene: a scene, its path, or the name of a bundled one.
+        overrides: what is said otherwise than in its study, such as its engine.
+        analytic: by the analytic model, not by the 3D simulation.
+        trust_parts, run_builders: see run_scene.
+
+    Raises:
+        SceneError: it cannot be read or built. InputError: all of its measures are curves.
+    """
+    loaded = simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders)
+    return response_of(simulate.simulation_of(loaded, overrides), analytic=analytic)
 
 
 def replay(run: Run | Path | str, trial: int) -> Replay:

@@ -23,6 +23,7 @@ SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
     "what-if": "tol3d.analyses.what_if:WhatIf",
     "rare": "tol3d.analyses.rare_section:RareEvents",
+    "changes": "tol3d.analyses.what_to_change:Changes",
 }
 """The class of each section by its name, as an import path."""
 

@@ -15,11 +15,11 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import adjustment, deciding, design, effects, rare, records, showing, studies
+from tol3d.cli import adjustment, changing, deciding, design, effects, rare, records, showing, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["adjustment", "app", "deciding", "design", "effects", "main", "rare", "records", "showing", "studies"]
+__all__ = ["adjustment", "app", "changing", "deciding", "design", "effects", "main", "rare", "records", "showing", "studies"]
 
 COMMANDS = (
     studies.run,
@@ -33,6 +33,7 @@ COMMANDS = (
     rare.rare,
     effects.effects,
     deciding.what_if,
+    changing.changes,
     records.identify,
     records.rig,
     records.plan_rig,

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from tol3d.execution.watch import Finisher, Watch
+    from tol3d.report.page import Page
     from tol3d.runs.run import Run
     from tol3d.study.simulation import Simulation
 
@@ -113,6 +114,8 @@ def run(
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
     accepted, found = ACCEPTED_PPM if accept is None else accept, finished.found
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
+    if not quiet and not all_ok(found, accepted):
+        out_console.print(_what_to_change(finished, simulation, accepted))
     if not quiet:
         tell(f"run: {finished.path}{_pictures_text(finished)}")
         if words := pictured(finished, wanted):
@@ -237,6 +240,27 @@ def _stopped_in_order() -> Iterator[None]:
     finally:
         last.cancel()
         signal.signal(signal.SIGINT, before)
+
+
+def _what_to_change(run: "Run", simulation: "Simulation", accepted_ppm: float) -> "Page":
+    """A few lines below the verdict, kept in the run; a run that cannot be asked is whole without them."""
+    from tol3d.analyses.estimated_changes import estimated_changes
+    from tol3d.analyses.what_to_change_table import changes_lines
+    from tol3d.analyses.subject import keep
+    from tol3d.errors import InputError
+    from tol3d.report.page import page
+    from tol3d.system.faults import faults_of
+
+    try:
+        with faults_of(simulation.mechanism):
+            told = estimated_changes(run, simulation, accepted_ppm)
+        if told is None:
+            return page()
+        keep(run, "changes", told)
+    except InputError as error:
+        warn(f"what to change is not known: {error}")
+        return page()
+    return page(*changes_lines(told, str(run.path)))
 
 
 def _out_of_limits(run: "Run") -> bool:

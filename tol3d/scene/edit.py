@@ -24,8 +24,8 @@ Tolerances = Mapping[str, ToleranceEntry]
 
 def tolerance_lines(tolerances: Tolerances) -> str:
     """Tolerances as lines to paste into the section `tolerances` of a scene."""
-    entries = CommentedMap((name, _flow(_plain(spec))) for name, spec in tolerances.items())
-    return "".join(f"{' ' * INDENT}{line}\n" for line in _written(entries).splitlines())
+    entries = CommentedMap((name, flow(_plain(spec))) for name, spec in tolerances.items())
+    return "".join(f"{' ' * INDENT}{line}\n" for line in written(entries).splitlines())
 
 
 def with_tolerances(scene: Scene, changed: Tolerances) -> Scene:
@@ -62,7 +62,7 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
 
     One of an included file is left out there, and written into the scene.
     """
-    data = _yaml().load(scene.text)
+    data = loaded_yaml(scene.text)
     if "tolerances" not in data:
         data.insert(list(data).index("moves") if "moves" in data else len(data), "tolerances", CommentedMap())
     tolerances = data["tolerances"]
@@ -70,19 +70,19 @@ def _edited(scene: Scene, changed: Tolerances) -> str:
         plain = _plain(spec)
         if name not in tolerances:
             if name in scene.tolerances:
-                _leave_out(data[INCLUDE], name)
-            tolerances[name] = _flow(plain)
+                leave_out(data[INCLUDE], name)
+            tolerances[name] = flow(plain)
             continue
         entry = copy(tolerances[name])  # another entry may be an alias of it
         before = _plain(scene.tolerances[name])
         for key, value in plain.items():
             if before.get(key) != value:
-                entry[key] = _flow(value)
+                entry[key] = flow(value)
         tolerances[name] = entry
-    return _written(data)
+    return written(data)
 
 
-def _leave_out(includes: CommentedMap, name: str) -> None:
+def leave_out(includes: CommentedMap, name: str) -> None:
     """Name an entry of an included file among those that are left out."""
     prefix = max((own for own in includes if name.startswith(f"{own} ")), key=len)
     given = includes[prefix]
@@ -100,13 +100,22 @@ def _plain(spec: ToleranceEntry) -> dict[str, Any]:
     return {**plain, **last}
 
 
-def _flow(values: Any) -> Any:
+def flow(values: Any) -> Any:
     """Values as YAML writes them on one line: {key: value}."""
+    if isinstance(values, list):
+        items = CommentedSeq(flow(value) for value in values)
+        items.fa.set_flow_style()
+        return items
     if not isinstance(values, dict):
         return values
-    flow = CommentedMap((key, _flow(value)) for key, value in values.items())
-    flow.fa.set_flow_style()
-    return flow
+    entries = CommentedMap((key, flow(value)) for key, value in values.items())
+    entries.fa.set_flow_style()
+    return entries
+
+
+def loaded_yaml(text: str) -> Any:
+    """A scene's text with all that is needed to write it again as it was."""
+    return _yaml().load(text)
 
 
 def _yaml() -> YAML:
@@ -115,7 +124,8 @@ def _yaml() -> YAML:
     return yaml
 
 
-def _written(data: Any) -> str:
+def written(data: Any) -> str:
+    """The text of what `loaded_yaml` read."""
     stream = StringIO()
     _yaml().dump(data, stream)
     return stream.getvalue()

@@ -1,7 +1,7 @@
 """From a scene's file to a checked Scene."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -15,7 +15,7 @@ from tol3d.scene.node import Node, Places, plain
 from tol3d.scene.place import Origin
 from tol3d.scene.references import bad_names, loose_ends, refuse, unreadable_files
 from tol3d.scene.schema import SECTIONS, Scene
-from tol3d.scene.text import read_scene_text
+from tol3d.scene.text import read_scene_text, scene_text
 
 
 class Settle(Protocol):
@@ -87,13 +87,52 @@ def read_scene(
     """
     source = scene_path(path)
     top, origin = read_scene_text(source)
+    return _read(top, origin, kinds, _Asked(trust_parts, run_builders, files, settle, examine))
+
+
+def scene_of_text(
+    source: Path,
+    content: bytes,
+    kinds: Kinds,
+    *,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+    files: Files | None = None,
+) -> Scene:
+    """The same of a text that lies in no file yet.
+
+    Args:
+        source: where it would lie, for messages and relative names.
+        content: the text.
+        kinds, trust_parts, run_builders, files: see read_scene.
+
+    Raises:
+        SceneError: see read_scene.
+    """
+    top, origin = scene_text(source, content)
+    return _read(top, origin, kinds, _Asked(trust_parts, run_builders, files))
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """How a scene is read; see read_scene."""
+
+    trust_parts: bool
+    run_builders: bool
+    files: Files | None
+    settle: bool = True
+    examine: Examine | None = None
+
+
+def _read(top: Node, origin: Origin, kinds: Kinds, asked: _Asked) -> Scene:
+    source, files = origin.source, asked.files
     includes = Includes(source, kinds, files)
     top = includes.expanded(top, origin)
     origin = replace(origin, places=Places(top), files=includes.files, included=tuple(includes.files))
 
     def checked(grammar: Grammar) -> Scene:
         found = grammar.scene.model_validate(plain(top), context=origin)
-        return _with_files(found, origin, files, trust_parts=trust_parts)
+        return _with_files(found, origin, files, trust_parts=asked.trust_parts)
 
     grammar = kinds.saying(_words(top))
     try:
@@ -104,9 +143,9 @@ def read_scene(
         if grammar is kinds.whole():
             raise
         scene = checked(kinds.whole())  # its message names the nearest of all kinds
-    if examine is not None:
-        examine(scene)
-    return _settled(scene, files, run_builders=run_builders) if settle else scene
+    if asked.examine is not None:
+        asked.examine(scene)
+    return _settled(scene, files, run_builders=asked.run_builders) if asked.settle else scene
 
 
 def _words(top: Node) -> frozenset[str]:

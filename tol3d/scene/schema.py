@@ -25,6 +25,7 @@ from pydantic_core import CoreSchema
 from tol3d.distributions.stated import SHIPPED, Laws, stating
 from tol3d.errors import SceneError
 from tol3d.files import Files
+from tol3d.import_path import named
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
 from tol3d.scene.entry import Entry
 from tol3d.scene.including import with_include
@@ -42,6 +43,9 @@ from tol3d.units import Positive, Quantity, shown
 
 PUBLISHED_MEANS: Final = "columns of others, shown beside ours: column, measure or key of the whole run, values"
 SECTIONS: Final = ("parts", "tolerances", "moves", "measures")
+
+VARIED: Final = "tol3d.scene.vary:varied"  # above this file, for it reads scenes
+DUMPED: Final = "tol3d.scene.vary:dumped"
 
 MOST_TRIALS = 10**10
 MOST_SEED = 2**63 - 1  # a signed 64-bit integer, which every file format keeps
@@ -283,6 +287,24 @@ class Scene(Strict):
         if update and update.keys() - {"study"}:
             copied._origin = replace(self._origin, text="")
         return copied
+
+    def with_(self, changes: Mapping[str, Any], *, trust_parts: bool = False, run_builders: bool = False) -> "Scene":
+        """The scene with some values changed, checked anew: `scene.with_({"study.seed": 3})`.
+
+        Args:
+            changes: new values by the names of their fields, as messages show them.
+            trust_parts, run_builders: see `tol3d.run_scene`; needed again where they were.
+
+        Raises:
+            InputError: no such entry. SceneError: a value that the scene may not have, or a part that cannot be built.
+        """
+        made: Scene = named(VARIED)(self, changes, trust_parts=trust_parts, run_builders=run_builders)
+        return made
+
+    def dump(self) -> str:
+        """A text that loads as this scene again: that of its file, or of what was said in Python."""
+        text: str = named(DUMPED)(self)
+        return text
 
     def section(self, name: str) -> Mapping[str, Entry]:
         """The entries of one of SECTIONS, by their names."""

@@ -1,0 +1,215 @@
+"""What to change, as tables, and as a few lines below a verdict."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread
+from tol3d.analyses.slopes import Rates
+from tol3d.report.number import (
+    NOTHING,
+    UNIT_SIGNS,
+    limit_text,
+    percent_cell,
+    share_text,
+    unsigned_zero,
+    value_cell,
+    with_unit,
+)
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
+
+MOST_TAKEN: Final = 5
+"""Contributors of a mean's shift that are shown."""
+LEAST_TAKEN: Final = 0.005
+"""Of sigma; less takes no mean off."""
+BRIEF_TOLD: Final = 3
+ERRORS: Final = 1.96
+"""Standard errors of an interval of 95 %."""
+BY: Final = {
+    "simulation": (
+        "each change is simulated: the same draws with a nominal moved, or with a tolerance's deviations halved about "
+        "their mean; out of limits with its interval of 95 %"
+    ),
+    "rates": (
+        "estimates: the run's trials shifted, or narrowed by the contributor's share of the variance; "
+        "tol3d changes simulates each"
+    ),
+}
+AFTER: Final = (Heading("mean"), Heading("sigma"), Heading("out of limits (95 %)", words=True), Heading("Ppk"))
+
+
+def changes_report(name: str, found: Changes) -> Page:
+    """What to change, measure by measure.
+
+    Args:
+        name: of the scene.
+        found: in it.
+    """
+    head = Line(((name, "bold"), (f" · what to change · accepted: {share_text(found.accepted_ppm)} out of limits", "")))
+    blocks: list[PageItem] = [head]
+    if not found.measures:
+        blocks.append(line(" nothing: no measure leaves its limits more often than is accepted"))
+    for measure, own in found.measures.items():
+        blocks += _of_measure(measure, own)
+    blocks += [BLANK, note(BY[found.by]) if found.measures else BLANK]
+    if found.further:
+        blocks.append(note(f"not looked at: {', '.join(found.further)}"))
+    return page(*blocks, note(f"{found.evaluations} builds"))
+
+
+def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
+    unit = own.unit
+    yield title(name, f" · limits {_limits(own)} · {own.builds} builds each")
+    yield BLANK
+    rows = [Row("as it is", ["", *_after(own.now, unit)])]
+    for shift in own.shifts:
+        told = f"mean {_signed(shift.shift, unit)}: {shift.target}"
+        rows.append(Row(told, ["", *_after(shift.after, unit)]))
+        rows += [Row(f"  by {by.contributor}", [_change(by), *_after(by.after, unit)]) for by in shift.by]
+    rows += [
+        Row(f"half {each.contributor}", [_half(each.share_percent), *_after(each.after, unit)]) for each in own.halved
+    ]
+    yield Table("change", [Heading("by how much"), *AFTER], rows)
+    if table := _taken_table(own):
+        yield BLANK
+        yield table
+
+
+def _taken_table(own: MeasureChanges) -> Table | None:
+    """What takes the mean off nominal; None where nothing does."""
+    unit, sigma = own.unit, own.now.sigma or 0.0
+    large = [each for each in own.taken if abs(each.first_order + each.second_order) > LEAST_TAKEN * sigma]
+    if not large and abs(own.taken_together or 0.0) <= max(LEAST_TAKEN * sigma, SURE * (own.taken_error or 0.0)):
+        return None
+    shown = large[:MOST_TAKEN]
+    rest = [each for each in own.taken if each not in shown]
+    rows = [Row(each.contributor, [_off(each.first_order, unit), _off(each.second_order, unit)]) for each in shown]
+    if rest:
+        sums = (sum(each.first_order for each in rest), sum(each.second_order for each in rest))
+        rows.append(Row(f"{len(rest)} others", [_off(value, unit) for value in sums]))
+    rows.append(Row("together, beyond these", ["", _with_error(own.taken_together, own.taken_error, unit)]))
+    corner = f"mean off nominal ({_valued(own.nominal, unit)})"
+    return Table(corner, [Heading("by its mean"), Heading("by its spread")], rows)
+
+
+def _with_error(value: float | None, error: float | None, unit: str) -> Shown | str:
+    """With its interval of 95 %."""
+    if value is None or error is None:
+        return _off(value, unit)
+    return Shown(f"{_signed(value, unit)} ±{value_cell(ERRORS * error, unit)}", value)
+
+
+def _off(value: float | None, unit: str) -> Shown | str:
+    return NOTHING if value is None else Shown(_signed(value, unit), value)
+
+
+def _after(own: Spread, unit: str) -> Sequence[Shown | str]:
+    ppk = NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}")
+    sigma = value_cell(own.sigma, unit)
+    return [value_cell(own.mean, unit), sigma, Shown(_out(own), own.out_ppm), Shown(ppk, own.ppk)]
+
+
+def _out(own: Spread) -> str:
+    if own.out_ppm is None or own.out_ppm_95 is None:
+        return share_text(own.out_ppm)
+    low, high = map(share_text, own.out_ppm_95)
+    return f"{share_text(own.out_ppm)} ({low} to {high})" if own.out_ppm else f"0 (< {high})"
+
+
+def _half(percent: float | None) -> Shown:
+    return Shown(f"{percent_cell(percent)} % of variance", percent)
+
+
+def _limits(own: MeasureChanges) -> str:
+    lower, upper = own.lower_limit, own.upper_limit
+    if lower is None or upper is None:
+        return "".join(
+            f"{sign} {_limit(limit, own.unit)}" for sign, limit in (("≥", lower), ("≤", upper)) if limit is not None
+        )
+    return f"{_limit(lower, own.unit)} to {_limit(upper, own.unit)}"
+
+
+def _limit(value: float, unit: str) -> str:
+    return limit_text(value, unit) if unit in UNIT_SIGNS or unit == "arcmin" else f"{value:g}"
+
+
+def _valued(value: float | None, unit: str) -> str:
+    return NOTHING if value is None else with_unit(str(value_cell(value, unit)), unit)
+
+
+def _signed(value: float, unit: str) -> str:
+    """A change with its sign and unit: `+3.2 µm`."""
+    text = with_unit(str(value_cell(abs(value), unit)), unit)
+    return f"{'−' if value < 0.0 else '+'}{text}"
+
+
+def _change(own: Moved) -> Shown:
+    digits = f"{abs(own.change):.4g}"
+    sign = "−" if own.change < 0.0 else "+"
+    return Shown(f"{sign}{digits} {UNIT_SIGNS.get(own.unit, own.unit)}", own.change)
+
+
+# below a verdict ----------------------------------------------------------------------------------
+
+
+def changes_lines(found: Changes, where: str) -> list[PageItem]:
+    """A few lines for each measure.
+
+    Args:
+        found: by rates.
+        where: what `tol3d changes` is to be asked for the whole.
+    """
+    blocks: list[PageItem] = [title("what to change", f" · estimated; tol3d changes {where} simulates it")]
+    for name, own in found.measures.items():
+        ppk = NOTHING if own.now.ppk is None else unsigned_zero(f"{own.now.ppk:.2f}")
+        blocks.append(line(f" {name}: {share_text(own.now.out_ppm)} out of limits, Ppk {ppk}"))
+        blocks += map(note, _brief(own))
+    if found.further:
+        dots = " …" if len(found.further) > BRIEF_TOLD else ""
+        blocks.append(note(f"{len(found.further)} more NOT OK: {', '.join(found.further[:BRIEF_TOLD])}{dots}"))
+    return blocks
+
+
+def _brief(own: MeasureChanges) -> Iterator[str]:
+    unit = own.unit
+    for shift in own.shifts:
+        by = " or ".join(f"{each.contributor} {_change(each)}" for each in shift.by[:2])
+        how = f", by {by}" if by else ""
+        yield f" mean {_signed(shift.shift, unit)} ({shift.target}){how}: {_told(shift.after)}"
+    halves = [f"{each.contributor}: {_told(each.after)}" for each in own.halved[:BRIEF_TOLD]]
+    if halves:
+        yield f" half {'; '.join(halves)}"
+
+
+def _told(after: Spread) -> str:
+    ppk = NOTHING if after.ppk is None else unsigned_zero(f"{after.ppk:.2f}")
+    return f"{share_text(after.out_ppm)} out, Ppk {ppk}"
+
+
+# all measures -------------------------------------------------------------------------------------
+
+
+def contributions_table(rates: Rates) -> Table:
+    """A row for each measure and contributor: slopes, share of the variance, and what it takes the mean off."""
+    rows = []
+    for measure, of in enumerate(rates.response.measures):
+        for k, own in enumerate(rates.response.contributors):
+            slopes = rates.slopes[measure, rates.response.slices[own.name]] * own.per_unit
+            numbers = (
+                float(slopes[0] if len(slopes) == 1 else (slopes * slopes).sum() ** 0.5),
+                100 * float(rates.shares[measure, k]),
+                float(rates.variances[measure, k]) ** 0.5,
+                float(rates.first[measure, k]),
+                float(rates.second[measure, k]),
+            )
+            cells = [own.name, f"{of.unit} per {own.unit}", *(Shown(f"{number:.6g}", number) for number in numbers)]
+            rows.append(Row(of.name, cells, unit=of.unit))
+    heads = (
+        "contributor",
+        "of the slope",
+        "slope",
+        "share of variance [%]",
+        "sigma it gives",
+        "mean it gives",
+        "mean by its spread",
+    )
+    return Table("measure", [Heading(own, words=own in heads[:2]) for own in heads], rows)

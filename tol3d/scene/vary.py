@@ -1,0 +1,208 @@
+"""A scene with some of its values changed, as `Scene.with_` makes it: checked anew, with a text that loads again.
+
+A field is named as messages name it: `tolerances.centre distance.distribution.upper`, `parts.plate.size[0]`. What the
+scene's file says otherwise stays as it was written. An entry of an included file is left out there, and written into
+the scene.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from copy import copy
+from itertools import pairwise
+from typing import Any, Final
+
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+from tol3d.errors import InputError
+from tol3d.scene.edit import flow, leave_out, loaded_yaml, written
+from tol3d.scene.include import Includes
+from tol3d.scene.including import INCLUDE
+from tol3d.scene.load import scene_of_text
+from tol3d.scene.nearest import hint
+from tol3d.scene.node import plain
+from tol3d.scene.place import KeyPath, path_text
+from tol3d.scene.schema import SECTIONS, Scene
+from tol3d.scene.text import scene_text
+from tol3d.units import BARE_NUMBER, NUMBER_UNIT, Quantity
+
+TOP: Final = ("scene", "description", *SECTIONS, "study", "published")
+INDEX: Final = re.compile(r"(.*)\[(\d+)\]")
+
+
+def varied(scene: Scene, changes: Mapping[str, Any], *, trust_parts: bool = False, run_builders: bool = False) -> Scene:
+    """The scene with other values; see `Scene.with_`."""
+    text = scene.text or dumped(scene)
+    top, origin = scene_text(scene.source, text.encode())
+    before = plain(Includes(scene.source, scene.grammar, _known(scene)).expanded(top, origin))
+    data = loaded_yaml(text)
+    paths = {field: field_path(before, field) for field in changes}
+    for field, path in paths.items():
+        _take_over(data, before, path)
+        _put(data, path, _plain(changes[field]), field)
+    new = written(data)
+    return scene_of_text(
+        scene.source,
+        new.encode(),
+        scene.grammar,
+        trust_parts=trust_parts,
+        run_builders=run_builders,
+        files=_known(scene) if _keeps_solids(scene, paths.values(), changes.values()) else None,
+    )
+
+
+def dumped(scene: Scene) -> str:
+    """A text that loads as the scene: its own, or what was said in Python, as YAML."""
+    if scene.text:
+        return scene.text
+    data = scene.model_dump(mode="json", exclude_unset=True, by_alias=True)
+    top = CommentedMap()
+    for key, value in data.items():
+        section = isinstance(value, dict) and key in (*SECTIONS, "published")
+        top[key] = CommentedMap((name, flow(own)) for name, own in value.items()) if section else flow(value)
+    return written(top)
+
+
+def field_path(data: Mapping[str, Any], field: str) -> KeyPath:
+    """The keys of a field that is named as messages name it.
+
+    Args:
+        data: the scene's plain values, with those of included files.
+        field: its name.
+
+    Raises:
+        InputError: no such section or entry, or a list's item that is not there.
+    """
+    if not field:
+        raise InputError("expected the name of a field, such as tolerances.NAME.distribution.upper, got nothing")
+    path: list[str | int] = []
+    here: Any = data
+    rest = field
+    while rest:
+        key, rest = _first(here, rest)
+        index = INDEX.fullmatch(key) if not (isinstance(here, Mapping) and key in here) else None
+        for part in _parts(key, index):
+            _refuse_unknown(data, here, tuple(path), part, field)
+            path.append(part)
+            here = _inside(here, part)
+    return tuple(path)
+
+
+def _first(here: Any, rest: str) -> tuple[str, str]:
+    """The first key of a dotted name, the longest that is known there, and what is left."""
+    known = [key for key in here if rest == key or rest.startswith((f"{key}.", f"{key}["))] if _is_map(here) else []
+    if known:
+        key = max(known, key=len)
+        return (key, rest[len(key) + 1 :]) if not rest[len(key) :].startswith("[") else _indexed(key, rest)
+    head, _, tail = rest.partition(".")
+    return head, tail
+
+
+def _indexed(key: str, rest: str) -> tuple[str, str]:
+    end = rest.index("]", len(key)) + 1 if "]" in rest[len(key) :] else len(rest)
+    return rest[:end], rest[end:].removeprefix(".")
+
+
+def _parts(key: str, index: re.Match[str] | None) -> Sequence[str | int]:
+    if index is None:
+        return (key,)
+    return (*_parts(index[1], INDEX.fullmatch(index[1])), int(index[2])) if index[1] else (int(index[2]),)
+
+
+def _is_map(value: Any) -> bool:
+    return isinstance(value, Mapping)
+
+
+def _inside(here: Any, key: str | int) -> Any:
+    if isinstance(here, Mapping):
+        return here.get(key)
+    return here[key] if isinstance(here, list) and isinstance(key, int) else None
+
+
+def _refuse_unknown(data: Mapping[str, Any], here: Any, path: KeyPath, key: str | int, field: str) -> None:
+    """Refuse what the grammar does not: sections, names of entries, and items of lists."""
+    if not path and key not in TOP:
+        raise InputError(f"{field}: expected a section of a scene, got {key!r}{hint(str(key), TOP)}")
+    if len(path) == 1 and path[0] in SECTIONS and key not in (here or {}):
+        raise InputError(f"{field}: expected a name of {path[0]}, got {key!r}{hint(str(key), here or {})}")
+    if isinstance(here, list) and not (isinstance(key, int) and key < len(here)):
+        raise InputError(f"{field}: expected an item of {path_text(path)} from [0] to [{len(here) - 1}], got [{key}]")
+    if len(path) > 1 and here is not None and not isinstance(here, Mapping | list):
+        raise InputError(f"{field}: expected no further key, for {path_text(path)} is {here!r}")
+
+
+# the text -----------------------------------------------------------------------------------------
+
+
+def _take_over(data: CommentedMap, before: Mapping[str, Any], path: KeyPath) -> None:
+    """Write an entry of an included file into the scene, if the path leads into one."""
+    if len(path) < 2 or path[0] not in SECTIONS:
+        return
+    section, name = path[0], path[1]
+    if name in (data.get(section) or {}) or INCLUDE not in data:
+        return
+    if section == "moves":
+        words = "expected a move of the scene itself, for the order of moves is that of their files"
+        raise InputError(f"{path_text(path)}: {words}; change it in the included file")
+    leave_out(data[INCLUDE], str(name))
+    if section not in data:
+        data.insert(list(data).index("moves") if "moves" in data else len(data), section, CommentedMap())
+    data[section][name] = flow(before[section][name])
+
+
+def _put(data: CommentedMap, path: KeyPath, value: Any, field: str) -> None:
+    """Set a value; mappings on its way are copies, for others may be aliases of them."""
+    here: Any = data
+    for key, following in pairwise(path):
+        inside = here[key] if _has(here, key) else None
+        if not isinstance(inside, dict | list):
+            if inside is not None or isinstance(following, int):
+                raise InputError(f"{field}: expected a field of a scene, but {key!r} holds none")
+            inside = CommentedMap()
+            inside.fa.set_flow_style()
+        here[key] = copy(inside)
+        here = here[key]
+        _forget_anchor(here)
+    here[path[-1]] = flow(value)
+
+
+def _has(here: Any, key: Any) -> bool:
+    return key in here if isinstance(here, dict) else isinstance(key, int) and key < len(here)
+
+
+def _forget_anchor(own: Any) -> None:
+    """A copy is none that others are aliases of."""
+    if isinstance(own, CommentedMap | CommentedSeq) and own.anchor.value is not None:
+        own.yaml_set_anchor(None)
+
+
+def _plain(value: Any) -> Any:
+    """As YAML writes it."""
+    if isinstance(value, Quantity):
+        return str(value)
+    if isinstance(value, Mapping):
+        return {key: _plain(own) for key, own in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(own) for own in value]
+    item = getattr(value, "item", None)  # of numpy
+    return item() if callable(item) else value
+
+
+# its files ----------------------------------------------------------------------------------------
+
+
+def _known(scene: Scene) -> Any:
+    return scene.files or None
+
+
+def _keeps_solids(scene: Scene, paths: Any, values: Any) -> bool:
+    """Whether what was found at solids, and the files that the scene names, still hold."""
+    solid = {name for name, part in scene.parts.items() if part.has_solid}
+    touched = any(path[0] == "parts" and (len(path) < 2 or path[1] in solid) for path in paths)
+    return bool(scene.files) and not touched and all(_is_number(value) for value in values)
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value names no file."""
+    if isinstance(value, str):
+        return bool(NUMBER_UNIT.fullmatch(value) or BARE_NUMBER.fullmatch(value))
+    return isinstance(value, int | float | Quantity) or hasattr(value, "item")
