@@ -14,10 +14,10 @@ from scipy.stats import norm
 import tol3d
 from tol3d import InputError, Overrides
 from tol3d.analyses.estimated_changes import estimated_changes, not_ok
-from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
-from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import keep, sections_of
+from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
+from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
 from tol3d.distributions.normal import Normal
 from tol3d.report.page import page
 from tol3d.report.sheet import as_text

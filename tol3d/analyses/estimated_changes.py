@@ -10,6 +10,8 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.analyses.response import response_of
+from tol3d.analyses.slopes import few_slopes, levers_of
 from tol3d.analyses.what_to_change import (
     TOLD,
     Asked,
@@ -24,8 +26,6 @@ from tol3d.analyses.what_to_change import (
     levers_for,
     limits_of,
 )
-from tol3d.analyses.slopes import few_slopes, levers_of
-from tol3d.analyses.response import response_of
 from tol3d.numerics.arrays import Array
 from tol3d.report.column import ranked_contributors, shares_of
 from tol3d.report.heading import badness

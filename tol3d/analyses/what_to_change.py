@@ -14,8 +14,8 @@ import numpy as np
 from pydantic import Field
 
 from tol3d.analyses.halved import halved_deviations
-from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, rates_of
 from tol3d.analyses.response import Response
+from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, rates_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread
 from tol3d.analyses.slopes import Rates
+from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,

@@ -19,7 +19,19 @@ from tol3d.cli import adjustment, changing, deciding, design, effects, rare, rec
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = ["adjustment", "app", "changing", "deciding", "design", "effects", "main", "rare", "records", "showing", "studies"]
+__all__ = [
+    "adjustment",
+    "app",
+    "changing",
+    "deciding",
+    "design",
+    "effects",
+    "main",
+    "rare",
+    "records",
+    "showing",
+    "studies",
+]
 
 COMMANDS = (
     studies.run,

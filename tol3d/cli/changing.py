@@ -30,9 +30,9 @@ def changes(
 ) -> None:
     """Find what to change where limits are left: which nominal to move, which tolerance to halve."""
     from tol3d.analyses.estimated_changes import not_ok
+    from tol3d.analyses.subject import subject_of
     from tol3d.analyses.what_to_change import ChangesQuestion, changes_of, contributions_of
     from tol3d.analyses.what_to_change_table import changes_report, contributions_table
-    from tol3d.analyses.subject import subject_of
     from tol3d.report.verdict import ACCEPTED_PPM
     from tol3d.system.faults import faults_of
 

@@ -245,8 +245,8 @@ def _stopped_in_order() -> Iterator[None]:
 def _what_to_change(run: "Run", simulation: "Simulation", accepted_ppm: float) -> "Page":
     """A few lines below the verdict, kept in the run; a run that cannot be asked is whole without them."""
     from tol3d.analyses.estimated_changes import estimated_changes
-    from tol3d.analyses.what_to_change_table import changes_lines
     from tol3d.analyses.subject import keep
+    from tol3d.analyses.what_to_change_table import changes_lines
     from tol3d.errors import InputError
     from tol3d.report.page import page
     from tol3d.system.faults import faults_of
