@@ -43,7 +43,7 @@ def check_data(text: str, spans: Mapping[int, tuple[int, int]], place: Place) ->
     bare = text[:first] + COVERED.sub(blanked, text[first:last])  # as long as the text: offsets stay
     check_characters(bare, first, place)
     check_numbers(bare, first, place)
-    check_brackets(bare, spans, place)
+    check_bodies(bare, spans, place)
     check_references(bare, spans, place)
 
 
@@ -72,9 +72,11 @@ def check_numbers(bare: str, first: int, place: Place) -> None:
             raise StepError(f"{place(offset)}: expected a number up to {LARGEST_NUMBER:g}, got {shown(each)}")
 
 
-def check_brackets(bare: str, spans: Mapping[int, tuple[int, int]], place: Place) -> None:
-    """Refuse instances whose brackets do not close, or stand more than `DEEPEST` in each other."""
+def check_bodies(bare: str, spans: Mapping[int, tuple[int, int]], place: Place) -> None:
+    """Refuse instances that run into the next, or whose brackets do not close or stand too many in each other."""
     for identifier, (start, end) in spans.items():
+        if bare.find("=", start, end) >= 0 or not bare[start:end].rstrip().endswith(")"):
+            raise StepError(f"{place(start)}: #{identifier}: expected ); at its end")
         depth = deepest = 0
         if bare.count("(", start, end) <= DEEPEST and bare.count("(", start, end) == bare.count(")", start, end):
             continue  # cannot be too deep; their order is the parser's

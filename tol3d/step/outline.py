@@ -15,7 +15,7 @@ from tol3d.step.read_structure import StructureReader
 from tol3d.step.refused import StepError
 from tol3d.step.structure import Structure
 from tol3d.step.tolerance import Tolerance, Tolerances
-from tol3d.step.values import Reference
+from tol3d.step.values import Reference, Value
 
 Read = TypeVar("Read")
 
@@ -26,7 +26,7 @@ class Remark:
 
     Args:
         id: where it stands.
-        what: `tolerance`, `dimension`, `datum` or `feature`, and its name.
+        what: `tolerance`, `dimension`, `datum`, `feature` or `shown`, and its name.
         why: in one line.
     """
 
@@ -80,12 +80,24 @@ class StepText:
         for tolerance in self.tolerances:
             yield tolerance.feature
             if tolerance.projected is not None:
-                yield tolerance.projected.end
+                yield from tolerance.projected.ends
         for dimension in self.dimensions:
             yield from dimension.features
         for datum in self.datums:
             yield from datum.features
             yield from (each.feature for each in datum.targets)
+
+    @cached_property
+    def faces_of(self) -> dict[int, set[int]]:
+        """From every tolerance, dimension, datum and datum feature to its faces."""
+        found: dict[int, set[int]] = {each.id: set(each.feature.faces) for each in self.tolerances}
+        for dimension in self.dimensions:
+            found[dimension.id] = {face for each in dimension.features for face in each.faces}
+        for datum in self.datums:
+            found[datum.id] = set(datum.faces)
+            found |= {each.id: set(datum.faces) for each in datum.features}
+            found |= {each.id: set(each.feature.faces) for each in datum.targets}
+        return found
 
     def datum(self, letter: str) -> Datum | None:
         """The datum of a letter."""
@@ -173,15 +185,34 @@ def incomplete_feature(identifier: int, what: str, feature: NamedFeature) -> Ite
 
 
 def unnamed(text: StepText, features: Features) -> Iterator[Remark]:
-    """Remarks on faces that the file groups for tolerances and that nothing refers to: something may be lost."""
-    associations = text.file.of(
-        "DRAUGHTING_MODEL_ITEM_ASSOCIATION", "DRAUGHTING_MODEL_ITEM_ASSOCIATION_WITH_PLACEHOLDER"
-    )
-    shown = [each.records[0].arguments[2] for each in associations if len(each.records[0].arguments) > 2]
+    """Remarks on faces that the file groups, or shows, for tolerances that do not name them: something may be lost.
+
+    Those that only a note points at are not among them.
+    """
     seen = {aspect: None for each in text.features for aspect in each.aspects}
-    for each in shown:  # of a note, the geometry that it points at
-        if isinstance(each, Reference):
+    told: set[int] = set()
+    for shown in shown_together(text.file).values():
+        own = [each for each in shown if each in text.faces_of]
+        aspects = [each for each in shown if each not in text.faces_of]
+        faces = {face for each in aspects for group in features.groups(each, {}) for face in group}
+        lacking = faces.difference(*(text.faces_of[each] for each in own))
+        if own and lacking and own[0] not in told:
+            told.add(own[0])
+            named = ", ".join(f"#{each}" for each in sorted(lacking)[:5])
+            yield Remark(own[0], "shown", f"is shown with faces that it does not name ({named})")
+        for each in aspects:
             features.groups(each, seen)
     for aspect, items in features.items.items():
         if aspect not in seen and any(features.keywords(each) & FACES for each in items):
             yield Remark(aspect, "feature", "has faces that no tolerance, dimension, datum or note refers to")
+
+
+def shown_together(file: Part21) -> dict[Value, list[int]]:
+    """From each callout of the presentation to what it shows: tolerances and dimensions, and their shape aspects."""
+    found: dict[Value, list[int]] = {}
+    links = ("DRAUGHTING_MODEL_ITEM_ASSOCIATION", "DRAUGHTING_MODEL_ITEM_ASSOCIATION_WITH_PLACEHOLDER")
+    for each in file.of(*links):
+        record = each.needed(*links)
+        if len(record) > 4 and isinstance(record.argument(2), Reference):
+            found.setdefault(record.argument(4), []).append(int(record.reference(2)))
+    return found

@@ -61,10 +61,10 @@ ZONE_FORMS: Final[Mapping[str, Zone]] = {
 
 @dataclass(frozen=True)
 class ProjectedZone:
-    """How far a zone reaches beyond its feature, and from which face."""
+    """How far a zone reaches beyond its feature, and from which faces."""
 
     length: Measure
-    end: NamedFeature
+    ends: tuple[NamedFeature, ...]
 
 
 @dataclass(frozen=True)
@@ -146,13 +146,17 @@ class Tolerances:
     @cached_property
     def projections(self) -> dict[int, ProjectedZone]:
         """From each zone that is projected to how far."""
-        found = {}
+        found: dict[int, ProjectedZone] = {}
         for instance in self.file.of("PROJECTED_ZONE_DEFINITION", "PROJECTED_ZONE_DEFINITION_WITH_OFFSET"):
             record = instance.needed("PROJECTED_ZONE_DEFINITION", "PROJECTED_ZONE_DEFINITION_WITH_OFFSET")
             first = 0 if len(instance.records) > 1 else 2
-            zone = (instance.record("TOLERANCE_ZONE_DEFINITION") or record).reference(0)
+            zone = int((instance.record("TOLERANCE_ZONE_DEFINITION") or record).reference(0))
             end = self.features.named(record.reference(first))
-            found[int(zone)] = ProjectedZone(measure_of(self.file, record.reference(first + 1)), end)
+            reach = length(self.file, record.reference(first + 1))
+            before = found.get(zone, ProjectedZone(reach, ()))  # one exporter says it for each hole of a pattern
+            if before.length.value != reach.value:
+                raise StepError(f"{instance.place}: expected one projected length, got {before.length} and {reach}")
+            found[zone] = ProjectedZone(reach, (*before.ends, end))
         return found
 
     @cached_property
