@@ -23,17 +23,19 @@ from tol3d.analyses.design_points import DesignPoint, design_points
 from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.pick_freeze import PickFreeze
 from tol3d.analyses.response import Response
-from tol3d.analyses.shapley import ShapleyEffects, linear_shapley
+from tol3d.analyses.shapley import ShapleyEffects
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.shapley import linear_shapley
 
 BlameBy = Literal["simulation", "design points"]
 Valued = tuple[float, float]
 """A share, and its standard error."""
 
-FREQUENT: Final = 200
-"""Builds that fail, of those of all pairs, from which on a simulation says who is to blame."""
-PLACES: Final = 16
-STARTS, STARTS_ALONE = 2, 8
+FREQUENT: Final = 1000
+FREQUENT_SHARE: Final = 1 / 8
+"""Builds that fail, of those of all pairs, from which on a simulation says who is to blame; of few such a share."""
+PLACES: Final = 8
+STARTS, STARTS_ALONE = 1, 8
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,8 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
     """
     failing, count = int(sampled.failing[:, k].sum()), len(sampled.failing)
     measure = response.measures[0]
-    if FREQUENT <= failing <= count - FREQUENT:
+    enough = min(FREQUENT, FREQUENT_SHARE * count)
+    if enough <= failing <= count - enough:
         if shapley is not None:
             words = f"Shapley effects on failing: {failing} of {count} builds fail"
             pairs = zip(shapley.failures[:, k].tolist(), shapley.failure_errors[:, k].tolist(), strict=True)

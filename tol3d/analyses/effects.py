@@ -162,7 +162,8 @@ def _alike(response: Response) -> Sequence[Sequence[Measure]]:
 
 def default_base(response: Response, inputs: int) -> int:
     """Pairs of builds that are worth their time."""
-    minutes = response.simulation.system.cost(response.measures) / response.simulation.road.contacts_per_minute
+    asked = list({own.name: own for own in map(response.source, response.measures)}.values())
+    minutes = response.simulation.system.cost(asked) / response.simulation.road.contacts_per_minute
     most = min(MOST_EVALUATIONS, MOST_MINUTES / minutes if minutes > 0.0 else math.inf)
     size = 1 << int(math.log2(max(most / (inputs + 2), 1.0)))
     return min(max(size, LEAST_BASE), MOST_BASE)
@@ -200,7 +201,7 @@ def _of_measure(
     blame: Blame,
 ) -> MeasureEffects:
     measure, values = response.measures[k], sampled.values
-    acting = {own.name for own in response.simulation.system.acting(measure)}
+    acting = {own.name for own in response.acting(measure)}
     place = {name: i for i, own in enumerate(sampled.inputs) for name in own.names}
     shares: dict[str, tuple[float, float]] = {}
     if divided is not None:

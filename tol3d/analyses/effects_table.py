@@ -43,7 +43,8 @@ def _table(own: MeasureEffects) -> Table:
     with_shapley = any(each.shapley for _, each in parts)
     heads += ["Shapley [%]"] if with_shapley else []
     heads += ["failures [%]"] if own.failures_by else []
-    heads += ["with others [%]"] if own.failures_by == "simulation" else []
+    with_others = any(each.failures_total for _, each in parts)
+    heads += ["with others [%]"] if with_others else []
     rows = []
     for name, each in ranked:
         cells = [
@@ -55,7 +56,7 @@ def _table(own: MeasureEffects) -> Table:
         ]
         cells += [_share(each.shapley)] if with_shapley else []
         cells += [_share(each.failures)] if own.failures_by else []
-        cells += [_share(each.failures_total)] if own.failures_by == "simulation" else []
+        cells += [_share(each.failures_total)] if with_others else []
         rows.append(Row(name, cells))
     return Table("", [Heading(text, words=text == "unit") for text in heads], rows)
 
@@ -73,7 +74,9 @@ def _words(own: MeasureEffects) -> Sequence[str]:
         spread.append(f"sum of first indices {_plain(first)}, of total ones {_plain(total)}")
     groups = dict.fromkeys(tuple(each.together) for each in own.contributors.values() if len(each.together) > 1)
     told = [", ".join(spread)]
-    told += [f"indices of correlated contributors are those of all together: {', '.join(group)}" for group in groups]
+    if groups:
+        together = "; ".join(", ".join(group) for group in groups)
+        told.append(f"indices of correlated contributors are those of all together: {together}")
     if own.not_seated:
         told.append(f"{own.not_seated} of {own.builds} builds do not seat: left out of indices, counted as failures")
     if own.failing_ppm is not None:

@@ -74,7 +74,7 @@ def inputs_of(response: Response, *, position: bool = False) -> tuple[Input, ...
 def acting_names(response: Response) -> frozenset[str]:
     """Contributors that act on some of the measures, and those that they read."""
     known = {own.name: own for own in response.contributors}
-    names = {own.name for measure in response.measures for own in response.simulation.system.acting(measure)}
+    names = {own.name for measure in response.measures for own in response.acting(measure)}
     while added := {name for own in names for name in reads_of(known[own])} - names:
         names |= added
     return frozenset(names)

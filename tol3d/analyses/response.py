@@ -109,6 +109,14 @@ class Response:
         """All of the system's."""
         return self.simulation.system.contributors
 
+    def source(self, measure: Measure) -> Measure:
+        """The system's own measure: of an end of a curve the curve."""
+        return self.curves.get(measure.name, measure)
+
+    def acting(self, measure: Measure) -> Sequence[Contributor]:
+        """Contributors that act on one of the measures."""
+        return self.simulation.system.acting(self.source(measure))
+
     @cached_property
     def components(self) -> int:
         """Columns of the deviations."""
@@ -180,7 +188,7 @@ class Response:
         values = np.empty((len(trials), len(self.measures)))
         codes = np.zeros(values.shape, dtype=np.int8)
         first = 0
-        sources = [self.curves.get(own.name, own) for own in self.measures]
+        sources = [self.source(own) for own in self.measures]
         for asked in evaluation.asked(trials, [*{own.name: own for own in sources}.values()]):
             rows = slice(first, first + len(asked.trials))
             first = rows.stop
@@ -224,7 +232,7 @@ class Response:
     @cached_property
     def _acting(self) -> NDArray[np.int64]:
         """Columns of contributors that act on some of the measures."""
-        names = {own.name for measure in self.measures for own in self.simulation.system.acting(measure)}
+        names = {own.name for measure in self.measures for own in self.acting(measure)}
         return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
 
     def ranges(self, positions: Mapping[str, Array] | None = None) -> Array:

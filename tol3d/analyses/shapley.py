@@ -12,8 +12,6 @@ Goda, A simple algorithm for global sensitivity analysis with Shapley effects, R
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import permutations
-from math import factorial
 from typing import Final
 
 import numpy as np
@@ -24,8 +22,6 @@ from tol3d.system.copula import Block
 
 ORDERS: Final = 64
 """Random orders of contributors, each with its reverse."""
-ALL_ORDERS: Final = 5040
-"""Up to so many all orders are taken, of seven contributors; beyond them as many random ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,20 +114,3 @@ def _shares(walked: Array, owners: Array, weights: Array) -> Array:
     found = np.array([weights @ growth[owners[:, k], rows] for k in range(owners.shape[1])])
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(variance > 0.0, found.reshape(-1, *variance.shape) / variance, np.nan)
-
-
-def linear_shapley(slopes: Array, correlation: Array) -> Array:
-    """Shapley effects (n,) of a sum of slopes (n,) times correlated normals; they add up to its variance.
-
-    Known in an order, each explains the square of its entry in the Cholesky factor, transposed, times the slopes.
-    """
-    count = len(slopes)
-    every = permutations(range(count))
-    generator = np.random.default_rng(count)
-    few = count <= 12 and factorial(count) <= ALL_ORDERS
-    orders = list(every) if few else [tuple(generator.permutation(count)) for _ in range(ALL_ORDERS)]
-    found = np.zeros(count)
-    for own in orders:
-        order = list(own)
-        found[order] += (np.linalg.cholesky(correlation[np.ix_(order, order)]).T @ slopes[order]) ** 2
-    return found / len(orders)

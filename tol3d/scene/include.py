@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files, UnreadableFileError, contained, read_contained
+from tol3d.scene.correlation import CORRELATIONS
 from tol3d.scene.including import INCLUDE, IncludeSpec, Including
 from tol3d.scene.nearest import hint
 from tol3d.scene.node import Children, Node, Places, branch, plain
@@ -46,12 +47,14 @@ class _Read:
         sections: its entries, those that it includes too.
         uses: of each entry, the fields that name others, each with that name.
         parts: as they are understood.
+        correlations: as they are written.
     """
 
     name: str
     sections: Mapping[str, Children]
     uses: Mapping[KeyPath, Sequence[tuple[KeyPath, str]]]
     parts: Mapping[str, Any]
+    correlations: Children
 
 
 @dataclass
@@ -88,6 +91,7 @@ class Includes:
         own: Sections = {section: dict(top.held(section)) for section in SECTIONS}
         found: Sections = {section: {} for section in SECTIONS}
         moves: list[Sections] = []
+        correlations: list[tuple[Place, Node]] = []
         for name, spec in self._specs(top, origin).items():
             read = self._file(spec.file, origin, (INCLUDE, name), chain)
             _refuse_many(*_together((own, found, read.sections)), origin, (INCLUDE, name))
@@ -96,6 +100,8 @@ class Includes:
                 _refuse_same(section, named[section], found[section] | own[section], origin)
                 found[section].update(named[section])
             moves.append(named)
+            correlations += [(place, _between(node, name)) for place, node in read.correlations.values()]
+        top = _with_correlations(top, correlations)
         return _with_sections(top, {s: found[s] | own[s] if s != "moves" else _ordered(own, moves) for s in SECTIONS})
 
     def _specs(self, top: Node, origin: Origin) -> Mapping[str, IncludeSpec]:
@@ -147,7 +153,9 @@ class Includes:
             for place, _ in entry.file_names():
                 top = _changed(top, (*path, *place), partial(posixpath.join, posixpath.dirname(name)))
         uses = {path: [(each.path, each.name) for each in entry.references()] for path, entry in part.entries().items()}
-        return _Read(name, {section: top.held(section) for section in SECTIONS}, uses, part.parts)
+        return _Read(
+            name, {section: top.held(section) for section in SECTIONS}, uses, part.parts, top.held(CORRELATIONS)
+        )
 
 
 # limits -------------------------------------------------------------------------------------------
@@ -254,6 +262,22 @@ def _put(node: Node, path: KeyPath, new: Node) -> Node:
         return new
     _, child = node.children.get(path[0], (new.place, branch({}, new.place, {})))
     return branch({}, node.place, {**node.children, path[0]: (new.place, _put(child, path[1:], new))})
+
+
+def _between(node: Node, name: str) -> Node:
+    """A correlation between contributors under the name of an include."""
+    place, names = node.children["between"]
+    named = {k: (own, child._replace(value=f"{name} {child.value}")) for k, (own, child) in names.children.items()}
+    return branch({}, node.place, {**node.children, "between": (place, branch([], names.place, named))})
+
+
+def _with_correlations(top: Node, included: Sequence[tuple[Place, Node]]) -> Node:
+    """With correlations of included files before its own."""
+    if not included:
+        return top
+    place, own = top.children.get(CORRELATIONS, top.children[INCLUDE])
+    every = [*included, *(own.children.values() if CORRELATIONS in top.children else ())]
+    return branch({}, top.place, {**top.children, CORRELATIONS: (place, branch([], place, dict(enumerate(every))))})
 
 
 def _with_sections(top: Node, sections: Sections) -> Node:

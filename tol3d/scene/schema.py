@@ -27,8 +27,10 @@ from tol3d.errors import SceneError
 from tol3d.files import Files
 from tol3d.import_path import named
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
+from tol3d.scene.correlation import CorrelationSpec
 from tol3d.scene.entry import Entry
 from tol3d.scene.including import with_include
+from tol3d.scene.listed import listed
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
@@ -206,6 +208,9 @@ class Scene(Strict):
     description: str = Field(default="", description="the user's own words, shown in reports")
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
+    correlations: Annotated[tuple[CorrelationSpec, ...], listed("correlations", 0)] = Field(
+        default=(), description="contributors that do not vary independently"
+    )
     moves: Mapping[Name, MoveSpec] = Field(min_length=1)
     measures: Mapping[Name, MeasureEntry] = Field(min_length=1)
     study: StudySpec = Field(default_factory=StudySpec)

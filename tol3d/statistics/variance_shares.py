@@ -4,12 +4,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
+from tol3d.statistics.shapley import grouped_shapley
 
 Places = NDArray[np.intp]
 
@@ -157,7 +159,7 @@ class Shares:
     unexplained: float
 
 
-def shares(sums: RegressorSums, groups: Mapping[str, slice]) -> Shares:
+def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[Sequence[str]] = ()) -> Shares:
     """Split the target's variance among groups of feature columns.
 
     One least-squares fit on all features; the share of a group is cov(its part of the fit, y) /
@@ -171,6 +173,8 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice]) -> Shares:
 
     Args:
         groups: for each name its feature columns; no column in two groups.
+        together: names of groups that are correlated with each other; what they explain together is divided by their
+            Shapley effects on their part of the fit, of which none is negative.
     """
     features = [column for group in groups.values() for column in range(len(sums.means) - 1)[group]]
     if sums.count <= len(features) + 1:
@@ -180,6 +184,8 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice]) -> Shares:
         return Shares(dict.fromkeys(groups, 0.0), dict.fromkeys(groups, 0.0), 0.0)
     explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0])
     share = {name: float(np.sum(explained[group])) for name, group in groups.items()}
+    for names in together:
+        share |= _divided(sums, sigma, {name: groups[name] for name in names if name in groups}, share)
     unexplained = max(1 - sum(share.values()), 0.0)
     errors = {name: _standard_error(value, unexplained, sums.count) for name, value in share.items()}
     return Shares(share, errors, unexplained)
@@ -209,6 +215,28 @@ def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
     along = np.sum(modes.vectors * r[:, None], axis=0) / modes.values
     explained[used] = np.sum(modes.vectors * along, axis=1) * r
     return explained
+
+
+def _divided(
+    sums: RegressorSums, sigma: Array, groups: Mapping[str, slice], share: Mapping[str, float]
+) -> Mapping[str, float]:
+    """Shares of groups that are correlated with each other, as many as they have together."""
+    columns = [column for own in groups.values() for column in range(len(sums.means) - 1)[own] if sigma[column] > 0]
+    if len(groups) < 2 or not columns:
+        return {}
+    whole = [column for column in range(len(sums.means) - 1) if sigma[column] > 0]
+    scale = sigma[[*whole, -1]]
+    picked = [*whole, -1]
+    correlation = sums.comoments[np.ix_(picked, picked)] / sums.count / scale / scale[:, None]
+    slopes = factorised(correlation[:-1, :-1]).inverse @ correlation[:-1, -1]
+    places = [whole.index(column) for column in columns]
+    ends = np.cumsum([0, *(sum(sigma[range(len(sigma) - 1)[own]] > 0) for own in groups.values())]).tolist()
+    parts = [slice(start, end) for start, end in pairwise(ends)]
+    effects = grouped_shapley(slopes[places], correlation[np.ix_(places, places)], parts)
+    total, all_effects = sum(share[name] for name in groups), float(effects.sum())
+    if not all_effects > 0.0:
+        return {}
+    return {name: total * float(own) / all_effects for name, own in zip(groups, effects, strict=True)}
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,15 +5,17 @@ No theory is needed, so any system has it; both roads stand beside each other be
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.correlated import divided_variances
 from tol3d.study.evaluation import Values, batches, evaluations, of_alike
 from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
+from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
@@ -92,19 +94,39 @@ def first_orders(
     """
     system = simulation.system
     found = {
-        shown: first_order(system, measures, own.values) for shown, own in evaluations(system, road).items() if measures
+        shown: first_order(system, measures, own.values, simulation.copula)
+        for shown, own in evaluations(system, road).items()
+        if measures
     }
     return {own.name: {shown: by_measure[own.name] for shown, by_measure in found.items()} for own in measures}
 
 
-def first_order(system: System, measures: Sequence[Measure], values: Values) -> dict[str, FirstOrder]:
+def first_order(
+    system: System, measures: Sequence[Measure], values: Values, copula: Copula = INDEPENDENT
+) -> dict[str, FirstOrder]:
     """Measures of first order about their mean builds, by central differences over one sigma to both sides.
 
     Args:
         system, measures: what is built, and what is read of it.
         values: by one road, in units of the measures.
+        copula: which contributors are correlated; their parts in the variance are then Shapley effects.
     """
-    return of_alike(system, measures, lambda alike, turning: _first_order(system, alike, turning, values))
+    found = of_alike(system, measures, lambda alike, turning: _first_order(system, alike, turning, values))
+    return {name: _correlated(own, system, copula) for name, own in found.items()} if copula.blocks else found
+
+
+def _correlated(found: FirstOrder, system: System, copula: Copula) -> FirstOrder:
+    """With the variance that correlations make of the sum."""
+    draws = {own.name: own.draw for own in system.contributors}
+    effects = {
+        own.name: math.copysign(math.sqrt(own.variance), own.slope)
+        for own in found.effects
+        if own.name in copula.names and not math.isnan(own.slope)
+    }
+    parts = divided_variances(effects, copula, draws)
+    return replace(
+        found, effects=tuple(replace(own, variance=parts.get(own.name, own.variance)) for own in found.effects)
+    )
 
 
 def _first_order(

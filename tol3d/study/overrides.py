@@ -10,6 +10,7 @@ from tol3d.errors import InputError
 from tol3d.scene import Scene
 from tol3d.scene.options import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
+from tol3d.study.correlated import copula_of
 from tol3d.study.simulation import Simulation, study_of
 from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
@@ -64,6 +65,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         presenter=mechanism.presenter,
         mechanism=origin_of(asked),
         implausible=implausible,
+        copula=copula_of(asked, system),
     )
 
 

@@ -10,6 +10,7 @@ from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import quick_products, sparse_products
 from tol3d.statistics.variance_shares import Products, TargetSums
 from tol3d.study.regressors import RegressorSet, regressor_sets
+from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import ROADS
 from tol3d.system.system import Columns, System
@@ -34,7 +35,12 @@ def merged(one: Sums, other: Sums) -> Sums:
 
 
 def target_sums(
-    system: System, measures: Sequence[Measure], columns: Columns, values: Mapping[Key, Array], products: Products
+    system: System,
+    measures: Sequence[Measure],
+    columns: Columns,
+    values: Mapping[Key, Array],
+    products: Products,
+    copula: Copula = INDEPENDENT,
 ) -> tuple[dict[Key, Sums], Among]:
     """What each road's column of each measure has in common with its regressors, by road and name.
 
@@ -45,10 +51,11 @@ def target_sums(
         columns: of a block.
         values: of roads and their difference, nan where a trial lacks one.
         products: of all pairs of rows.
+        copula: which contributors are correlated.
     """
     sums: dict[Key, Sums] = {}
     among: dict[tuple[Key, ...], TargetSums] = {}
-    for own in regressor_sets(system):
+    for own in regressor_sets(system, copula):
         keys = [(r, m.name) for m in own.measures for r in (*ROADS, DIFFERENCE) if (r, m.name) in values]
         block = _Block(own, own.rows(system, columns), quick_products() if len(own) > MANY_REGRESSORS else products)
         whole = [key for key in keys if not np.isnan(np.min(values[key], initial=0.0))]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.clusters import Clusters, Picked
 from tol3d.system.contributor import Contributor
+from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
@@ -100,9 +101,9 @@ class RegressorSet:
         return rows
 
 
-def regressor_sets(system: System) -> tuple[RegressorSet, ...]:
+def regressor_sets(system: System, copula: Copula = INDEPENDENT) -> tuple[RegressorSet, ...]:
     """Sets of all measures of one value a trial; each has the products of its regressors worked out once."""
-    return _sets_of(Itself(system))
+    return _sets_of(Itself(system), copula)
 
 
 def regressor_set(system: System, measure: Measure) -> RegressorSet:
@@ -122,11 +123,11 @@ def regressors(system: System, measure: Measure, columns: Columns) -> Array:
 
 
 @lru_cache(maxsize=16)
-def _sets_of(system: Itself) -> tuple[RegressorSet, ...]:
-    return tuple(_sets(system.thing))
+def _sets_of(system: Itself, copula: Copula) -> tuple[RegressorSet, ...]:
+    return tuple(_sets(system.thing, copula))
 
 
-def _sets(system: System) -> Iterator[RegressorSet]:
+def _sets(system: System, copula: Copula) -> Iterator[RegressorSet]:
     scalars = [measure for measure in system.measures if measure.take != "curve"]
     acting = {measure.name: tuple(own.name for own in system.acting(measure)) for measure in scalars}
     alike: dict[Any, list[Measure]] = {}
@@ -135,9 +136,9 @@ def _sets(system: System) -> Iterator[RegressorSet]:
     for measures in alike.values():
         few = [own for own in measures if len(acting[own.name]) <= MOST_REGRESSED]
         for within in _within_the_largest(few, acting):
-            yield _set(system, within, acting, apart=False)
+            yield _set(system, within, acting, copula, apart=False)
         if many := [own for own in measures if len(acting[own.name]) > MOST_REGRESSED]:
-            yield _set(system, many, acting, apart=True)
+            yield _set(system, many, acting, copula, apart=True)
 
 
 def _within_the_largest(
@@ -156,11 +157,16 @@ def _within_the_largest(
 
 
 def _set(
-    system: System, measures: Sequence[Measure], acting: Mapping[str, tuple[str, ...]], *, apart: bool
+    system: System,
+    measures: Sequence[Measure],
+    acting: Mapping[str, tuple[str, ...]],
+    copula: Copula,
+    *,
+    apart: bool,
 ) -> RegressorSet:
     names = {name for own in measures for name in acting[own.name]}
     contributors = tuple(own for own in system.contributors if own.name in names)
-    groups = _dependent(system.contributors)
+    groups = _dependent(system.contributors, copula)
     clusters = Clusters(
         np.array([regressor_count(own) for own in contributors], dtype=np.intp),
         np.array([groups[own.name] for own in contributors], dtype=np.intp),
@@ -170,11 +176,15 @@ def _set(
     )
 
 
-def _dependent(contributors: Sequence[Contributor]) -> Mapping[str, int]:
-    """A number for each contributor; those of the same one read each other, or what the same one reads."""
+def _dependent(contributors: Sequence[Contributor], copula: Copula) -> Mapping[str, int]:
+    """A number for each contributor; those of the same one read each other, or what the same one reads.
+
+    Or they are correlated.
+    """
     groups = {own.name: place for place, own in enumerate(contributors)}
-    for own in contributors:
-        joined = {groups[own.name], *(groups[name] for name in reads_of(own))}
+    links = [(own.name, *reads_of(own)) for own in contributors] + [own.names for own in copula.blocks]
+    for names in links:
+        joined = {groups[name] for name in names}
         if len(joined) > 1:
             groups = {name: min(joined) if group in joined else group for name, group in groups.items()}
     return groups

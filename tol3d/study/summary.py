@@ -16,6 +16,7 @@ from tol3d.statistics import Agreement as Comparison
 from tol3d.statistics import IndependentSums, LimitCounts, Moments, independent_shares, shares
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
+from tol3d.study.correlated import closed_form_of, correlation_warnings
 from tol3d.study.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percents, to_first_order
@@ -29,6 +30,7 @@ from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
 from tol3d.system.faults import Origin
@@ -43,7 +45,9 @@ Percent = tuple[float | None, float | None]
 """A share of the variance [%] and its standard error; None where unknown."""
 
 
-def share_percents(system: System, measure: Measure, sums: Sums | None) -> dict[str, Percent]:
+def share_percents(
+    system: System, measure: Measure, sums: Sums | None, copula: Copula = INDEPENDENT
+) -> dict[str, Percent]:
     """Share of the variance of each acting contributor by regression."""
     groups = regressor_groups(system, measure)
     if sums is None:
@@ -52,7 +56,7 @@ def share_percents(system: System, measure: Measure, sums: Sums | None) -> dict[
         share, error, _ = independent_shares(sums)
         found = zip(groups, share.tolist(), error.tolist(), strict=True)
         return {name: (finite(100 * own), finite(100 * its)) for name, own, its in found}
-    known = shares(sums, groups)
+    known = shares(sums, groups, [own.names for own in copula.blocks])
     return {name: (finite(100 * known.share[name]), finite(100 * known.standard_error[name])) for name in groups}
 
 
@@ -98,6 +102,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
             *_ends_not_built(simulation),
             *faults(explained),
             *simulation.warnings,
+            *correlation_warnings(simulation),
             *_unphysical_draws(simulation, tally),
             *shortfalls(simulation, tally),
         ],
@@ -228,7 +233,7 @@ def _measure(
         nominal=builds[0],
         mean_build=builds[1],
         analytic=sample_summary(measure, own.analytic, asked) if own else None,
-        analytic_closed_form=None if curve else _closed_form(measure, system.closed_form(measure)),
+        analytic_closed_form=None if curve else _closed_form(measure, closed_form_of(simulation, measure)),
         histogram=histograms(own) if own else None,
         geometric=sample_summary(measure, found.geometric, asked) if found and found.geometric else None,
         agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
@@ -284,9 +289,9 @@ def _agreement(compared: Comparison, explanation: Explanation | None) -> Agreeme
 
 def _shares(simulation: Simulation, measure: Measure, own: MeasureTally, alone: Percents) -> list[ContributorShare]:
     independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
-    form = simulation.system.closed_form(measure)
-    by_sample = share_percents(simulation.system, measure, own.analytic_regressors)
-    geometric = share_percents(simulation.system, measure, own.geometric_regressors)
+    form = closed_form_of(simulation, measure)
+    by_sample = share_percents(simulation.system, measure, own.analytic_regressors, simulation.copula)
+    geometric = share_percents(simulation.system, measure, own.geometric_regressors, simulation.copula)
     return [
         made(
             ContributorShare,
