@@ -148,7 +148,10 @@ def read_step_text(source: Path | bytes, name: str | None = None) -> StepText:
 
 
 def incomplete(text: StepText) -> Iterator[Remark]:
-    """Remarks on what lacks a value, a kind, a letter or its faces."""
+    """Remarks on what lacks a value, a kind, a letter or its faces, and on products without a shape."""
+    for product in text.structure.products.values():
+        if not product.faces and product.id not in text.structure.inside:
+            yield Remark(product.id, f"product {product.name}", "has neither solids nor faces")
     for each in text.tolerances:
         what = f"tolerance {each.name}".strip()
         if each.magnitude is None:

@@ -141,7 +141,7 @@ class StructureReader:
         for each in (parent, used):
             if each not in products:
                 raise StepError(f"{record.instance.place}: expected a product definition, got #{each}")
-        name = record.text(1).strip() or record.text(0).strip() or products[used].name
+        name = record.text(1).strip() or products[used].name
         placement = self.placement(record, parent, used)
         return Occurrence(record.instance.id, name, parent, used, placement)
 

@@ -148,11 +148,12 @@ class Structure:
             leaf, holders, name = stack.pop()
             own = self.products[leaf.product]
             used = self.inside.get(leaf.product, ())
-            if own.solids or own.loose_faces or not used:
+            if own.faces:
                 yield Leaf(leaf.path or (name,), leaf.occurrences, leaf.product, leaf.placement)
             for word, each in reversed(used):
                 if each.product in holders:
-                    raise StepError(f"{self.name}: #{each.id}: the assembly {shown(own.name)!r} holds itself")
+                    held = self.products[each.product].name
+                    raise StepError(f"{self.name}: #{each.id}: the assembly {shown(held)!r} holds itself")
                 placed = product(leaf.placement, each.placement)
                 inner = Leaf((*leaf.path, word), (*leaf.occurrences, each.id), each.product, placed)
                 stack.append((inner, holders | {each.product}, word))
