@@ -15,7 +15,7 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import adjustment, changing, deciding, design, effects, rare, records, showing, studies
+from tol3d.cli import adjustment, changing, deciding, design, effects, rare, records, showing, step, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
@@ -30,6 +30,7 @@ __all__ = [
     "rare",
     "records",
     "showing",
+    "step",
     "studies",
 ]
 
@@ -37,6 +38,7 @@ COMMANDS = (
     studies.run,
     showing.scenes,
     showing.check,
+    step.features,
     showing.workspace,
     showing.compare,
     showing.report,

@@ -1,0 +1,147 @@
+"""Faces of a foreign STEP file as numbers: what the process that read it hands over, checked.
+
+Lengths are in mm, angles in rad, in the frame of the product that has the solid.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Final, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from tol3d.numerics.arrays import Array
+
+LARGEST: Final = 1e9  # mm; a coordinate beyond it is damage
+
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Place = tuple[Number, Number, Number]
+SurfaceKind = Literal["plane", "cylinder", "cone", "sphere", "torus", "free form"]
+
+READ: Final = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class Face(BaseModel):
+    """A face: an elementary surface, or a free form.
+
+    Args:
+        id: its number in the file.
+        kind: of its surface.
+        at, axis, x, y: of the surface's own frame; none of a free form.
+        turn: angles about the axis between which it lies, from x towards y; none of a recognised spline.
+        radius: of a cylinder or sphere; of a cone where its frame is, of a torus the larger one.
+        half_angle: of a cone.
+        minor_radius: of a torus.
+        area: [mm²].
+        centre: of its area.
+        place, normal: a point of its surface, and the direction out of the material there.
+        edges, outer: numbers of its edges, and of those of its outer outline.
+    """
+
+    model_config = READ
+
+    id: int
+    kind: SurfaceKind
+    at: Place = (0.0, 0.0, 0.0)
+    axis: Place = (0.0, 0.0, 1.0)
+    x: Place = (1.0, 0.0, 0.0)
+    y: Place = (0.0, 1.0, 0.0)
+    turn: tuple[float, float] | None = None
+    radius: Number = 0.0
+    half_angle: float = 0.0
+    minor_radius: Number = 0.0
+    area: float
+    centre: Place
+    place: Place
+    normal: Place
+    edges: tuple[int, ...]
+    outer: tuple[int, ...]
+
+    @property
+    def is_hollow(self) -> bool:
+        """Whether the material of a round face lies outside: its normal points to the axis, or the centre."""
+        towards = np.subtract(self.at, self.place)
+        if self.kind == "torus":
+            return bool(np.dot(self._tube() - np.array(self.place), self.normal) > 0.0)
+        if self.kind != "sphere":
+            towards = towards - np.array(self.axis) * np.dot(towards, self.axis)
+        return bool(np.dot(towards, self.normal) > 0.0)
+
+    def _tube(self) -> Array:
+        """The nearest point of a torus's circle to its place (3,)."""
+        off = np.subtract(self.place, self.at)
+        flat = off - np.array(self.axis) * np.dot(off, self.axis)
+        return np.asarray(self.at + self.radius * flat / max(float(np.linalg.norm(flat)), 1e-300))
+
+
+class Edge(BaseModel):
+    """An edge: its points, or a circle or ellipse by its numbers; "none" where a face shrinks to a point."""
+
+    model_config = READ
+
+    kind: Literal["line", "circle", "ellipse", "curve", "none"]
+    points: tuple[Place, ...] = ()
+    centre: Place = (0.0, 0.0, 0.0)
+    x: Place = (1.0, 0.0, 0.0)
+    y: Place = (0.0, 1.0, 0.0)
+    radii: tuple[Number, Number] = (0.0, 0.0)
+    ends: tuple[float, float] = (0.0, 0.0)
+
+    def extremes(self, direction: Array) -> tuple[float, float]:
+        """Lowest and highest coordinate along a direction (3,) of unit length [mm]."""
+        if self.kind in ("circle", "ellipse"):
+            return self._of_round(direction)
+        values = np.array(self.points) @ direction
+        return -_top(-values), _top(values)
+
+    def _of_round(self, direction: Array) -> tuple[float, float]:
+        middle = float(np.dot(self.centre, direction))
+        along_x = self.radii[0] * float(np.dot(self.x, direction))
+        along_y = self.radii[1] * float(np.dot(self.y, direction))
+        angles = [*self.ends]
+        top = float(np.arctan2(along_y, along_x))
+        for angle in (top, top + np.pi):
+            inside = self.ends[0] + (angle - self.ends[0]) % (2 * np.pi)
+            if inside <= self.ends[1]:
+                angles.append(inside)
+        values = [middle + along_x * np.cos(angle) + along_y * np.sin(angle) for angle in angles]
+        return float(min(values)), float(max(values))
+
+
+def _top(values: Array) -> float:
+    """The highest of a curve's samples, between them by the parabola through the three around it."""
+    k = int(np.argmax(values))
+    if not 0 < k < len(values) - 1:
+        return float(values[k])
+    before, here, after = values[k - 1 : k + 2].tolist()
+    bend = before - 2 * here + after
+    return float(here if bend >= 0.0 else here - (after - before) ** 2 / (8 * bend))
+
+
+class Root(BaseModel):
+    """A solid, or a shell beside one, by the number of its entity."""
+
+    model_config = READ
+
+    id: int
+    solid: bool
+    faces: tuple[Face, ...]
+    edges: tuple[Edge, ...]
+
+
+class Faces(BaseModel):
+    """All of a file."""
+
+    model_config = READ
+
+    roots: tuple[Root, ...]
+
+    @property
+    def by_id(self) -> Mapping[int, Face]:
+        """Every face by its number."""
+        return {face.id: face for root in self.roots for face in root.faces}
+
+
+def extent(edges: Sequence[Edge], direction: Array) -> tuple[float, float]:
+    """Lowest and highest coordinate of some edges along a direction (3,) of unit length [mm]; 0 of none."""
+    found = [edge.extremes(direction) for edge in edges if edge.kind != "none"]
+    return (min(low for low, _ in found), max(high for _, high in found)) if found else (0.0, 0.0)
