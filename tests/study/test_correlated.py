@@ -10,6 +10,8 @@ from formulas import formula
 from scipy.stats import kstest, norm, pearsonr, spearmanr
 
 from tol3d import Overrides, SceneError, run_scene
+from tol3d.analyses.effects import effects
+from tol3d.analyses.rare import rare_event
 from tol3d.analyses.response import response_of
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
@@ -147,6 +149,29 @@ def test_analyses_draw_the_same_law(tmp_path: Path) -> None:
     upper, hinge = (found[:, response.slices[name]][:, 0] for name in (UPPER, DOOR_HINGE))
     assert pearsonr(upper, hinge)[0] == pytest.approx(0.5, abs=4 * 0.75 / 200)
     assert upper.std() == pytest.approx(response.draws[UPPER].sigma, rel=0.02)
+
+
+def test_design_points_know_what_goes_with_those_that_act(tmp_path: Path) -> None:
+    """A gap's law does not change by what one of its lengths is correlated with; the blame is shared with it: ρ²/2."""
+    folder = tmp_path / "alone"
+    folder.mkdir()
+    near = " lower_limit: 2.5 mm", " lower_limit: 2.0 mm"
+    found, blame = [], []
+    for path in (
+        correlated(tmp_path, 0.8, UPPER, "body upper hinge y"),
+        correlated(folder, 0.8, UPPER, "lower edge y"),
+    ):
+        path.write_text(path.read_text().replace(*near))
+        response = response_of(simulation_of(load(path))).of("upper gap")
+        found.append(rare_event(response, "low", 2000.0, method="form").estimate.probability)
+        own = effects(response, base=256).measures["upper gap"].contributors
+        blame.append({name: each.failures.share for name, each in own.items() if each.failures})
+    sigma = math.sqrt(sum((b * response.draws[name].sigma) ** 2 for name, b in SLOPES.items()))
+    assert found[0] == pytest.approx(found[1], rel=2e-3)
+    assert found == pytest.approx([norm.sf(2.0 / sigma)] * 2, rel=0.05)  # terms of second order move the gap by 3 um
+    alone = (response.draws[UPPER].sigma / sigma) ** 2
+    assert blame[0]["body upper hinge y"] == pytest.approx(0.32 * alone, rel=0.02)
+    assert blame[0][UPPER] == pytest.approx(0.68 * alone, rel=0.02)
 
 
 def test_a_sum_of_uniform_lengths() -> None:

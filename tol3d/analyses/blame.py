@@ -97,7 +97,7 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
         return Blame(None, f"no design point found; {failing} of {count} builds fail")
     likely = ndtr(-np.array([own.beta for own in points]))
     weights = likely / likely.sum() if likely.sum() > 0.0 else np.full(len(points), 1.0 / len(points))
-    shares = _shares(response, points, weights)
+    shares = failure_shares(response, points, weights)
     words = f"{len(points)} design points, the nearest at β = {min(own.beta for own in points):.2f}"
     return Blame("design points", words, {name: (own, math.nan) for name, own in shares.items()})
 
@@ -110,7 +110,11 @@ def _points(state: LimitState, seed: int) -> Sequence[DesignPoint]:
     return [own for its in design_points(state, positions, places, starts, generator) for own in its]
 
 
-def _shares(response: Response, points: Sequence[DesignPoint], weights: Array) -> Mapping[str, float]:
+def failure_shares(response: Response, points: Sequence[DesignPoint], weights: Array) -> Mapping[str, float]:
+    """Shares of contributors in the way to design points, averaged with weights (points,).
+
+    They are squared direction cosines, but of correlated contributors Shapley effects on the limit made linear there.
+    """
     squares = np.array([own.sensitivities**2 for own in points])
     mean = weights @ squares
     found = {name: float(mean[own].sum()) for name, own in response.normals.items()}

@@ -46,15 +46,16 @@ class LimitState:
 
     @cached_property
     def acting(self) -> NDArray[np.int64]:
-        """Normals of the contributors that act on the measure, and of those whose draws these read."""
+        """Normals of contributors that act on the measure, and of those that these read or are correlated with."""
         draws = self.response.draws
-        names = {own.name for own in self.response.simulation.system.acting(self.measure)}
+        names = {own.name for own in self.response.acting(self.measure)}
         waiting = list(names)
         while waiting:
             draw = draws[waiting.pop()]
             more = set(draw.reads) - names if isinstance(draw, Dependent) else set()
             names |= more
             waiting += more
+        names = names.union(*(own.names for own in self.response.copula.blocks if names & set(own.names)))
         kept = [own for name, own in self.response.normals.items() if name in names]
         return np.array([k for own in kept for k in range(own.start, own.stop)], dtype=np.int64)
 

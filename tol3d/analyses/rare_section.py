@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydantic import Field
 
+from tol3d.analyses.blame import failure_shares
 from tol3d.analyses.design_points import DesignPoint
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.rare import Method, RareEvent
@@ -113,7 +114,7 @@ def design_trials(response: Response, point: DesignPoint) -> Trials:
 
 def _build(response: Response, point: DesignPoint) -> DesignBuild:
     trials = design_trials(response, point)
-    shares = {name: float((point.sensitivities[own] ** 2).sum()) for name, own in response.normals.items()}
+    shares = failure_shares(response, [point], np.ones(1))
     ways = [
         made(
             WayThere,
