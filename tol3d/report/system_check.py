@@ -9,10 +9,12 @@ from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
 from tol3d.report.shown_unit import shown_unit
+from tol3d.report.worst_found import WORST_FOUND, worst_text
 from tol3d.statistics.limits import normal_share
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, road_of
+from tol3d.study.worst_cases import worst_cases
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
 from tol3d.system.measure import Measure
@@ -27,7 +29,7 @@ MIDDLE = (
     "sigma of a zone: of the middle of its feature along one axis; of an orientation alone, of a rise at the edge or "
     "an end of the axis; a process draws both ends of an axis, so that the middle has 1/√2 of its sigma"
 )
-NO_SUM = "no sum of effects, so no RSS and no worst case: its slopes are means over two sigma; run draws its trials"
+NO_SUM = "no sum of effects, so no RSS: its slopes are means over two sigma; run draws its trials"
 MEASURE_WORDS = ("kind", "limits")
 BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
@@ -44,6 +46,7 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
     headings = {"analytic": "analytic"} | ({"geometric": study.engine} if road else {})
     found: dict[str, dict[str, FirstOrder]] = {measure.name: {} for measure in system.measures}
     found |= first_orders(simulation, road, [measure for measure in system.measures if measure.take != "curve"])
+    worst = worst_cases(simulation, road, [own for own in system.measures if found[own.name]])
     units = {
         name: shown_unit(own.unit, _nominal(found[name])) if name in long_in_mm else own.unit
         for name, own in ((measure.name, measure) for measure in system.measures)
@@ -56,7 +59,16 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
             block
             for measure in measures
             if found[measure.name] and system.acting(measure)
-            for block in _coefficients(measure, units[measure.name], found[measure.name], headings)
+            for block in _coefficients(
+                measure,
+                units[measure.name],
+                found[measure.name],
+                headings,
+                {
+                    name: worst_text(simulation, measure, units[measure.name], own)
+                    for name, own in worst[measure.name].items()
+                },
+            )
         ]
 
     def rows(measures: Sequence[Measure]) -> list[Row]:
@@ -70,7 +82,8 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
         further = Further(Row(f"and {len(left)} more", blank, "dim"), lambda: rows(left))
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
     several = any(effect.each > 1 for own in found.values() for road in own.values() for effect in road.effects)
-    texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []))
+    searched = any(own is not None for by_road in worst.values() for own in by_road.values())
+    texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []), *([WORST_FOUND] if searched else []))
     notes = [note(text) for text in texts] if tables else []
     numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
     columns = [*(Heading(word, words=True) for word in MEASURE_WORDS), *numbers, Heading("unit")]
@@ -181,9 +194,13 @@ def _limits(measure: Measure, unit: str) -> str:
 
 
 def _coefficients(
-    measure: Measure, unit: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
+    measure: Measure,
+    unit: str,
+    found: Mapping[str, FirstOrder],
+    headings: Mapping[str, str],
+    worst: Mapping[str, str],
 ) -> list[PageItem]:
-    """Changes by each deviation in the measure's own unit; its ends in the one in which it is shown."""
+    """Changes by each deviation in the measure's own unit; ends in the one in which it is shown."""
     by_road = [own.effects for own in found.values()]
     wholes = [(sum(own.variance for own in road), sum(own.reach for own in road)) for road in by_road]
     every = list(zip(*by_road, strict=True))
@@ -212,7 +229,8 @@ def _coefficients(
     words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
     columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
     table = Table("", [Heading("unit"), *columns], [*map(row, shown)], further=further)
-    below = [_sums(measure, unit, headings[road], own) for road, own in found.items()] if measure.adds_up else [NO_SUM]
+    below = [] if measure.adds_up else [NO_SUM]
+    below += [text for road, own in found.items() if (text := _sums(measure, unit, headings[road], own, worst[road]))]
     return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
 
 
@@ -234,7 +252,18 @@ def _number(value: float, form: str) -> Shown:
     return Shown(NOTHING if known is None else unsigned_zero(f"{known:{form}}"), known)
 
 
-def _sums(measure: Measure, unit: str, heading: str, found: FirstOrder) -> str:
-    sigma = measured_text(None if math.isnan(found.sigma) else found.sigma, measure.unit)
+def _sums(measure: Measure, unit: str, heading: str, found: FirstOrder, worst: str) -> str:
+    """Sigma by RSS of what adds up, and the worst case that was found; where none was looked for, ends by slopes."""
+    words = [worst] if worst else []
+    if measure.adds_up:
+        sigma = measured_text(None if math.isnan(found.sigma) else found.sigma, measure.unit)
+        words = [
+            f"sigma {sigma} by RSS",
+            *(words or [f"with all contributors at their ends {_ends(found, unit, measure)}"]),
+        ]
+    return f"{heading}: {'; '.join(words)}" if words else ""
+
+
+def _ends(found: FirstOrder, unit: str, measure: Measure) -> str:
     low, high = (measured_text(None if math.isnan(end) else _in(measure, end, unit), unit) for end in found.ends)
-    return f"{heading}: sigma {sigma} by RSS; with all contributors at their ends {low} … {high}"
+    return f"{low} … {high}"

@@ -37,6 +37,7 @@ class FloatDraw:
     components: tuple[str, ...]
 
     words = "uniform in the room of the trial"
+    fills = True
 
     @property
     def distribution(self) -> Distribution:

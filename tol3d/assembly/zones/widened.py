@@ -205,6 +205,11 @@ class Widened(ZoneDraw):
         return replace(self, size=self.size.following(draw)) if name == self.size.name else self
 
     @property
+    def fills(self) -> bool:
+        """See Filled."""
+        return self.confined.fills
+
+    @property
     def mean_vector(self) -> Array:
         """See ZoneDraw; a bonus widens to all sides alike."""
         return self.confined.mean_vector

@@ -181,6 +181,11 @@ class Confined(ZoneDraw):
         """See Smooth."""
         return self.law.groups(self.zone.ratio)
 
+    @property
+    def fills(self) -> bool:
+        """See Filled: zones are convex, and all laws but a ring's are of all of it."""
+        return not isinstance(self.law, RingFlat)
+
     @cached_property
     def mean_vector(self) -> Array:
         mean = np.zeros(len(self.components))
@@ -229,6 +234,11 @@ class Process(ZoneDraw):
     def words(self) -> str:
         """See ZoneDraw."""
         return "its own process"
+
+    @property
+    def own_laws(self) -> tuple[Distribution, ...]:
+        """See Independent."""
+        return self.laws
 
     @property
     def distribution(self) -> Distribution:

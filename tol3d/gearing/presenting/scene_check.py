@@ -27,6 +27,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title, titled
 from tol3d.report.system_check import law_name, system_blocks
+from tol3d.report.worst_found import worst_blocks
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw
 from tol3d.units import angle_text
@@ -114,7 +115,7 @@ def check_blocks(simulation: Simulation) -> list[PageItem]:
     if any(link.compares for link in model.links):
         return [*link_blocks(model), *mechanics_blocks(model), *system_blocks(simulation)]
     blocks = [*link_blocks(model), *mechanics_blocks(model), *measures_table(model)]
-    return [*blocks, *(contributors_table(model) if model.contributors else ())]
+    return [*blocks, *(contributors_table(model) if model.contributors else ()), *worst_blocks(simulation)]
 
 
 def mechanics_blocks(model: Model) -> list[PageItem]:

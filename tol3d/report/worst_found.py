@@ -1,0 +1,60 @@
+"""Worst cases that were found before any trial, as lines and as a table."""
+
+from typing import Final
+
+from tol3d.report.number import NOTHING, UM_PER_MM, measured_text
+from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.study.simulation import Simulation
+from tol3d.study.task import materials_of, road_of
+from tol3d.study.worst_case import WorstBuild, WorstCase
+from tol3d.study.worst_cases import worst_cases
+from tol3d.system.measure import Measure
+from tol3d.system.statuses import OK
+
+WORST_FOUND: Final = (
+    "worst found: by a search of all builds within the tolerances, at rest; a bound from inside; left out where it "
+    "would take too many builds"
+)
+
+
+def worst_text(simulation: Simulation, measure: Measure, unit: str, found: WorstCase | None) -> str:
+    """The worst builds of a measure in the unit in which it is shown, told where one does not seat; "" for none."""
+    if found is None:
+        return ""
+    ends = (_end_text(simulation, measure, unit, own) for own in (found.low, found.high))
+    jam = found.unseated if found.unseated is not None and not measure.keeps_overlap else None
+    texts = simulation.system.statuses.texts
+    told = f"; builds within the tolerances do not seat: {texts[jam.code]}" if jam is not None else ""
+    return f"worst found {' … '.join(ends)}{told}"
+
+
+def worst_blocks(simulation: Simulation) -> list[PageItem]:
+    """Worst cases of all measures of one number as a table, by each road; nothing where none was looked for."""
+    road = road_of(simulation, materials_of(simulation))
+    measures = [own for own in simulation.system.measures if own.take != "curve"]
+    found = worst_cases(simulation, road, measures)
+    headings = {"analytic": "analytic"} | ({"geometric": simulation.study.engine} if road else {})
+    rows = [
+        Row(
+            own.name,
+            [
+                NOTHING if worst is None else _end_text(simulation, own, own.unit, worst.low if low else worst.high)
+                for low in (True, False)
+                for worst in (found[own.name][shown] for shown in headings)
+            ],
+        )
+        for own in measures
+        if any(found[own.name].values())
+    ]
+    if not rows:
+        return []
+    heads = [Heading(f"{end}, {name}", words=True) for end in ("lowest", "highest") for name in headings.values()]
+    return [*titled("worst found", Table("", heads, rows)), note(WORST_FOUND)]
+
+
+def _end_text(simulation: Simulation, measure: Measure, unit: str, build: WorstBuild | None) -> str:
+    if build is None:
+        return NOTHING
+    value = build.value / UM_PER_MM if unit != measure.unit else build.value
+    text = measured_text(value, unit)
+    return text if build.code == OK else f"{text} ({simulation.system.statuses.texts[build.code]})"

@@ -1,0 +1,288 @@
+"""The worst case of a measure: the builds within the regions of all contributors that lower and that raise it most.
+
+It is looked for from several builds at several positions, all of them side by side in batches: along the gradient to
+where every contributor is furthest (Frank and Wolfe 1956), along it within the regions, and with one contributor at a
+time at its ends and at its middle. The largest gain is taken until nothing gains. Of a sum of effects the first step is
+the last one; else the worst found is a bound from inside, and no proof that nothing is worse.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+import numpy as np
+
+from tol3d.numerics.arrays import Array
+from tol3d.study.regions import (
+    AT_ONCE,
+    Built,
+    Codes,
+    Rows,
+    Space,
+    Standing,
+    builds_in,
+    confined,
+    furthest,
+    gradient_of,
+    random_ends,
+    repeated,
+    settled,
+)
+from tol3d.system.statuses import OK
+
+Side = Literal["low", "high"]
+
+ROUNDS: Final = 40
+USUAL_ROUNDS: Final = 6
+"""Of a search, for what it takes."""
+STEP: Final = 0.05
+"""Of differences, in sigma of each component."""
+SIGMA: Final = 1.0
+"""The same of the slopes by which ends are the first starts."""
+SHARES: Final = 0.5 ** np.arange(9)
+"""Of the way to where all contributors are furthest."""
+STRIDES: Final = 8.0 * 0.25 ** np.arange(9)
+"""Along the gradient within the regions: of the largest component, in its sigma."""
+GAIN: Final = 1e-7
+"""Of how far the measure has been moved: a row that gains less goes no further."""
+
+
+@dataclass(frozen=True, eq=False)
+class WorstBuild:
+    """A build.
+
+    Args:
+        value: of the measure, in its unit.
+        deviations: (components,) [mm, rad, K].
+        positions: at which it is read, of one row.
+        code: its status.
+    """
+
+    value: float
+    deviations: Array
+    positions: Standing
+    code: int = OK
+
+
+@dataclass(frozen=True, eq=False)
+class WorstCase:
+    """What a search has found.
+
+    Args:
+        low, high: the builds that lower and that raise the measure most; None where none is measured.
+        unseated: a build within the regions that does not seat; None where none was met.
+        met: how many such were met.
+        evaluations: builds that it took.
+    """
+
+    low: WorstBuild | None
+    high: WorstBuild | None
+    unseated: WorstBuild | None
+    met: int
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Builds from which a worst case is looked for.
+
+    Args:
+        rows: builds within the regions.
+        positions: of each.
+        signs: 1 for upwards, -1 for downwards (rows,).
+    """
+
+    rows: Rows
+    positions: Standing
+    signs: Array
+
+    @classmethod
+    def both_ways(cls, rows: Rows, positions: Standing) -> "Starts":
+        """Each build taken down and up."""
+        count = len(rows.deviations)
+        twice = {name: np.concatenate([own, own]) for name, own in positions.items()}
+        return cls(Rows.joined([rows, rows]), twice, np.repeat([-1.0, 1.0], count))
+
+    def and_(self, other: "Starts") -> "Starts":
+        """These and others below them."""
+        places = {name: np.concatenate([own, other.positions[name]]) for name, own in self.positions.items()}
+        return Starts(Rows.joined([self.rows, other.rows]), places, np.concatenate([self.signs, other.signs]))
+
+
+def first_starts(space: Space, built: Built, at_rest: Standing, random: int) -> Starts:
+    """The mean build, the ends by its slopes, and builds at random ends: all at rest.
+
+    Args:
+        space, built: which.
+        at_rest: positions of one row.
+        random: how many ends along slopes drawn at random.
+    """
+    mean = builds_in(space, space.mean[None])
+    values, _ = built(mean.deviations, at_rest)
+    slopes = gradient_of(space, built, mean.deviations, at_rest, values, SIGMA)
+    ends = settled(space, furthest(space, np.repeat(mean.deviations, 2, axis=0), np.concatenate([-slopes, slopes])))
+    several = Rows.joined([mean, random_ends(space, random, seed=1)])
+    found = Starts.both_ways(several, repeated(at_rest, random + 1))
+    return found.and_(Starts(ends, repeated(at_rest, 2), np.array([-1.0, 1.0])))
+
+
+def joined(several: Sequence[Starts]) -> Starts:
+    """Starts below each other."""
+    first, *others = several
+    for own in others:
+        first = first.and_(own)
+    return first
+
+
+def builds_a_row(space: Space) -> int:
+    """How many builds a search of usual length takes for each row."""
+    steps = len(SHARES) + len(STRIDES) + 4 * len(space.free) + 3 * len(space.bound)
+    return USUAL_ROUNDS * (2 * len(space.acting) + steps)
+
+
+def worst_case(space: Space, built: Built, starts: Starts, *, most: int, rounds: int = ROUNDS) -> WorstCase:
+    """The worst builds of a measure.
+
+    Args:
+        space: the regions of the contributors.
+        built: the measure.
+        starts: from which it is looked for.
+        most: evaluations after which no step is begun.
+        rounds: steps at most.
+    """
+    search = _Search(space, built, starts)
+    for _ in range(rounds):
+        if search.evaluations > most or not search.step():
+            break
+    return search.found
+
+
+@dataclass(eq=False)
+class _Search:
+    """Rows from all starts, each down or up."""
+
+    space: Space
+    built: Built
+    starts: Starts
+    evaluations: int = 0
+    met: int = 0
+    unseated: WorstBuild | None = None
+    best: dict[Side, WorstBuild] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.rows = Rows.joined([self.starts.rows])
+        self.places, self.signs = self.starts.positions, self.starts.signs
+        self.values = self._values(self.rows.deviations, self.places)
+        self.going = np.isfinite(self.values)
+
+    def _count(self, deviations: Array, positions: Standing) -> tuple[Array, Codes]:
+        self.evaluations += len(deviations)
+        return self.built(deviations, positions)
+
+    def _values(self, deviations: Array, positions: Standing) -> Array:
+        """Of builds, the worst of which are noted."""
+        found, codes = np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)
+        many = max(1, AT_ONCE // max(1, deviations.shape[1]))
+        for first in range(0, len(deviations), many):
+            rows = slice(first, first + many)
+            found[rows], codes[rows] = self._count(deviations[rows], {n: own[rows] for n, own in positions.items()})
+        if (failed := np.flatnonzero(codes != OK)).size:
+            self.met += len(failed)
+            if self.unseated is None:
+                self.unseated = self._build(failed[0], found, deviations, positions, codes)
+        if np.isfinite(found).any():
+            ends: tuple[tuple[Side, int], ...] = (("low", int(np.nanargmin(found))), ("high", int(np.nanargmax(found))))
+            for side, k in ends:
+                known = self.best.get(side)
+                if known is None or (found[k] < known.value if side == "low" else found[k] > known.value):
+                    self.best[side] = self._build(k, found, deviations, positions, codes)
+        return found
+
+    def _build(self, k: int, values: Array, deviations: Array, positions: Standing, codes: Codes) -> WorstBuild:
+        at = {name: own[k : k + 1] for name, own in positions.items()}
+        return WorstBuild(float(values[k]), deviations[k].copy(), at, int(codes[k]))
+
+    @property
+    def found(self) -> WorstCase:
+        """The worst of all."""
+        return WorstCase(self.best.get("low"), self.best.get("high"), self.unseated, self.met, self.evaluations)
+
+    def step(self) -> bool:
+        """The best step of each row that is on its way; whether any is left."""
+        going = np.flatnonzero(self.going)
+        if not going.size or not self.space.acting.size:
+            return False
+        rows, signs = self.rows.at(going), self.signs[going]
+        places = {name: own[going] for name, own in self.places.items()}
+        values = self.values[going]
+        slopes = signs[:, None] * gradient_of(self.space, self._count, rows.deviations, places, values, STEP)
+        steps = Rows.joined([*self._to_ends(rows, slopes), *self._along(rows, slopes), *self._alone(rows, slopes)])
+        steps, many = settled(self.space, steps), len(steps.deviations) // len(going)
+        tried = self._values(steps.deviations, {name: np.concatenate([own] * many) for name, own in places.items()})
+        found = tried.reshape(many, -1).T
+        gains = np.where(np.isfinite(found), signs[:, None] * (found - values[:, None]), -np.inf)
+        best = gains.argmax(axis=1)
+        gain = gains[np.arange(len(going)), best]
+        least = GAIN * max(float(np.nanmax(self.values) - np.nanmin(self.values)), 1e-12)
+        better = np.flatnonzero(gain > 0.0)
+        self.rows.put(going[better], steps.at(best[better] * len(going) + better))
+        self.values[going[better]] = found[better, best[better]]
+        self.going[going[~(gain > least)]] = False
+        return bool(self.going.any())
+
+    def _to_ends(self, rows: Rows, slopes: Array) -> list[Rows]:
+        """Shares of the way to where all are furthest."""
+        ends = furthest(self.space, rows.deviations, slopes)
+        found = []
+        for share in SHARES:
+            part = rows.deviations + share * (ends.deviations - rows.deviations)
+            if share < 1.0:
+                part = self._without_gaps(confined(self.space, part), rows)
+            reach = rows.reach + share * (1.0 - rows.reach)
+            found.append(Rows(part, slopes, reach))
+        return found
+
+    def _without_gaps(self, deviations: Array, rows: Rows) -> Array:
+        """Contributors that may not lie between two of their deviations stay where they are."""
+        for own, region in self.space.free:
+            if not region.fills:
+                deviations[:, own.columns] = rows.deviations[:, own.columns]
+        return deviations
+
+    def _along(self, rows: Rows, slopes: Array) -> list[Rows]:
+        """Strides along the gradient, each component in its sigma, of contributors whose nearest points are known."""
+        scaled = self.space.sigmas * slopes
+        size = np.abs(scaled).max(axis=1, keepdims=True)
+        way = self.space.sigmas * scaled / np.where(size > 0.0, size, 1.0)
+        for own in self.space.bound:
+            way[:, own.columns] = 0.0
+        for own, region in self.space.free:
+            if not region.has_nearest:
+                way[:, own.columns] = 0.0
+        return [
+            Rows(confined(self.space, rows.deviations + stride * way), rows.towards, rows.reach) for stride in STRIDES
+        ]
+
+    def _alone(self, rows: Rows, slopes: Array) -> list[Rows]:
+        """One contributor at its furthest, at its nearest, and half way and all the way to its mean."""
+        found = []
+        for own, region in self.space.free:
+            if not self.space.sigmas[own.columns].any():
+                continue
+            along = slopes[:, own.columns]
+            along = np.where(along.any(axis=1, keepdims=True), along, 1.0)
+            middle = np.broadcast_to(self.space.mean[own.columns], along.shape)
+            here = rows.deviations[:, own.columns]
+            places = [region.furthest(along), region.furthest(-along)]
+            if region.fills or region.has_nearest:
+                places += [region.confined(middle), region.confined((here + middle) / 2)]
+            for place in places:
+                deviations = rows.deviations.copy()
+                deviations[:, own.columns] = place
+                found.append(Rows(deviations, rows.towards, rows.reach))
+        for own in self.space.bound:
+            for share in (1.0, 0.5, 0.0):
+                towards, reach = rows.towards.copy(), rows.reach.copy()
+                towards[:, own.columns], reach[:, own.columns] = slopes[:, own.columns], share
+                found.append(Rows(rows.deviations.copy(), towards, reach))
+        return found
