@@ -24,6 +24,7 @@ SECTIONS: Final[Mapping[str, str]] = {
     "what-if": "tol3d.analyses.what_if:WhatIf",
     "rare": "tol3d.analyses.rare_section:RareEvents",
     "changes": "tol3d.analyses.what_to_change:Changes",
+    "methods": "tol3d.analyses.methods_section:Methods",
 }
 """The class of each section by its name, as an import path."""
 

@@ -15,7 +15,7 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import adjustment, changing, deciding, design, effects, rare, records, showing, step, studies
+from tol3d.cli import adjustment, changing, deciding, design, effects, methods, rare, records, showing, step, studies
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
@@ -27,6 +27,7 @@ __all__ = [
     "design",
     "effects",
     "main",
+    "methods",
     "rare",
     "records",
     "showing",
@@ -48,6 +49,7 @@ COMMANDS = (
     effects.effects,
     deciding.what_if,
     changing.changes,
+    methods.methods,
     records.identify,
     records.rig,
     records.plan_rig,

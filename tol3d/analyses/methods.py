@@ -1,0 +1,346 @@
+"""Methods side by side: a measure's worst case, its root sum of squares (RSS), modified RSS, and simulation.
+
+The half tolerance of a contributor is half of what it does between its two ends, by its slopes at the mean build: of a
+law with limits these; of one without them its 0.135 % and 99.865 % percentiles, as ± 3 sigma of a normal law. RSS is
+the root of the sum of their squares, the worst case by slopes their sum. Modified RSS is RSS × C_f, with
+C_f = 1 + 0.5 (WC − RSS) / (RSS (√n − 1)) of n contributors that act, WC the worst case by slopes: it grows from RSS by
+half of how far WC exceeds it, less where WC is the most that n equal contributors may add up to.
+Source: Drake, Dimensioning and Tolerancing Handbook, 1999, chapter 9.
+
+The worst case is looked for, not known: see study/worst_case.py.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Final, Protocol, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.analyses.fitted_law import fitted
+from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods, MethodsSample, WorstFound
+from tol3d.analyses.response import Response
+from tol3d.analyses.subject import Subject
+from tol3d.numerics.arrays import Array
+from tol3d.runs.run import Run
+from tol3d.runs.summary.values import Unit, made
+from tol3d.study.draws import drawn_ones
+from tol3d.study.regions import Built, Codes, Space, Standing, builds_in, gradient_of, random_ends, repeated, space_of
+from tol3d.study.simulation import Simulation
+from tol3d.study.worst_case import (
+    SIGMA,
+    Starts,
+    WorstBuild,
+    WorstCase,
+    builds_a_row,
+    first_starts,
+    joined,
+    worst_case,
+)
+from tol3d.study.worst_cases import price
+from tol3d.system.measure import Measure
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, SEATED, value_column
+from tol3d.system.region import region_of
+from tol3d.system.road import ANALYTIC_ROAD
+
+MOST_TRIALS: Final = 20_000
+"""Of a scene whose study has more, where nobody says how many."""
+CONTACTS: Final = 6_000_000
+"""Of the worst case of one measure: some seconds."""
+AT_ONCE: Final = 65_536
+"""Trials."""
+PLACES: Final = 4
+"""Drawn positions at which a worst case begins at the mean build and at random ends."""
+WORST_TRIALS: Final = 3
+"""Of each side, from which it begins too."""
+RANDOM: Final = 3
+JUDGED: Final = 64
+"""Trials of each side that are taken into the regions for it."""
+FEWEST: Final = 4
+"""Rows of a search: the mean build and an end by slopes, each side."""
+TOO_MANY: Final = 20.0
+"""How many times as many builds as are paid for is too many to begin."""
+NEGLIGIBLE: Final = 1e-9
+"""Of all half tolerances: a contributor that does less does nothing."""
+CONSTANT: Final = 1e-12
+"""Of values, which are the same if they differ by less."""
+FEWEST_FITTED: Final = 100
+LOW, HIGH = 0.00135, 0.99865
+
+
+class Trials(Protocol):
+    """Trials that stand for the simulation."""
+
+    def column(self, measure: str) -> Array:
+        """A measure (trials,) in its unit, not a number of those that failed."""
+        ...
+
+    def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
+        """Deviations (n, components) and positions of some trials."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """Trials that are drawn for this, as the study draws them.
+
+    Args:
+        names: of the measures.
+        values: (trials, measures).
+        deviations, positions: of them.
+    """
+
+    names: tuple[str, ...]
+    values: Array
+    deviations: Array
+    positions: Standing
+
+    @classmethod
+    def of(cls, response: Response, count: int) -> "Drawn":
+        """So many of a response."""
+        deviations, positions = response.drawn(count)
+        found = []
+        for first in range(0, count, AT_ONCE):
+            rows = slice(first, first + AT_ONCE)
+            one = response.values(deviations[rows], {name: own[rows] for name, own in positions.items()})
+            found.append(np.where(one.seated, one.values, np.nan))
+        return cls(response.names, np.concatenate(found), deviations, positions)
+
+    def column(self, measure: str) -> Array:
+        """See Trials."""
+        return np.asarray(self.values[:, self.names.index(measure)])
+
+    def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
+        """See Trials."""
+        return self.deviations[numbers], {name: own[numbers] for name, own in self.positions.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """Trials that a run has kept; their builds are drawn again.
+
+    Args:
+        simulation: the run's.
+        columns: by measure (trials,), not a number of those that failed.
+    """
+
+    simulation: Simulation
+    columns: Mapping[str, Array]
+
+    def column(self, measure: str) -> Array:
+        """See Trials."""
+        return self.columns[measure]
+
+    def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
+        """See Trials."""
+        found = drawn_ones(self.simulation, numbers.tolist())
+        return found.deviations, found.positions
+
+
+def trials_of(subject: Subject, response: Response, count: int | None = None) -> Trials:
+    """The trials of a run, where it has kept those of all measures and no other number is asked for; else drawn ones.
+
+    Args:
+        subject: the scene, or the run of it.
+        response: of its measures.
+        count: of trials; the study's if not given, MOST_TRIALS at most.
+    """
+    run = subject.run
+    if run is not None and count is None and run.keeps_trials:
+        road = ANALYTIC if response.road is None else GEOMETRIC
+        names = {name: (value_column(road, name), f"status:{name}") for name in response.names}
+        if all(value in run.column_names for value, _ in names.values()):
+            return Kept(response.simulation, {name: _kept(run, *own) for name, own in names.items()})
+    return Drawn.of(response, count or min(response.simulation.study.trials, MOST_TRIALS))
+
+
+def _kept(run: Run, value: str, status: str) -> Array:
+    names = [value, *([status] if status in run.column_names else [])]
+    found = run.columns(*names)
+    values = np.asarray(found[value], dtype=np.float64)
+    return np.where(np.asarray(found[status]).astype(str) == SEATED, values, np.nan) if status in found else values
+
+
+def methods(
+    response: Response, trials: Trials | None = None, activity: Callable[[str], None] = lambda text: None
+) -> Methods:
+    """All methods for each measure of a response.
+
+    Args:
+        response: of the scene.
+        trials: of the simulation; as many as the study has, MOST_TRIALS at most, if not given.
+        activity: told of what goes on.
+    """
+    before = response.evaluations
+    activity("trials")
+    own_trials = trials or Drawn.of(response, min(response.simulation.study.trials, MOST_TRIALS))
+    found = {}
+    for own in response.measures:
+        activity(own.name)
+        found[own.name] = _of_measure(response.of(own.name), own, own_trials)
+    return made(
+        Methods,
+        scene=response.simulation.system.name,
+        road="analytic" if response.road is None else "geometric",
+        measures=found,
+        evaluations=response.evaluations - before,
+    )
+
+
+def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMethods:
+    before = response.evaluations
+    source = response.curves.get(own.name, own)
+    system = response.simulation.system
+    space = space_of(system, source, response.draws)
+    built = _built(response)
+    at_rest = response.positions(1, "rest")
+    mean = space.mean[None]
+    value, _ = built(mean, at_rest)
+    slopes = gradient_of(space, built, mean, at_rest, value, SIGMA)[0]
+    halves = _half_tolerances(space, slopes)
+    column = trials.column(own.name)
+    worst = _worst(response, source, space, built, trials, column)
+    total = float(np.sum(halves))
+    rss, count = float(np.sqrt(np.sum(halves**2))), int(np.count_nonzero(halves > NEGLIGIBLE * total))
+    factor = modified_factor(total, rss, count)
+    return made(
+        MeasureMethods,
+        unit=cast(Unit, own.unit),
+        lower_limit=None if own.lower_limit is None else own.lower_limit * own.per_internal,
+        upper_limit=None if own.upper_limit is None else own.upper_limit * own.per_internal,
+        mean=_known(value[0]),
+        contributors=count,
+        by_slopes=total,
+        rss=rss,
+        factor=factor,
+        modified_rss=None if factor is None else factor * rss,
+        worst=None if worst is None else _worst_found(response, space, worst),
+        simulation=_sample(column, worst),
+        evaluations=response.evaluations - before,
+    )
+
+
+def modified_factor(worst: float, rss: float, count: int) -> float | None:
+    """C_f of modified RSS: Drake's motor of 11 dimensions has 1.326; None where one contributor acts alone, or none.
+
+    >>> round(modified_factor(0.0955, 0.0381, 11), 3)
+    1.325
+    """
+    if count < 2 or not rss > 0.0:
+        return None
+    return 1.0 + 0.5 * (worst - rss) / (rss * (math.sqrt(count) - 1.0))
+
+
+def _built(response: Response) -> Built:
+    def built(deviations: Array, positions: Standing) -> tuple[Array, Codes]:
+        found = response.values(deviations, positions)
+        return found.values[:, 0], found.codes[:, 0]
+
+    return built
+
+
+def _half_tolerances(space: Space, slopes: Array) -> Array:
+    """Of each contributor that acts, and of each of its features that are drawn by themselves (parts,)."""
+    found = [np.zeros(0)]
+    for own in space.drawings:
+        if own.acts and slopes[own.columns].any():
+            found.append(region_of(own.draw, turning=own.turning).halves(slopes[own.columns]))
+    return np.concatenate(found)
+
+
+def _worst(
+    response: Response, source: Measure, space: Space, built: Built, trials: Trials, values: Array
+) -> WorstCase | None:
+    """The worst case from the mean build, ends by slopes, the worst trials, and other positions, as far as it pays."""
+    road = ANALYTIC_ROAD if response.road is None else response.simulation.study.engine
+    builds = CONTACTS / price(response.simulation, road, source)
+    rows = builds / max(1, builds_a_row(space))
+    at_rest = response.positions(1, "rest")
+    if not len(space.acting) or FEWEST * builds_a_row(space) > TOO_MANY * builds:
+        return None
+    starts = [first_starts(space, built, at_rest, 0), *_worst_trials(space, built, trials, values)]
+    if response.simulation.system.streams:
+        drawn = response.positions(PLACES, "drawn")
+        starts.append(Starts.both_ways(builds_in(space, np.repeat(space.mean[None], PLACES, axis=0)), drawn))
+    starts.append(Starts.both_ways(random_ends(space, RANDOM, seed=1), repeated(at_rest, RANDOM)))
+    taken = list(accumulate(len(own.signs) for own in starts))
+    afforded = [own for own, count in zip(starts, taken, strict=True) if count <= max(rows, FEWEST)]
+    return worst_case(space, built, joined(afforded), most=int(builds))
+
+
+def _worst_trials(space: Space, built: Built, trials: Trials, values: Array) -> list[Starts]:
+    """The worst trials of each side, within the regions: laws without limits of their own draw beyond these."""
+    found = []
+    for sign in (-1.0, 1.0):
+        ranked = np.argsort(-sign * values)  # those that failed are last
+        ranked = ranked[np.isfinite(values[ranked])][:JUDGED]
+        if not ranked.size:
+            continue
+        deviations, places = trials.builds(ranked)
+        rows = builds_in(space, deviations)
+        within, _ = built(rows.deviations, places)
+        best = np.argsort(np.where(np.isfinite(within), -sign * within, np.inf))[:WORST_TRIALS]
+        found.append(Starts(rows.at(best), {n: own[best] for n, own in places.items()}, np.full(len(best), sign)))
+    return found
+
+
+def _worst_found(response: Response, space: Space, worst: WorstCase) -> WorstFound:
+    def told(build: WorstBuild | None) -> BuildFound | None:
+        if build is None:
+            return None
+        return made(
+            BuildFound,
+            measured=_known(build.value),
+            status=response.simulation.system.statuses.texts[build.code],
+            deviations={
+                own.name: (build.deviations[space.drawings[k].columns] / own.per_unit + 0.0).tolist()
+                for k, own in enumerate(response.contributors)
+                if space.drawings[k].acts
+            },
+            positions={name: float(own[0]) for name, own in build.positions.items()},
+        )
+
+    return made(
+        WorstFound,
+        low=told(worst.low),
+        high=told(worst.high),
+        unseated=told(worst.unseated),
+        met=worst.met,
+        evaluations=worst.evaluations,
+    )
+
+
+def _sample(column: Array, worst: WorstCase | None) -> MethodsSample:
+    """Estimates by trials (n,), of which those that failed are not numbers."""
+    own = column[np.isfinite(column)]
+    mean, sigma = (float(own.mean()), float(own.std(ddof=1))) if len(own) > 1 else (math.nan, math.nan)
+    centred = own - mean if len(own) > 1 else own
+    varies = sigma > CONSTANT * (abs(mean) or 1.0)
+    enough = len(own) * LOW >= 1.0
+    beyond = 0
+    if worst is not None and worst.low is not None and worst.high is not None:
+        slack = CONSTANT * max(abs(worst.low.value), abs(worst.high.value))
+        beyond = int(np.sum((own < worst.low.value - slack) | (own > worst.high.value + slack)))
+    return made(
+        MethodsSample,
+        trials=len(column),
+        failed=len(column) - len(own),
+        mean=_known(mean),
+        sigma=_known(sigma),
+        low_3sigma=_known(mean - 3 * sigma),
+        high_3sigma=_known(mean + 3 * sigma),
+        p0_135=_known(float(np.quantile(own, LOW))) if enough else None,
+        p99_865=_known(float(np.quantile(own, HIGH))) if enough else None,
+        sample_min=_known(float(own.min())) if len(own) else None,
+        sample_max=_known(float(own.max())) if len(own) else None,
+        skewness=_known(float((centred**3).mean() / sigma**3)) if varies else None,
+        kurtosis=_known(float((centred**4).mean() / sigma**4 - 3.0)) if varies else None,
+        beyond_worst=beyond,
+        law=fitted(own) if varies and len(own) >= FEWEST_FITTED else None,
+    )
+
+
+def _known(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,140 @@
+"""Methods side by side as tables: of each measure a row a method, and the worst builds that were found."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods
+from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, number_text, value_text
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
+from tol3d.system.contributor import Contributor
+
+MOST_SHOWN: Final = 12
+"""Contributors of a worst build."""
+NOTHING: Final = "–"
+WORDS: Final = (
+    "worst found: of all builds within the tolerances, by a search from several builds and positions; a bound from "
+    "inside. By slopes: sum of all half tolerances at the mean build. RSS: root of the sum of their squares; a half "
+    "tolerance is half of what a contributor does between its ends, ±3 sigma of laws without limits. Modified RSS: "
+    "RSS × C_f, C_f = 1 + 0.5 (WC − RSS)/(RSS (√n − 1)), WC that by slopes, n contributors that act"
+)
+
+
+def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
+    """A table a measure.
+
+    Args:
+        found: by all methods.
+        contributors: of the scene.
+    """
+    road = "analytic" if found.road == "analytic" else "3D simulation"
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {road}", "")))]
+    for name, own in found.measures.items():
+        blocks += titled(f"{name}: {_limits(own)}", Table("", HEADS, [*_rows(own)]))
+        blocks += _told(own)
+        if own.worst is not None:
+            blocks += _builds(own, contributors)
+    return page(*blocks, BLANK, note(WORDS), note(f"builds that were evaluated: {found.evaluations}"))
+
+
+HEADS: Final = (
+    Heading("low"),
+    Heading("high"),
+    Heading("unit", words=True),
+    Heading("half range"),
+    Heading("of the limits [%]", optional=True),
+)
+
+
+def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:
+    """Each method with its low and its high estimate, in the measure's unit; None for one that is not known."""
+    if own.worst is not None:
+        low, high = own.worst.low, own.worst.high
+        yield "worst found", None if low is None else low.measured, None if high is None else high.measured
+    for words, half in (("worst by slopes", own.by_slopes), ("modified RSS", own.modified_rss), ("RSS", own.rss)):
+        known = None if own.mean is None or half is None else (own.mean - half, own.mean + half)
+        yield words, *(known or (None, None))
+    sample = own.simulation
+    yield "simulation, ±3 sigma", sample.low_3sigma, sample.high_3sigma
+    yield "simulation, 0.135 % and 99.865 %", sample.p0_135, sample.p99_865
+    if sample.law is not None:
+        yield f"fitted law, {sample.law.name}", sample.law.low, sample.law.high
+    yield "least and largest trial", sample.sample_min, sample.sample_max
+
+
+def _rows(own: MeasureMethods) -> Iterator[Row]:
+    width = None if own.lower_limit is None or own.upper_limit is None else own.upper_limit - own.lower_limit
+    for words, low, high in intervals_of(own):
+        half = None if low is None or high is None else (high - low) / 2
+        share = None if half is None or not width else 200 * half / width
+        cells = (
+            Shown(value_text(low, own.unit), low),
+            Shown(value_text(high, own.unit), high),
+            "′, ″" if own.unit == "arcmin" else UNIT_SIGNS[own.unit],
+            Shown(value_text(half, own.unit), half),
+            Shown(NOTHING if share is None else f"{share:.1f}", share),
+        )
+        yield Row(words, cells)
+
+
+def _limits(own: MeasureMethods) -> str:
+    given = [
+        f"{sign} {limit_text(limit, own.unit)}"
+        for sign, limit in (("≥", own.lower_limit), ("≤", own.upper_limit))
+        if limit is not None
+    ]
+    return ", ".join(given) or "no limits"
+
+
+def _told(own: MeasureMethods) -> Iterator[PageItem]:
+    sample, law = own.simulation, own.simulation.law
+    count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} that act"
+    factor = f"C_f {own.factor:.3f}" if own.factor is not None else "no C_f of fewer than two"
+    yield note(f"mean build {measured_text(own.mean, own.unit)}; {count}, {factor}")
+    shape = [
+        f"{word} {NOTHING if value is None else f'{value:.3f}'}"
+        for word, value in (("skewness", sample.skewness), ("excess kurtosis", sample.kurtosis))
+    ]
+    failed = f", {sample.failed} failed" if sample.failed else ""
+    words = f"{sample.trials} trials{failed}: mean {measured_text(sample.mean, own.unit)}, "
+    words += f"sigma {measured_text(sample.sigma, own.unit)}, {', '.join(shape)}"
+    yield note(words)
+    if law is not None:
+        parameters = ", ".join(f"{name} {number_text(float(f'{value:.5g}'))}" for name, value in law.parameters.items())
+        verdict = "not rejected" if law.p_value > REJECTED else "rejected, the nearest of four"
+        test = f"Anderson–Darling A² {law.statistic:.3f}, p {law.p_value:.3g} by {law.replicates} refitted samples"
+        yield note(f"fitted law {law.name} ({parameters}): {test} of {law.trials} trials: {verdict}")
+    if sample.beyond_worst:
+        few = f"{sample.beyond_worst} of {sample.trials} trials"
+        yield warning(f"{few} lie beyond the worst found: laws without limits of their own draw beyond ±3 sigma")
+    if own.worst is None:
+        yield note("worst case: not looked for" + (", it would take too many builds" if own.contributors else ""))
+    elif own.worst.unseated is not None:
+        status = own.worst.unseated.status
+        yield warning(f"builds within the tolerances do not seat: {status}; {own.worst.met} were met in the search")
+
+
+REJECTED: Final = 0.05
+
+
+def _builds(own: MeasureMethods, contributors: Sequence[Contributor]) -> Iterator[PageItem]:
+    """The deviations of the worst builds, those that differ first."""
+    assert own.worst is not None
+    builds = {word: build for word, build in (("lowest", own.worst.low), ("highest", own.worst.high)) if build}
+    if own.worst.unseated is not None and own.worst.unseated.measured is None:
+        builds["does not seat"] = own.worst.unseated
+    if not builds:
+        return
+    rows = [
+        Row(each.name, (*(_deviations(build, each.name) for build in builds.values()), UNIT_SIGNS[each.unit]))
+        for each in contributors
+        if any(each.name in build.deviations for build in builds.values())
+    ]
+    heads = [Heading(f"{word}: {build.status}", words=True) for word, build in builds.items()]
+    table = Table("worst found", [*heads, Heading("unit", words=True)], rows).shortened(MOST_SHOWN)
+    yield table
+    yield note(f"by {own.worst.evaluations} builds")
+
+
+def _deviations(build: BuildFound, name: str) -> str:
+    values = build.deviations.get(name, ())
+    return ", ".join(number_text(float(f"{value:.4g}")) for value in values)
