@@ -70,7 +70,7 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
     enough = min(FREQUENT, FREQUENT_SHARE * count)
     if enough <= failing <= count - enough:
         if shapley is not None:
-            words = f"Shapley effects on failing: {failing} of {count} builds fail"
+            words = "Shapley effects on failing"
             pairs = zip(shapley.failures[:, k].tolist(), shapley.failure_errors[:, k].tolist(), strict=True)
             return Blame("simulation", words, dict(zip(shapley.names, pairs, strict=True)))
         found = sampled.failures
@@ -83,18 +83,16 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
             }
             for shares, errors in ((found.first, found.first_errors), (found.total, found.total_errors))
         )
-        return Blame("simulation", f"Sobol' indices of failing: {failing} of {count} builds fail", first, total)
+        return Blame("simulation", "Sobol' indices of failing", first, total)
     sides: Sequence[tuple[Side, float | None]] = (("low", measure.lower_limit), ("high", measure.upper_limit))
     limits = [(side, limit * measure.per_internal) for side, limit in sides if limit is not None]
     if not limits:
-        return Blame(
-            None, "no limits" if failing == 0 else f"{failing} of {count} builds do not seat: too few to blame"
-        )
+        return Blame(None, "no limits" if failing == 0 else "too few to blame anyone for them")
     if response.rough:
-        return Blame(None, f"no smooth map from normals: {', '.join(response.rough)}; and {failing} builds fail")
+        return Blame(None, f"too few to blame anyone, and no smooth map from normals: {', '.join(response.rough)}")
     points = [own for side, limit in limits for own in _points(LimitState(response, limit, side), seed)]
     if not points:
-        return Blame(None, f"no design point found; {failing} of {count} builds fail")
+        return Blame(None, "no design point found")
     likely = ndtr(-np.array([own.beta for own in points]))
     weights = likely / likely.sum() if likely.sum() > 0.0 else np.full(len(points), 1.0 / len(points))
     shares = failure_shares(response, points, weights)

@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import Field
 
 from tol3d.analyses.blame import Blame, BlameBy, blame_of
-from tol3d.analyses.pick_freeze import NORMAL_95, POSITION, Pairs, PickFreeze, inputs_of, pick_freeze
+from tol3d.analyses.pick_freeze import NORMAL_95, POSITION, Pairs, PickFreeze, acting_names, inputs_of, pick_freeze
 from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects, shapley_effects
 from tol3d.errors import InputError
@@ -27,6 +27,9 @@ from tol3d.system.road import ANALYTIC_ROAD
 
 PLACES: Final = 16
 """Positions at which changes are averaged."""
+FEWEST_PLACES: Final = 4
+MOST_SLOPES: Final = 20_000
+"""Builds that slopes may take; of very many components fewer positions are averaged."""
 MOST_EVALUATIONS: Final = 150_000
 """Of pairs and what is mixed of them, for measures that are asked together."""
 MOST_MINUTES: Final = 0.5
@@ -171,7 +174,8 @@ def default_base(response: Response, inputs: int) -> int:
 
 def _averaged(response: Response, seed: int) -> tuple[Array, Array]:
     """Slopes per unit and changes over the tolerance (measures, contributors), averaged over positions."""
-    places = PLACES if response.simulation.system.streams else 1
+    builds = 2 * max(len(response.acting_columns), 1)
+    places = min(max(MOST_SLOPES // builds, FEWEST_PLACES), PLACES) if response.simulation.system.streams else 1
     positions = response.positions(places, "drawn" if places > 1 else "rest", seed)
     slopes, changes = [], []
     for k in range(places):
@@ -201,8 +205,8 @@ def _of_measure(
     blame: Blame,
 ) -> MeasureEffects:
     measure, values = response.measures[k], sampled.values
-    acting = {own.name for own in response.acting(measure)}
-    place = {name: i for i, own in enumerate(sampled.inputs) for name in own.names}
+    acting = acting_names(response.of(measure.name))
+    place = {name: i for i, own in enumerate(sampled.inputs) for name in own.names if acting.intersection(own.names)}
     shares: dict[str, tuple[float, float]] = {}
     if divided is not None:
         numbers = zip(divided.values[:, k].tolist(), divided.value_errors[:, k].tolist(), strict=True)

@@ -80,7 +80,8 @@ def _words(own: MeasureEffects) -> Sequence[str]:
     if own.not_seated:
         told.append(f"{own.not_seated} of {own.builds} builds do not seat: left out of indices, counted as failures")
     if own.failing_ppm is not None:
-        told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; by {own.failures_words}")
+        by = "shares by " if own.failures_by else ""
+        told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; {by}{own.failures_words}")
     return told
 
 

@@ -211,7 +211,7 @@ class Response:
             deviations, positions: as of `values`.
         """
         rows = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
-        steps, acting = self._steps, self._acting
+        steps, acting = self._steps, self.acting_columns
         shifts = np.zeros((2 * len(acting), self.components))
         shifts[np.arange(len(acting)), acting] = steps[acting]
         shifts[len(acting) + np.arange(len(acting)), acting] = -steps[acting]
@@ -230,7 +230,7 @@ class Response:
         return found
 
     @cached_property
-    def _acting(self) -> NDArray[np.int64]:
+    def acting_columns(self) -> NDArray[np.int64]:
         """Columns of contributors that act on some of the measures."""
         names = {own.name for measure in self.measures for own in self.acting(measure)}
         return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
