@@ -30,6 +30,9 @@ SHORT_NAMES: Final = {
     "DEGREES": "deg",
     "FOOT": "ft",
     "RADIAN": "rad",
+    "MILLIMETRE": "mm",
+    "CENTIMETRE": "cm",
+    "METRE": "m",
 }
 METRE_NAMES: Final = {1.0: "mm", 1e3: "m", 10.0: "cm", 1e-3: "um", 1e-6: "nm"}
 

@@ -1,0 +1,107 @@
+"""What the 130 tolerances of six NIST models mean in a scene, against a table made by hand from the frames."""
+
+import csv
+from collections import Counter
+
+import pytest
+from nist import FILES, step_text
+from places import TESTS
+
+from tol3d.step import frame
+from tol3d.step.feature import NamedFeature
+from tol3d.step.meaning import Meaning, Meanings, meanings, surfaces_of
+from tol3d.step.nominals import disagreements, measured
+from tol3d.step.outline import StepText
+from tol3d.step.surfaces import Surface
+
+with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
+    ROWS = list(csv.DictReader(opened))
+
+
+@pytest.mark.parametrize("model", FILES)
+def test_every_tolerance_has_the_frame_and_the_class_of_the_table(model: str) -> None:
+    text = step_text(model)
+    read = [
+        (str(own.id), own.name, frame(own), meaning.how, meaning.kind, meaning.why)
+        for own, meaning in zip(text.tolerances, meanings(text), strict=True)
+    ]
+    assert read == [
+        tuple(row[each] for each in ("id", "name", "frame", "class", "kind", "remark"))
+        for row in ROWS
+        if row["model"] == model
+    ]
+
+
+def test_the_classes_add_up_to_the_files() -> None:
+    assert Counter(row["class"] for row in ROWS) == {"said": 64, "approximately": 29, "left out": 37}
+    found = [each for model in FILES for each in meanings(step_text(model))]
+    assert len(found) == 130
+    assert all(bool(each.why) == (each.how != "said") for each in found)
+    assert all(bool(each.kind) == (each.how != "left out") for each in found)
+
+
+def changed(model: str, identifier: int, **changes: object) -> Meaning:
+    """The meaning of a tolerance in a file in which it is changed."""
+    text = step_text(model)
+    fields = {name: getattr(text, name) for name in ("file", "structure", "datums", "dimensions", "remarks")}
+    tolerances = tuple(
+        type(each)(**{**vars(each), **changes}) if each.id == identifier else each for each in text.tolerances
+    )
+    found = Meanings(StepText(tolerances=tolerances, **fields), surfaces_of(text)).all
+    return next(each for each in found if each.tolerance == identifier)
+
+
+def feature(model: str, identifier: int) -> NamedFeature:
+    return next(each.feature for each in step_text(model).tolerances if each.id == identifier)
+
+
+def test_modifiers_without_a_word_are_dropped_aloud() -> None:
+    assert changed("FTC-10", 19674, modifiers=("free state",)).why == "the free state is dropped"
+    tangent = changed("FTC-10", 18842, modifiers=("tangent plane",))
+    assert (tangent.how, tangent.why) == ("approximately", "the tangent plane is taken as the face itself")
+    assert "separate requirement is dropped" in changed("FTC-10", 19674, modifiers=("separate requirement",)).why
+
+
+def test_a_bonus_needs_a_size_with_limits() -> None:
+    text = step_text("FTC-10")
+    holes = next(each for each in meanings(text) if each.tolerance == 19313)
+    assert holes.how == "said"
+    sizes = tuple(
+        each for each in text.dimensions if set(each.features[0].faces) != set(feature("FTC-10", 19313).faces)
+    )
+    bare = StepText(text.file, text.structure, text.datums, text.tolerances, sizes, ())
+    found = next(each for each in meanings(bare) if each.tolerance == 19313)
+    assert (found.how, found.why) == ("approximately", "without a size that has limits there is no bonus")
+
+
+def test_an_orientation_that_does_not_refine_its_location_only_limits() -> None:
+    other_zone = changed("FTC-10", 19125, zone="width")
+    assert (other_zone.how, other_zone.kind) == ("approximately", "inspected_orientation")
+    to_another = next(each for each in step_text("FTC-10").tolerances if each.id == 18842)
+    other_datum = changed("FTC-10", 19125, datums=to_another.datums)
+    assert "its datums are not the first of #19103" in other_datum.why
+
+
+def test_a_tolerance_without_a_value_or_a_kind_is_left_out() -> None:
+    assert changed("FTC-10", 19125, magnitude=None).why == "the file states no value"
+    assert (
+        changed("FTC-10", 19125, kind="geometric tolerance without a kind").why
+        == "the file states no kind of tolerance"
+    )
+
+
+def test_nominal_sizes_and_distances_are_those_of_the_faces() -> None:
+    compared = 0
+    for model in FILES:
+        text, surfaces = step_text(model), surfaces_of(step_text(model))
+        assert list(disagreements(text, surfaces)) == []
+        compared += sum(measured(each, surfaces) is not None and each.nominal is not None for each in text.dimensions)
+    assert compared == 100
+
+
+def test_a_wrong_unit_is_remarked_upon() -> None:
+    text = step_text("STC-06")
+    inches = {
+        face: Surface(own.kind, own.at, own.direction, own.radius / 25.4) for face, own in surfaces_of(text).items()
+    }
+    assert any("is ⌀0.8125 ±0.02 where its faces have 0.8125 mm" in each.why for each in disagreements(text, inches))

@@ -1,0 +1,266 @@
+"""What each tolerance of a STEP file means in a scene: said, said approximately, or left out, each with its reason.
+
+The grammar is that of docs/assemblies.md. A tolerance is *said* where a zone of the grammar limits the same features in
+the same frame; *approximately* where something of it is lost, which is named; else it is *left out*, and why. Each
+tolerance has one meaning, so their counts add up to the file's.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, Literal
+
+from tol3d.step.datum import Compartment
+from tol3d.step.outline import StepText
+from tol3d.step.shape import Shape, shape_of
+from tol3d.step.surfaces import Surface, aligned, dot, product_unit, surface_of
+from tol3d.step.tolerance import Tolerance
+
+Class = Literal["said", "approximately", "left out"]
+
+LOCATIONS: Final = frozenset(
+    ("position", "surface profile", "concentricity", "coaxiality", "symmetry", "circular runout", "total runout")
+)
+ORIENTATIONS: Final = frozenset(("perpendicularity", "parallelism", "angularity"))
+MATERIAL: Final = frozenset(
+    (
+        "maximum material requirement",
+        "maximum material condition",
+        "least material requirement",
+        "least material condition",
+    )
+)
+DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder"))
+SQUARE: Final = 1e-6  # cosine between directions that are square
+
+DROPPED: Final = {
+    "free state": "the free state is dropped",
+    "tangent plane": "the tangent plane is taken as the face itself",
+    "statistical tolerance": "that it is statistical is lost: the law of the zone says how deviations lie",
+}
+"""Modifiers that today's grammar has no word for, and what is lost without them."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What one tolerance means in a scene.
+
+    Args:
+        tolerance: its `#id`.
+        how: said, approximately or left out.
+        kind: the kind of tolerance or measure in the scene; empty where it is left out.
+        shape: what it is of, in words.
+        why: what is lost, or why it is left out; empty where it is said.
+    """
+
+    tolerance: int
+    how: Class
+    kind: str
+    shape: str
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Meanings:
+    """The meanings of a file's tolerances.
+
+    Args:
+        text: the file.
+        surfaces: from each face to its surface; that of the text (`surfaces_of`), or of the geometry.
+    """
+
+    text: StepText
+    surfaces: Mapping[int, Surface]
+
+    @cached_property
+    def all(self) -> tuple[Meaning, ...]:
+        """One of each tolerance, in the file's order."""
+        located: dict[int, int] = {}  # from each face to the tolerance that locates it
+        found: dict[int, Meaning] = {}
+        uppers_first = sorted(
+            self.text.tolerances, key=lambda each: (each.above is not None, each.kind in ORIENTATIONS)
+        )
+        for each in uppers_first:
+            found[each.id] = meaning = self.of(each, located, found)
+            if meaning.how != "left out" and each.kind in LOCATIONS and each.above is None:
+                for face in each.feature.faces:
+                    located.setdefault(face, each.id)
+        return tuple(found[each.id] for each in self.text.tolerances)
+
+    @cached_property
+    def by_id(self) -> dict[int, Tolerance]:
+        """The tolerances by where they stand."""
+        return {each.id: each for each in self.text.tolerances}
+
+    @cached_property
+    def datum_shapes(self) -> dict[str, Shape]:
+        """The shape of each datum that is taken from one feature, by its letter."""
+        return {
+            each.letter: shape_of(each.features[0], self.surfaces, self.text.structure)
+            for each in self.text.datums
+            if len(each.features) == 1
+        }
+
+    def of(self, tolerance: Tolerance, located: Mapping[int, int], found: Mapping[int, Meaning]) -> Meaning:
+        """The meaning of one tolerance.
+
+        Args:
+            tolerance: it.
+            located: the tolerance that locates each face, of those before it.
+            found: the meanings before it.
+        """
+        shape = shape_of(tolerance.feature, self.surfaces, self.text.structure)
+        why_not = self.obstacle(tolerance, shape) or next(filter(None, map(self.datum_obstacle, tolerance.datums)), "")
+        if why_not:
+            return Meaning(tolerance.id, "left out", "", shape.words, why_not)
+        if tolerance.above is not None:
+            return self.lower_segment(tolerance, shape, found.get(tolerance.above))
+        kind, lost = self.kind_and_loss(tolerance, shape)
+        before = next((located[face] for face in tolerance.feature.faces if face in located), None)
+        if before is not None and tolerance.kind in LOCATIONS and tolerance.datums:
+            told = f"#{before} locates the feature: this one only limits what is inspected"
+            return Meaning(tolerance.id, "approximately", "inspected_position", shape.words, told)
+        if before is not None and tolerance.kind in ORIENTATIONS:
+            told = self.refining_loss(tolerance, self.by_id[before])
+            if told:
+                return Meaning(tolerance.id, "approximately", "inspected_orientation", shape.words, told)
+        lost = lost or self.modifier_loss(tolerance)
+        return Meaning(tolerance.id, "approximately" if lost else "said", kind, shape.words, lost)
+
+    def obstacle(self, tolerance: Tolerance, shape: Shape) -> str:
+        """Why the feature or the kind of a tolerance cannot be said at all; empty where it can."""
+        if tolerance.magnitude is None:
+            return "the file states no value"
+        if tolerance.feature.lies_on != "faces":
+            return f"it is of {tolerance.feature.lies_on}, not of faces"
+        if tolerance.per_unit is not None:
+            return "a zone per unit of length or area"
+        if tolerance.kind in ("roundness", "cylindricity", "line profile") or tolerance.kind == "straightness":
+            return f"{tolerance.kind} is form of lines or round surfaces"
+        allowed = {
+            "position": ("plane", "slot", "cylinder", "cylinders", "sphere", "spheres"),
+            "surface profile": ("plane", "planes", "slot"),
+            "flatness": ("plane",),
+            "circular runout": ("cylinder", "plane"),
+            "total runout": ("cylinder", "plane"),
+            "concentricity": ("cylinder", "cylinders"),
+            "coaxiality": ("cylinder", "cylinders"),
+            "symmetry": ("plane", "slot", "cylinder"),
+            **dict.fromkeys(ORIENTATIONS, ("plane", "slot", "cylinder", "cylinders")),
+        }.get(tolerance.kind)
+        if allowed is None:
+            return "the file states no kind of tolerance"
+        return "" if shape.kind in allowed else f"{tolerance.kind} of {shape.words}"
+
+    def datum_obstacle(self, compartment: Compartment) -> str:
+        """Why a compartment of a datum system cannot be said; empty where it can."""
+        if len(compartment.references) > 2:
+            return f"the common datum {compartment.letters} of {len(compartment.references)} features"
+        for each in compartment.references:
+            datum = self.text.datum(each.letter)
+            if datum is None:
+                return f"datum {each.letter}, which the file does not have"
+            if datum.targets:
+                return f"datum {each.letter} at its targets"
+            shape = self.datum_shapes.get(each.letter)
+            if shape is None or shape.kind not in DATUM_SHAPES:
+                return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
+            if len(compartment.references) == 2 and shape.kind != "cylinder":
+                return f"the common datum {compartment.letters} of {shape.words}"
+            if set(each.modifiers) - MATERIAL:
+                return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
+            if any("least" in word for word in each.modifiers):
+                return f"datum {each.letter} at its least material boundary"
+        return ""
+
+    def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
+        """The kind in the scene, and what is lost by it; empty where nothing is."""
+        if tolerance.kind == "surface profile" and not tolerance.datums:
+            return "flatness", "a profile without datums is a flatness"
+        if tolerance.kind == "surface profile":
+            joint = shape.kind in ("planes", "slot") and len(tolerance.datums) < 3
+            return "profile", "each face lies in its zone by itself, not all as one" if joint else ""
+        if tolerance.kind in ("circular runout", "total runout"):
+            if shape.kind == "plane":
+                return "perpendicularity", "axial run-out is a perpendicularity: its form is lost"
+            return tolerance.kind.replace("runout", "run-out").replace("-", "_").replace(
+                " ", "_"
+            ), "the form that is in a run-out is lost"
+        if tolerance.kind in ("concentricity", "symmetry"):
+            kind = "coaxiality" if tolerance.kind == "concentricity" else "symmetry"
+            return kind, f"{tolerance.kind} of median points is taken of the axis or median plane"
+        if tolerance.kind in ORIENTATIONS and tolerance.projected is not None:
+            return tolerance.kind, "the zone of an orientation is not projected"
+        return tolerance.kind, ""
+
+    def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:
+        """The meaning of a lower segment: an orientation of the planes of a profile, else none."""
+        if upper is None or upper.how == "left out":
+            return Meaning(tolerance.id, "left out", "", shape.words, "the lower segment of a frame that is left out")
+        datum = self.datum_shapes.get(tolerance.datums[0].letters) if tolerance.datums else None
+        if tolerance.kind != "surface profile" or shape.kind not in ("plane", "planes") or datum is None:
+            why = f"the lower segment of a composite {tolerance.kind}: how the features lie to each other"
+            return Meaning(tolerance.id, "left out", "", shape.words, why)
+        lost = "the lower segment is an orientation: its form is lost"
+        if shape.kind == "planes":
+            lost = (
+                "the lower segment is an orientation of each face: their form, and how they lie to each other, are lost"
+            )
+        return Meaning(tolerance.id, "approximately", orientation(shape, datum), shape.words, lost)
+
+    def refining_loss(self, tolerance: Tolerance, location: Tolerance) -> str:
+        """What is lost where an orientation cannot refine the location zone of its feature."""
+        letters = [[each.letters for each in own.datums] for own in (tolerance, location)]
+        if letters[0] != letters[1][: len(letters[0])]:
+            return f"its datums are not the first of #{location.id}: it only limits what is inspected"
+        if tolerance.zone != location.zone:
+            return f"its zone has another form than that of #{location.id}: it only limits what is inspected"
+        return ""
+
+    def modifier_loss(self, tolerance: Tolerance) -> str:
+        """What is lost of the modifiers of a tolerance."""
+        lost = [DROPPED.get(each, f"{each} is dropped") for each in tolerance.modifiers if each not in MATERIAL]
+        if set(tolerance.modifiers) & MATERIAL and not self.has_size(tolerance):
+            lost.append("without a size that has limits there is no bonus")
+        if tolerance.maximum is not None:
+            lost.append("MAX is lost")
+        return "; ".join(lost)
+
+    def has_size(self, tolerance: Tolerance) -> bool:
+        """Whether a dimension with limits is of the same faces."""
+        faces = set(tolerance.feature.faces)
+        sizes = [each for each in self.text.dimensions if each.is_size and each.limits is not None]
+        return any(faces & set(each.features[0].faces) for each in sizes)
+
+
+def orientation(shape: Shape, datum: Shape) -> str:
+    """The kind of an orientation of planes to a datum by the angle that both have nominally."""
+    face, other = shape.surfaces[0], datum.surfaces[0]
+    along = aligned(face.direction, other.direction) != 0
+    square = abs(dot(face.direction, other.direction)) < SQUARE
+    if not along and not square:
+        return "angularity"
+    return "parallelism" if along == (other.kind == "plane") else "perpendicularity"
+
+
+def surfaces_of(text: StepText) -> dict[int, Surface]:
+    """The surface of every face of every product, by the text alone."""
+    found: dict[int, Surface] = {}
+    for product in text.structure.products.values():
+        unit = product_unit(text.file, product) if product.faces else None
+        if unit is not None:
+            found |= {face: surface_of(text.file, face, unit) for face in product.faces}
+    return found
+
+
+def meanings(text: StepText, surfaces: Mapping[int, Surface] | None = None) -> tuple[Meaning, ...]:
+    """The meaning of each tolerance of a file, in the file's order.
+
+    Args:
+        text: the file.
+        surfaces: from each face to its surface, if the geometry knows better than the text.
+
+    Raises:
+        StepError: a face's surface cannot be read.
+    """
+    return Meanings(text, surfaces if surfaces is not None else surfaces_of(text)).all
