@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         find_shims,
         replay,
         response,
+        sweep,
         view_trial,
         write_report,
     )
@@ -66,6 +67,7 @@ _HOMES = {
     "replay": "tol3d.notebook",
     "response": "tol3d.notebook",
     "run_scene": "tol3d.simulate",
+    "sweep": "tol3d.notebook",
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
 }
@@ -84,6 +86,7 @@ __all__ = [
     "replay",
     "response",
     "run_scene",
+    "sweep",
     "view_trial",
     "write_report",
 ]

@@ -9,9 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
+from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from platform import machine, python_version
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from tol3d import report, simulate
@@ -20,12 +22,16 @@ from tol3d.adjustment.shim import Rounding
 from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.sweep import Order, Sweep, SweepQuestion
+from tol3d.analyses.sweep import sweep as swept
+from tol3d.analyses.sweep_table import sweep_report, whole_table
+from tol3d.analyses.variants import variable
 from tol3d.errors import InputError, unwritable
 from tol3d.gearing.model import Model
 from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array
-from tol3d.report.page import Page
+from tol3d.report.page import Page, page
 from tol3d.report.presenter import Display, Which, presenter_at
 from tol3d.report.sheet import as_text
 from tol3d.report.verdict import ACCEPTED_PPM
@@ -153,6 +159,23 @@ class Shims(Report):
     def tolerances(self) -> str:
         """The tolerances of the chosen shims, to paste into a scene."""
         return tolerance_lines(self.plan.tolerances)
+
+
+@dataclass(frozen=True, repr=False)
+class Variants(Report):
+    """Variants of a scene.
+
+    Args:
+        found: their numbers.
+        picture: None where none was asked for.
+    """
+
+    found: Sweep
+    picture: Picture | None
+
+    def to_csv(self, path: Path | str | None = None) -> str | None:
+        """A row a variant, with all numbers of all measures; see Report.to_csv."""
+        return Report(page(whole_table(self.found))).to_csv(path)
 
 
 @dataclass(frozen=True, repr=False)
@@ -355,6 +378,46 @@ def find_shims(
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
     plan = shim_plan(simulate.load(scene, trust_parts=trust_parts), question, overrides)
     return Shims(shim_report(plan), plan)
+
+
+def sweep(
+    scene: Scene | Path | str,
+    vary: Mapping[str, str | Sequence[str | float]],
+    *,
+    latin_hypercube: int | None = None,
+    hypercube_seed: int = 1,
+    out: Path | str | None = None,
+    picture: Path | str | None = None,
+    overrides: Overrides = AS_WRITTEN,
+    workers: int = 1,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Variants:
+    """Variants of a scene, each simulated with the same draws, as `tol3d sweep` does it.
+
+    Args:
+        scene: a scene, its path, or the name of a bundled one.
+        vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
+        latin_hypercube: how many variants are drawn from ranges; None for a grid.
+        hypercube_seed: of that drawing.
+        out: a folder that keeps the variants, so that a sweep goes on there; None keeps none.
+        picture: a file to draw them in.
+        overrides: what is said otherwise than in the scene's study, for all variants.
+        workers: that run the trials of one.
+        trust_parts, run_builders: see run_scene.
+
+    Raises:
+        InputError: no such field, or values that are none.
+    """
+    question = SweepQuestion(tuple(variable(*own) for own in vary.items()), latin_hypercube, hypercube_seed)
+    loaded = simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders)
+    with TemporaryDirectory(prefix="tol3d-") as temporary:
+        folder = Path(temporary) if out is None else Path(out)
+        how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
+        found = swept(loaded, question, how)
+    if picture is not None:
+        import_module("tol3d.analyses.sweep_picture").draw_sweep(found, Path(picture))
+    return Variants(sweep_report(found), found, None if picture is None else Picture(Path(picture)))
 
 
 def response(

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.stats import norm
+from toys.parabola import PARABOLA
+from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides
@@ -22,6 +24,7 @@ from tol3d.distributions.normal import Normal
 from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.scene import Scene
+from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
@@ -271,3 +274,26 @@ def test_what_cannot_be_asked_is_refused() -> None:
         changes_of(formula(linear, None, None))
     with pytest.raises(InputError, match="got 'valu'"):
         changes_of(formula(linear, None, 1.0), ChangesQuestion("valu"))
+
+
+def test_a_mechanism_from_outside() -> None:
+    """The bundled spring: its height is a parabola of x, whose curvature takes the mean off."""
+    with known(PARABOLA):
+        response = response_of(simulation_of(load(TOYS / "parabola" / "spring.yaml")))
+        found = changes_of(response, ChangesQuestion("room", builds=500)).measures["room"]
+        assert found.halved
+        whole = changes_of(response, ChangesQuestion(builds=500))
+        assert set(whole.measures) <= set(response.names)
+        assert as_text(changes_report("spring", whole), 120)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(bundled_scenes()))
+def test_every_bundled_scene_is_told_or_refused(name: str) -> None:
+    response = response_of(simulation_of(load(name)))
+    if all((own.lower_limit, own.upper_limit) == (None, None) for own in response.measures):
+        with pytest.raises(InputError, match="expected a limit"):
+            changes_of(response, ChangesQuestion(builds=100))
+        return
+    found = changes_of(response, ChangesQuestion(builds=100))
+    assert as_text(changes_report(name, found), 120)

@@ -50,6 +50,7 @@ COMMANDS = (
     deciding.what_if,
     changing.changes,
     methods.methods,
+    changing.sweep,
     records.identify,
     records.rig,
     records.plan_rig,

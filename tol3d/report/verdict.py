@@ -108,13 +108,18 @@ def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame:
 
 def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool, limited: bool) -> Row:
     judged = JudgedMeasure.of(measure, accepted_ppm)
-    low, mean, high = _curve_ends(measure) if measure.take == "curve" else _ends(measure)
+    low, mean, high = ends_of(measure)
     verdict = NOTHING if judged.verdict == "no limits" else judged.verdict
     cells = [verdict, *(_short(value, measure.unit) for value in (mean, low, high)), _limits(measure)]
     cells += [NOTHING if judged.verdict == "no limits" else _out(judged), _ppk(measure)]
     cells += [_ppk_by(measure)] if limited else []
     cells += [_mostly(measure)] if blame else []
     return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""))
+
+
+def ends_of(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:
+    """Low, mean and high as the verdict shows them."""
+    return _curve_ends(measure) if measure.take == "curve" else _ends(measure)
 
 
 def _ends(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:

@@ -32,8 +32,7 @@ INDEX: Final = re.compile(r"(.*)\[(\d+)\]")
 def varied(scene: Scene, changes: Mapping[str, Any], *, trust_parts: bool = False, run_builders: bool = False) -> Scene:
     """The scene with other values; see `Scene.with_`."""
     text = scene.text or dumped(scene)
-    top, origin = scene_text(scene.source, text.encode())
-    before = plain(Includes(scene.source, scene.grammar, _known(scene)).expanded(top, origin))
+    before = _values(scene, text)
     data = loaded_yaml(text)
     paths = {field: field_path(before, field) for field in changes}
     for field, path in paths.items():
@@ -48,6 +47,21 @@ def varied(scene: Scene, changes: Mapping[str, Any], *, trust_parts: bool = Fals
         run_builders=run_builders,
         files=_known(scene) if _keeps_solids(scene, paths.values(), changes.values()) else None,
     )
+
+
+def known_path(scene: Scene, field: str) -> KeyPath:
+    """The keys of a field of a scene.
+
+    Raises:
+        InputError: see field_path.
+    """
+    return field_path(_values(scene, scene.text or dumped(scene)), field)
+
+
+def _values(scene: Scene, text: str) -> Any:
+    """Its plain values, with those of included files."""
+    top, origin = scene_text(scene.source, text.encode())
+    return plain(Includes(scene.source, scene.grammar, _known(scene)).expanded(top, origin))
 
 
 def dumped(scene: Scene) -> str:

@@ -1,0 +1,244 @@
+"""A sweep: variants of a scene, each simulated by itself, with the same draws.
+
+A contributor's draws depend on the seed, its name and the trial alone, so that variants differ by what is varied and
+not by chance. What is done is kept, a run a variant without its trials: an interrupted sweep goes on where it stopped.
+"""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import Field
+
+from tol3d.analyses.variants import Number as Value
+from tol3d.analyses.variants import Point, Variable, grid_of, hypercube_of, plain_number
+from tol3d.errors import InputError, RunError, unwritable
+from tol3d.execution.watch import UNWATCHED, Watch
+from tol3d.report.verdict import ends_of
+from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.run import Run
+from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.values import Count, Known, Label, Number, Ppm, PpmRange, Section, Sentence, made
+from tol3d.scene import Scene
+from tol3d.scene.vary import known_path
+from tol3d.simulate import Execution, run_simulation, simulation_of
+from tol3d.study.overrides import AS_WRITTEN, Overrides
+from tol3d.system.outcome import SEATED
+
+NAME: Final = "sweep.json"
+
+
+class VariantMeasure(Section):
+    """What a variant's run found of a measure, in its unit, by the 3D simulation where there is one."""
+
+    unit: Label
+    lower_limit: Known
+    upper_limit: Known
+    mean: Known
+    sigma: Known
+    low: Known = Field(description="mean - 3 sigma, or 0.135 % of what ends before; of a curve its lowest position")
+    high: Known
+    out_ppm: Ppm | None
+    out_ppm_95: PpmRange | None
+    ppk: Known
+    failed: Count
+
+
+class Variant(Section):
+    """One of a sweep."""
+
+    values: list[Label] = Field(description="of the fields, as they stand in its scene")
+    numbers: list[Number] = Field(description="the same in `units`")
+    run: Label | None = Field(description="its folder; null where it could not be built")
+    reason: Sentence | None = Field(description="why it could not be built")
+    measures: Mapping[Label, VariantMeasure]
+
+
+class Sweep(Section):
+    """Variants of a scene."""
+
+    scene: Label
+    fields: list[Label]
+    units: list[str]
+    trials: Count
+    seed: Count
+    variants: list[Variant]
+
+
+@dataclass(frozen=True)
+class SweepQuestion:
+    """What is varied.
+
+    Args:
+        variables: fields with their values, or with ranges for a Latin hypercube.
+        latin_hypercube: how many variants are drawn; None for a grid.
+        seed: of these, not of the trials.
+    """
+
+    variables: tuple[Variable, ...]
+    latin_hypercube: int | None = None
+    seed: int = 1
+
+    @property
+    def points(self) -> list[Point]:
+        """The variants.
+
+        Raises:
+            InputError: see grid_of and hypercube_of.
+        """
+        if self.latin_hypercube is None:
+            return grid_of(self.variables)
+        return hypercube_of(self.variables, self.latin_hypercube, self.seed)
+
+
+@dataclass(frozen=True)
+class Order:
+    """How variants are simulated.
+
+    Args:
+        out: the folder that keeps them.
+        overrides: what is said otherwise than in the scene's study, for all of them.
+        workers: that run the trials of one.
+        trust_parts, run_builders: see `tol3d.run_scene`.
+        watch: callbacks while one runs.
+        done: is told the number of each variant that is done, of how many, and its values.
+    """
+
+    out: Path
+    overrides: Overrides = AS_WRITTEN
+    workers: int = 1
+    trust_parts: bool = False
+    run_builders: bool = False
+    watch: Watch = UNWATCHED
+    done: Callable[[int, int, str], None] = lambda number, count, words: None
+
+
+def sweep(scene: Scene, question: SweepQuestion, order: Order) -> Sweep:
+    """Simulate all variants of a scene, those that are kept from before but for their tables.
+
+    Args:
+        scene: as `load` gives it.
+        question: what is varied.
+        order: how they are simulated.
+
+    Raises:
+        InputError: a field that the scene has not, values that are none, or a folder that cannot be written.
+    """
+    points, order = question.points, replace(order, overrides=replace(order.overrides, witness=0))
+    study = simulation_of(scene, order.overrides).study
+    _refuse_all(scene, points[0], order.out)
+    variants = []
+    for k, point in enumerate(points):
+        variants.append(_variant(scene, point, order))
+        order.done(k + 1, len(points), words_of(point))
+    return made(
+        Sweep,
+        scene=scene.scene,
+        fields=[own.field for own in question.variables],
+        units=[own.unit for own in question.variables],
+        trials=study.trials,
+        seed=study.seed,
+        variants=variants,
+    )
+
+
+def words_of(point: Point) -> str:
+    """The values of a variant, for people."""
+    return ", ".join(f"{field} = {value}" for field, value in point.items())
+
+
+def write_text(text: str, path: Path) -> None:
+    """Write a file of a sweep.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, text.encode())
+    except OSError as error:
+        raise unwritable(path, error, "choose another folder") from None
+
+
+def _refuse_all(scene: Scene, point: Point, out: Path) -> None:
+    """Refuse what is no variant's own fault: a field that the scene has not, a folder that cannot be written."""
+    for field in point:
+        known_path(scene, field)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(out, error, "choose another --out") from None
+
+
+def _variant(scene: Scene, point: Point, order: Order) -> Variant:
+    values, numbers = [_text(own) for own in point.values()], [plain_number(own) for own in point.values()]
+    try:
+        changed = scene.with_(
+            {field: _written(own) for field, own in point.items()},
+            trust_parts=order.trust_parts,
+            run_builders=order.run_builders,
+        )
+        run = _run(changed, order)
+    except RunError:
+        raise
+    except InputError as error:
+        reason = " ".join(str(error).split())
+        return made(Variant, values=values, numbers=numbers, run=None, reason=reason, measures={})
+    measures = {name: _found(own) for name, own in run.found.measures.items()}
+    return made(Variant, values=values, numbers=numbers, run=run.path.name, reason=None, measures=measures)
+
+
+def _text(value: Value) -> str:
+    return str(value)
+
+
+def _written(value: Value) -> Any:
+    """As a scene has it."""
+    return value if isinstance(value, int | float) else str(value)
+
+
+def _run(scene: Scene, order: Order) -> Run:
+    """The variant's run, that of before where it is whole."""
+    simulation = simulation_of(scene, order.overrides)
+    folder = order.out / f"variant-{_key(scene, simulation.study)}"
+    kept = Execution(order.workers, keep_trials=False, resume=True)
+    try:
+        return run_simulation(scene, simulation, folder, execution=kept, watch=order.watch)
+    except RunError:  # of other versions or another machine, or damaged
+        anew = replace(kept, resume=False)
+        return run_simulation(scene, simulation, folder, execution=anew, force=True, watch=order.watch)
+
+
+def _key(scene: Scene, study: object) -> str:
+    """What tells variants of one sweep, and those of others in the same folder, apart."""
+    digest = hashlib.sha256(scene.text.encode())
+    for name, file in sorted(scene.files.items()):
+        digest.update(f"{name} {file.sha256}".encode())
+    digest.update(repr(study).encode())
+    return digest.hexdigest()[:12]
+
+
+def _found(own: MeasureSummary) -> VariantMeasure:
+    low, mean, high = ends_of(own)
+    sample = own.sample(own.best_road) if own.take != "curve" else None
+    return made(
+        VariantMeasure,
+        unit=own.unit,
+        lower_limit=own.lower_limit,
+        upper_limit=own.upper_limit,
+        mean=mean,
+        sigma=sample.sigma if sample is not None else None,
+        low=low,
+        high=high,
+        out_ppm=own.shares.out_ppm if own.has_limits or own.shares.out_ppm else None,
+        out_ppm_95=own.shares.out_ppm_95 if own.has_limits or own.shares.out_ppm else None,
+        ppk=own.shares.ppk,
+        failed=own.trials - own.status.get(SEATED, own.trials),
+    )
+
+
+def measures_of(found: Sweep) -> Sequence[str]:
+    """Names of all measures of all variants."""
+    return list(dict.fromkeys(name for own in found.variants for name in own.measures))

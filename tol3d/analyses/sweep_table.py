@@ -1,0 +1,93 @@
+"""A sweep as tables: a row a variant, for each measure, and all of it in one for files."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tol3d.analyses.sweep import Sweep, Variant, VariantMeasure, measures_of
+from tol3d.report.number import NOTHING, share_cell, unsigned_zero, value_cell
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title
+
+MOST_ROWS: Final = 60
+MOST_MEASURES: Final = 6
+NUMBERS: Final = ("mean", "sigma", "low", "high", "out of limits", "Ppk", "failed")
+SPAN: Final = "low, high: as in the verdict of a run, mean ∓ 3 sigma or 0.135 % and 99.865 % of what ends before"
+
+
+def sweep_report(found: Sweep) -> Page:
+    """A table for each measure, then the variants that could not be built."""
+    count = len(found.variants)
+    words = f" · {count} variants of {found.trials} trials, seed {found.seed}, the same draws in all"
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (words, "")))]
+    names = measures_of(found)
+    for name in names[:MOST_MEASURES]:
+        blocks += [title(name), BLANK, _of_measure(found, name).shortened(MOST_ROWS)]
+    if len(names) > MOST_MEASURES:
+        blocks.append(note(f"and {len(names) - MOST_MEASURES} more measures, in the files"))
+    blocks += [*_not_built(found), BLANK, note(SPAN)]
+    return page(*blocks)
+
+
+def _headings(found: Sweep) -> list[Heading]:
+    return [Heading(f"{field} [{unit}]" if unit else field) for field, unit in _named(found)]
+
+
+def _named(found: Sweep) -> Iterator[tuple[str, str]]:
+    """Fields without what all of them have in front, for tables."""
+    yield from zip(short_names(found.fields), found.units, strict=True)
+
+
+def short_names(fields: Sequence[str]) -> list[str]:
+    """Fields as a table or a picture names them: without their section, and without `distribution`.
+
+    >>> short_names(["tolerances.gap.distribution.upper"])
+    ['gap upper']
+    """
+    return [" ".join(part for part in field.split(".")[1:] if part != "distribution") or field for field in fields]
+
+
+def _of_measure(found: Sweep, name: str) -> Table:
+    built = [own for own in found.variants if name in own.measures]
+    unit = built[0].measures[name].unit
+    heads = [*_headings(found), *(Heading(head) for head in NUMBERS)]
+    rows = [Row(str(k + 1), [*_values(own), *_cells(own.measures.get(name))]) for k, own in enumerate(found.variants)]
+    return Table(f"variant [{'µm' if unit == 'um' else unit}]", heads, rows, repeated=len(found.fields))
+
+
+def _values(own: Variant) -> list[Shown]:
+    return [Shown(f"{number:g}", number) for number in own.numbers]
+
+
+def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
+    if own is None:
+        return ["not built", *[NOTHING] * (len(NUMBERS) - 1)]
+    numbers = [value_cell(value, own.unit) for value in (own.mean, own.sigma, own.low, own.high)]
+    ppk = Shown(NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}"), own.ppk)
+    return [*numbers, share_cell(own.out_ppm), ppk, Shown(str(own.failed), own.failed)]
+
+
+def _not_built(found: Sweep) -> Iterator[PageItem]:
+    rows = [Row(str(k + 1), [str(own.reason)]) for k, own in enumerate(found.variants) if own.reason is not None]
+    if rows:
+        yield title("not built")
+        yield BLANK
+        yield Table("variant", [Heading("why", words=True)], rows)
+
+
+def whole_table(found: Sweep) -> Table:
+    """A row a variant: its numbers, those of every measure, and why it could not be built."""
+    names = measures_of(found)
+    units = {name: own.unit for each in found.variants for name, own in each.measures.items()}
+    heads = [f"{field} [{unit}]" if unit else field for field, unit in zip(found.fields, found.units, strict=True)]
+    for name in names:
+        unit = units[name]
+        heads += [f"{name}: {word} [{unit}]" for word in ("mean", "sigma", "low", "high")]
+        heads += [f"{name}: {word}" for word in ("out of limits [ppm]", "Ppk", "failed")]
+    heads.append("not built")
+    rows = []
+    for k, own in enumerate(found.variants):
+        cells: list[str] = [*_values(own)]
+        for name in names:
+            known = own.measures.get(name)
+            cells += _cells(known) if known is not None else [Shown("", None)] * len(NUMBERS)
+        rows.append(Row(str(k + 1), [*cells, own.reason or ""]))
+    return Table("variant", [Heading(head) for head in heads], rows)
