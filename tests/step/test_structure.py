@@ -108,6 +108,21 @@ def test_placements_multiply_down_the_assembly_each_in_its_own_unit(swap: bool) 
     assert {each.product for each in leaves} == {bolt[0]}
 
 
+def test_parts_of_older_files_are_placed_by_mapped_items() -> None:
+    writer = Writer()
+    bolt = writer.product("bolt", "#8", context=5)  # in inches
+    own = writer.axes(UPSIDE_DOWN)
+    source = writer.add(f"REPRESENTATION_MAP(#{own},#{bolt[1]})")
+    items = [writer.add(f"MAPPED_ITEM('',#{source},#{writer.axes(at)})") for at in (TURNED, UPSIDE_DOWN)]
+    top = writer.product("top", ",".join(f"#{each}" for each in items))
+    for _ in items:
+        writer.add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','','',#{top[0]},#{bolt[0]},$)")
+    leaves = writer.read().structure.leaves
+    assert [each.path for each in leaves] == [("bolt",), ("bolt_2",)]
+    for leaf, at in zip(leaves, (TURNED, UPSIDE_DOWN), strict=True):
+        assert placed(leaf) == pytest.approx(matrix(at) @ np.linalg.inv(matrix(UPSIDE_DOWN, 25.4)), abs=1e-9)
+
+
 def test_uses_without_a_name_are_told_apart() -> None:
     writer = Writer()
     bolt, top = writer.product("bolt", "#8"), writer.product("top", "")

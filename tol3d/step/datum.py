@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from tol3d.step.feature import Features, NamedFeature
+from tol3d.step.feature import Features, NamedFeature, is_datum
 from tol3d.step.instance import Record, spoken
 from tol3d.step.part21 import Part21
 from tol3d.step.placement import Placement, length_unit, placement_of, represented
@@ -134,8 +134,12 @@ def read_target(features: Features, identifier: int) -> DatumTarget:
             placement = placement_of(features.file, item, length_unit(features.file, context))
         elif is_measure(features.file[item]):
             sizes.append(measure_of(features.file, item))
+    feature = features.named(identifier)
+    holders = [relating for relating, related, _ in features.relationships if related == identifier != relating]
+    if not feature.groups and holders and not is_datum(features.file[holders[0]]):
+        feature = features.named(holders[0])  # by FEATURE_FOR_DATUM_TARGET_RELATIONSHIP
     number = record.text(-1).strip()
-    return DatumTarget(identifier, number, aspect.text(1).strip(), features.named(identifier), placement, tuple(sizes))
+    return DatumTarget(identifier, number, aspect.text(1).strip(), feature, placement, tuple(sizes))
 
 
 def read_systems(file: Part21, identifiers: tuple[Reference, ...]) -> tuple[Compartment, ...]:

@@ -157,6 +157,7 @@ class Dimensions:
             if is_measure(self.file[item]):
                 measure = measure_of(self.file, item)
                 named.setdefault(measure.name.strip().lower(), measure)
+                notes.extend(self.qualifiers(self.file[item]))
             elif described is not None:
                 notes.append(described.text(1).strip())
         nominal = named.get("nominal value") or named.get("")
@@ -178,6 +179,13 @@ class Dimensions:
             fit=fit,
             notes=tuple(each for each in notes if each not in ROLES),
         )
+
+    def qualifiers(self, item: Instance) -> list[str]:
+        """The words beside a value: `maximum` of a single limit such as R2 MAX."""
+        record = item.record("QUALIFIED_REPRESENTATION_ITEM")
+        listed = [self.file[each] for each in record.references(-1)] if record is not None else []
+        words = [each.needed("TYPE_QUALIFIER").text(0).strip() for each in listed if each.record("TYPE_QUALIFIER")]
+        return [each for each in words if each in ("maximum", "minimum", "average")]
 
     def sides(self, instance: Instance) -> tuple[str, tuple[NamedFeature, ...]]:
         """The kind of a dimension, and what it is of."""

@@ -31,6 +31,10 @@ USAGES: Final = ("GEOMETRIC_ITEM_SPECIFIC_USAGE", "ITEM_IDENTIFIED_REPRESENTATIO
 RELATIONSHIPS: Final = (
     "SHAPE_ASPECT_RELATIONSHIP", "SHAPE_ASPECT_DERIVING_RELATIONSHIP", "FEATURE_FOR_DATUM_TARGET_RELATIONSHIP",
 )  # fmt: skip
+DATUM_ASPECTS: Final = (
+    "DATUM", "DATUM_SYSTEM", "COMMON_DATUM", "DATUM_REFERENCE_COMPARTMENT", "DATUM_TARGET",
+    "PLACED_DATUM_TARGET_FEATURE",
+)  # fmt: skip
 WHOLE: Final = ("PRODUCT_DEFINITION_SHAPE", "PRODUCT_DEFINITION")
 
 Around = Literal["", "all around", "all over"]
@@ -97,7 +101,7 @@ class Features:
         found: dict[int, list[int]] = {}
         for instance in self.file.of(*USAGES):
             record = instance.needed(*USAGES)
-            found.setdefault(record.reference(2), []).extend(identified(record))
+            found.setdefault(int(record.reference(2)), []).extend(identified(record))
         return {aspect: tuple(dict.fromkeys(ids)) for aspect, ids in found.items()}
 
     @cached_property
@@ -204,8 +208,8 @@ def identified(record: Record) -> Iterator[int]:
 
 
 def is_datum(instance: Instance) -> bool:
-    """Whether an aspect is a datum, or a system of them, rather than geometry of the part."""
-    return instance.record("DATUM", "DATUM_SYSTEM", "COMMON_DATUM", "DATUM_REFERENCE_COMPARTMENT") is not None
+    """Whether an aspect is a datum, a target or a system of them, rather than a feature of the part."""
+    return instance.record(*DATUM_ASPECTS) is not None
 
 
 def around(instance: Instance) -> Around:

@@ -45,6 +45,7 @@ MODIFIER_SIGNS: Final = {
     "any cross section": "ACS",
     "basic": "[BSC]",
     "translation": "▷",
+    "non-uniform zone": "NON-UNIFORM",
 }
 """The sign of each modifier; others are printed in words."""
 

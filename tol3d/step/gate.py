@@ -6,13 +6,16 @@ faces without a word where a reference leads nowhere or a shell holds itself: su
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from bisect import bisect_right
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from tol3d.step.refused import StepError, shown
 from tol3d.step.values import DEEPEST, LONGEST_NUMBER
 
 LARGEST_NUMBER: Final = 1e12  # mm would be a million kilometres; no length, angle or area of a part
+LARGEST_PROPERTY: Final = 1e100  # of what is no geometry, such as the time of a file in milliseconds
+PROPERTIES: Final = re.compile(r"[\s(]*+[A-Z_]*(?:REPRESENTATION_ITEM|MEASURE|VIEW|CAMERA|PROPERTY|ATTRIBUTE)")
 
 COVERED = re.compile(r"'(?:[^']|'')*+'|/\*(?:[^*]|\*(?!/))*+\*/|\"[0-9A-Fa-f]*+\"")
 FOREIGN = re.compile(r"[^A-Za-z0-9_#=(),;.$*+\-\s'!]")
@@ -42,7 +45,7 @@ def check_data(text: str, spans: Mapping[int, tuple[int, int]], place: Place) ->
     last = max(end for _, end in spans.values())
     bare = text[:first] + COVERED.sub(blanked, text[first:last])  # as long as the text: offsets stay
     check_characters(bare, first, place)
-    check_numbers(bare, first, place)
+    check_numbers(bare, first, sorted(spans.values()), place)
     check_bodies(bare, spans, place)
     check_references(bare, spans, place)
 
@@ -60,7 +63,7 @@ def check_characters(bare: str, first: int, place: Place) -> None:
         raise StepError(f"{place(foreign.start())}: outside of strings, expected no {shown(foreign.group())!r} here")
 
 
-def check_numbers(bare: str, first: int, place: Place) -> None:
+def check_numbers(bare: str, first: int, bodies: Sequence[tuple[int, int]], place: Place) -> None:
     """Refuse numbers that no part has."""
     written = [(found.start(), found.group()[1:]) for found in LONG.finditer(bare, first)]
     for found in EXPONENT.finditer(bare, first):
@@ -68,8 +71,11 @@ def check_numbers(bare: str, first: int, place: Place) -> None:
         if mantissa:
             written.append((found.start(), mantissa.group() + found.group()[1:]))
     for offset, each in written:
-        if len(each) > LONGEST_NUMBER or not math.isfinite(float(each)) or abs(float(each)) > LARGEST_NUMBER:
-            raise StepError(f"{place(offset)}: expected a number up to {LARGEST_NUMBER:g}, got {shown(each)}")
+        size = abs(float(each)) if len(each) <= LONGEST_NUMBER else math.inf
+        body = bodies[bisect_right(bodies, (offset, len(bare))) - 1]
+        largest = LARGEST_PROPERTY if size > LARGEST_NUMBER and PROPERTIES.match(bare, *body) else LARGEST_NUMBER
+        if size > largest:
+            raise StepError(f"{place(offset)}: expected a number up to {largest:g}, got {shown(each)}")
 
 
 def check_bodies(bare: str, spans: Mapping[int, tuple[int, int]], place: Place) -> None:

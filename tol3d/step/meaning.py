@@ -133,6 +133,8 @@ class Meanings:
             return "the file states no value"
         if tolerance.feature.lies_on != "faces":
             return f"it is of {tolerance.feature.lies_on}, not of faces"
+        if "non-uniform zone" in tolerance.modifiers:
+            return "a zone that is not as wide everywhere"
         if tolerance.per_unit is not None:
             return "a zone per unit of length or area"
         if tolerance.kind in ("roundness", "cylindricity", "line profile") or tolerance.kind == "straightness":

@@ -88,7 +88,7 @@ class StructureReader:
     def product(self, definition: int) -> Product:
         """One product with its solids and faces."""
         shape = self.shapes.get(definition)
-        representations = self.represented.get(shape, ()) if shape is not None else ()
+        representations = self.represented_by(definition)
         items = list(dict.fromkeys(item for each in representations for item in representation(self.file, each)[0]))
         solids = tuple(self.solid(each) for each in self.mapped(items) if self.file[each].record(*SOLIDS) is not None)
         solid_faces = {face for each in solids for face in each.faces}
@@ -152,13 +152,50 @@ class StructureReader:
             StepError: the file does not say it.
         """
         shape = self.shapes.get(use.instance.id)
-        for record in self.file.records("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION"):
-            if shape is not None and int(record.reference(1)) == shape:
-                return self.transformation(record.reference(0), used)
+        if shape in self.relations:
+            return self.transformation(self.relations[shape], used)
+        mapped = self.maps(parent, used)
+        rank = [each for each in self.uses if self.uses[each] == (parent, used)].index(use.instance.id)
+        if rank < len(mapped):  # uses and mapped items of one product are written in one order
+            return mapped[rank]
         raise StepError(
             f"{use.instance.place}: the file does not say where {shown(use.text(1) or use.text(0))!r} stands in its "
             "assembly (no CONTEXT_DEPENDENT_SHAPE_REPRESENTATION)"
         )
+
+    @cached_property
+    def relations(self) -> dict[int | None, int]:
+        """From the shape of each use to the relation of representations that places it."""
+        found = self.file.records("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION")
+        return {int(each.reference(1)): int(each.reference(0)) for each in found}
+
+    @cached_property
+    def uses(self) -> dict[int, tuple[int, int]]:
+        """From each use to its assembly and its product."""
+        found = self.file.records(USES[0])
+        return {each.instance.id: (int(each.reference(3)), int(each.reference(4))) for each in found}
+
+    def maps(self, parent: int, used: int) -> list[Placement]:
+        """The placements of a product by the MAPPED_ITEMs in an assembly's representations, as in older files."""
+        own = self.represented_by(used)
+        found = []
+        for outer in self.represented_by(parent):
+            for item in representation(self.file, outer)[0]:
+                record = self.file[item].record("MAPPED_ITEM")
+                if record is None or self.file[record.reference(2)].record("AXIS2_PLACEMENT_3D") is None:
+                    continue
+                source = self.file[record.reference(1)].needed("REPRESENTATION_MAP")
+                if int(source.reference(1)) in own:
+                    origin = placement_of(self.file, source.reference(0), self.unit(source.reference(1)))
+                    found.append(
+                        product(placement_of(self.file, record.reference(2), self.unit(outer)), inverse(origin))
+                    )
+        return found
+
+    def represented_by(self, definition: int) -> tuple[int, ...]:
+        """The representations of a product, in its own frame."""
+        shape = self.shapes.get(definition)
+        return self.represented.get(shape, ()) if shape is not None else ()
 
     def transformation(self, relation: int, used: int) -> Placement:
         """The placement that a relation of two representations says, from the one of the used product."""
@@ -167,8 +204,7 @@ class StructureReader:
         first, second = int(related.reference(2)), int(related.reference(3))
         operator = self.file[instance.needed("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION").reference(0)]
         units = self.unit(first), self.unit(second)
-        shape = self.shapes.get(used)
-        own = self.represented.get(shape, ()) if shape is not None else ()
+        own = self.represented_by(used)
         swapped = first not in own and second in own  # some exporters relate the assembly to its part
         items = operator.record("ITEM_DEFINED_TRANSFORMATION")
         if items is None:

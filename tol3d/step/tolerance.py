@@ -160,6 +160,12 @@ class Tolerances:
         return found
 
     @cached_property
+    def uneven(self) -> frozenset[int]:
+        """The zones whose width is not the same everywhere."""
+        found = self.file.of("NON_UNIFORM_ZONE_DEFINITION")
+        return frozenset(int(each.inherited("TOLERANCE_ZONE_DEFINITION").reference(0)) for each in found)
+
+    @cached_property
     def above(self) -> dict[int, tuple[int, str]]:
         """From each lower segment to the tolerance above it, and the relation's name."""
         related = self.file.records("GEOMETRIC_TOLERANCE_RELATIONSHIP")
@@ -177,6 +183,7 @@ class Tolerances:
         magnitude = record.argument(2)
         systems = datum_systems(instance)
         zone, form, projected = self.zone_of(identifier)
+        uneven = any(each in self.uneven for each in self.zones.get(identifier, ()))
         above, relation = self.above.get(identifier, (None, ""))
         return Tolerance(
             id=identifier,
@@ -189,7 +196,7 @@ class Tolerances:
             feature=self.features.named(record.reference(3)),
             datums=read_systems(self.file, systems),
             datum_system=int(systems[0]) if systems else None,
-            modifiers=modifiers(instance),
+            modifiers=(*modifiers(instance), *(("non-uniform zone",) if uneven else ())),
             projected=projected,
             unequal=own_measure(self.file, instance, "UNEQUALLY_DISPOSED_GEOMETRIC_TOLERANCE"),
             per_unit=per_unit(self.file, instance),
