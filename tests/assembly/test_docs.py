@@ -18,7 +18,7 @@ from tol3d.assembly.grammar.builders import OwnFileSpec
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.moves.play import PatternPairSpec
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.parts import SolidSpec, StepSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.datum_frame import Simulator
@@ -81,6 +81,10 @@ PAIRS = [
 ]
 OWN_BUILDER = OwnFileSpec.model_validate(YAML(typ="safe").load(OWN_LINES)["builder"])
 
+STEP_PAGE = (ROOT / "docs" / "step.md").read_text("utf-8")
+(STEP_LINES,) = re.findall(r"```yaml\n(parts:\n.*?)```", STEP_PAGE, re.DOTALL)
+STEP_PART = StepSpec.model_validate(YAML(typ="safe").load(STEP_LINES)["parts"]["plate"])
+
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
 
 
@@ -103,14 +107,16 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith(OWN)}
-    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face
-    beside = 51
+    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face;
+    # selector
+    beside = 52
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     said |= {own for name in LINKAGES for own in fields_said(load_scene(SCENES / f"{name}.yaml"))}
     assert len(PAIRS) == 3
     said |= {own for pair in PAIRS for own in fields_said(pair)}  # of the page
     said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one
+    said |= set(fields_said(STEP_PART))  # no STEP file comes along
     of_poses = {"at", "over", "take"}  # of machines and linkages
     posed = {(model, field) for model, field in known if field in of_poses and issubclass(model, TimedSpec)}
     assert unsaid(known - posed, said) == set()

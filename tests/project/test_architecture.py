@@ -15,7 +15,7 @@ PACKAGE_FOLDERS = {"tol3d": ROOT / "tol3d", "tol3d.parts": ROOT / "parts", "tol3
 
 DOORS = {
     "fcl": ("tol3d/solids/distance.py",),
-    "cadquery": ("tol3d/solids/", "parts/"),
+    "cadquery": ("tol3d/solids/", "parts/", "tol3d/step/step_cad.py"),
     "OCP": ("tol3d/solids/", "parts/", "tol3d/step/worker.py"),
     "trimesh": ("tol3d/solids/", "parts/", "tol3d/report/", "tol3d/notebook.py"),
     "pyvista": ("tol3d/report/", "tol3d/gearing/presenting/"),

@@ -1,6 +1,7 @@
 """Shapes that come with a builder of their own: what a mechanism shows and exports that is no gear, shaft or arm."""
 
-from abc import ABC
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -32,6 +33,19 @@ class SweptShape(BuiltShape):
     """
 
     width: float
+
+
+@dataclass(frozen=True)
+class MeshedShape(BuiltShape):
+    """A shape of a stranger's file: it comes as triangles, and its solid is built in a process of its own only."""
+
+    @abstractmethod
+    def mesh(self, deflection: float) -> Mapping[str, NDArray[np.generic]]:
+        """Arrays of DisplayMesh, whose triangles lie within about `deflection` [mm] of the faces.
+
+        Raises:
+            InputError: they cannot be made.
+        """
 
 
 @dataclass(frozen=True, eq=False)

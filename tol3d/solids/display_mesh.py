@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
-from tol3d.solids.built_shape import BuiltShape
+from tol3d.solids.built_shape import BuiltShape, MeshedShape
 from tol3d.solids.cache import cached
 from tol3d.solids.lazy import Arrays, cad
 from tol3d.solids.posed_gear import Body, PosedPart
+from tol3d.solids.written_apart import write_apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +54,10 @@ def surface_of(shape: BuiltShape, deflection: float) -> tuple[Array, NDArray[np.
 
 def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayMesh:
     """Mesh whose faces follow the solid's within about `deflection` [mm]; see its chord_error for the truth."""
-    arrays = cached("display", shape, {"deflection": deflection}, lambda: cad().tessellate(shape, deflection))
+    if isinstance(shape, MeshedShape):
+        arrays = shape.mesh(deflection)
+    else:
+        arrays = cached("display", shape, {"deflection": deflection}, lambda: cad().tessellate(shape, deflection))
     return DisplayMesh(
         vertices=arrays["vertices"].astype(np.float64),
         triangles=arrays["triangles"].astype(np.int64),
@@ -63,11 +67,14 @@ def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayM
 
 
 def bounding_box(shape: BuiltShape) -> tuple[Array, Array]:
-    """Lowest and highest x, y, z (3,) [mm] of a solid, to about 1e-6 mm.
+    """Lowest and highest x, y, z (3,) [mm] of a solid, to about 1e-6 mm; of a stranger's file those of its triangles.
 
     Raises:
         GeometryError: the solid cannot be built.
     """
+    if isinstance(shape, MeshedShape):
+        vertices = display_mesh(shape, BOX_DEFLECTION).vertices
+        return vertices.min(axis=0), vertices.max(axis=0)
 
     def build() -> Arrays:
         return {"corners": np.array(cad().box_around(shape))}
@@ -75,6 +82,9 @@ def bounding_box(shape: BuiltShape) -> tuple[Array, Array]:
     low, high = cached("box", shape, {}, build)["corners"].astype(np.float64)
     return low, high
 
+
+BOX_DEFLECTION: Final = 0.05
+"""mm; that of pictures, whose triangles are made already."""
 
 COLOURS: Final = ("steelblue", "darkorange", "seagreen", "goldenrod", "slategray", "indianred")
 
@@ -93,4 +103,7 @@ def export_step(parts: Sequence[PosedPart], path: Path, colours: Sequence[str] =
     Raises:
         RunError: the file cannot be written.
     """
-    cad().write_step(parts, path, colours)
+    if any(isinstance(part.shape, MeshedShape) for part in parts):
+        write_apart(parts, path, colours)
+    else:
+        cad().write_step(parts, path, colours)

@@ -174,9 +174,9 @@ def line_of(feature: FoundFeature) -> str:
 
 def _lines(part: StepPart, found: Sequence[FoundFeature]) -> str:
     """The first few features, each as a line to paste."""
-    listed = [f"\n    {line_of(own)}  # {numbers(own)}" for own in found[:MOST_SHOWN]]
-    more = f"\n    and {len(found) - MOST_SHOWN} more" if len(found) > MOST_SHOWN else ""
-    return f"{''.join(listed)}{more}" if found else f"none of {shown(part.name)!r}"
+    listed = "; ".join(f"{line_of(own)} ({numbers(own)})" for own in found[:MOST_SHOWN])
+    more = f"; and {len(found) - MOST_SHOWN} more" if len(found) > MOST_SHOWN else ""
+    return f"{listed}{more}" if found else f"none of {shown(part.name)!r}"
 
 
 def numbers(feature: FoundFeature) -> str:

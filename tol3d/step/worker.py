@@ -7,7 +7,7 @@ entity in the file, so each stands in the frame of its own product, and each fac
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -122,6 +122,10 @@ class Transferred:
             "faces": np.concatenate(owners),
             "off": np.array(off, dtype=np.float64),
         }
+
+    def solids(self, wanted: Set[int]) -> list[TopoDS_Shape]:
+        """Its solids with these numbers."""
+        return [shape for number, shape in self._roots.items() if number in wanted]
 
     @cached_property
     def _roots(self) -> dict[int, TopoDS_Shape]:

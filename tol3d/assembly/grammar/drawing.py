@@ -99,9 +99,9 @@ class Drawing:
         return {name: own for name, own in found.items() if name == entry or name not in entries}
 
     def has_solid(self, part: str) -> bool:
-        """Whether a part has a builder, or is like one that has."""
+        """Whether a part has a builder or comes from a file, or is like one that does."""
         solids = self.scene.of(SolidSpec)
-        return solids[likes(part, solids)[-1]].builder is not None
+        return solids[likes(part, solids)[-1]].has_solid
 
     @cached_property
     def stated(self) -> tuple[Stated | str, ...]:

@@ -4,6 +4,7 @@ settled        a scene with all numbers, and what was found
 agreement      numbers that a scene states beside a face, checked against it
 kept_picks     what was found, as a file that runs keep
 own_builders   programs of the user, run only where that is allowed
+step_picks     features that are selected on parts from STEP files
 """
 
 from tol3d.assembly.picking.settled import settle

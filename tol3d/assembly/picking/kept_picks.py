@@ -12,13 +12,15 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from tol3d.assembly.grammar.builders.builder_spec import OwnFileSpec
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.feature_spec import FaceKind
-from tol3d.assembly.grammar.parts import SolidSpec, likes
+from tol3d.assembly.grammar.parts import SolidSpec, StepSpec, likes
+from tol3d.assembly.picking.step_picks import checked
 from tol3d.errors import GeometryError, SceneError
 from tol3d.files import FileContent, Files
 from tol3d.scene import Scene
 from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.kept_shape import KeptShape, run_program
 from tol3d.solids.pick import PickedFace, Triple
+from tol3d.step.step_shape import StepShape
 from tol3d.units import LARGEST
 
 FEATURES: Final = "features.json"
@@ -93,6 +95,16 @@ class Kept:
             raise SceneError(f"{FEATURES}: expected the faces of {part}.{feature}, found others; the run is damaged")
         return found
 
+    def selected(self, part: str, feature: str, spec: StepSpec) -> tuple[PickedFace, ...]:
+        """What a part from a STEP file selects as a feature.
+
+        Raises:
+            SceneError: a run that is made again has not kept it.
+        """
+        found = self.picks.get(part, {}).get(feature, ())
+        checked(part, spec, feature, found if all(map(_has_size, found)) else (), FEATURES)
+        return found
+
 
 def _has_size(face: PickedFace) -> bool:
     """Whether a face is as large as its kind must be."""
@@ -164,8 +176,11 @@ def shapes_of(scene: Scene) -> dict[str, BuiltShape]:
     found: dict[str, BuiltShape] = {}
     for name in solids:
         part = likes(name, solids)[-1]
-        builder = solids[part].builder
-        if isinstance(builder, OwnFileSpec):
+        own = solids[part]
+        builder = own.builder
+        if isinstance(own, StepSpec):
+            found[name] = StepShape.of(scene.files[own.file], own.product)
+        elif isinstance(builder, OwnFileSpec):
             content = scene.files[solid_file(part)].content
             found[name] = KeptShape.of(content, kept_in(scene.files, scene.source).faces.get(part, ()))
         elif builder is not None:

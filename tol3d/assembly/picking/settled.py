@@ -11,8 +11,10 @@ from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.features.feature_spec import FeatureSpec, Found
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.features.point import PointSpec
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.features.selector import SelectorSpec
+from tol3d.assembly.grammar.parts import SolidSpec, StepSpec
 from tol3d.assembly.picking.kept_picks import FEATURES, Kept, built_shape, file_of, kept_in, kept_solid, solid_file
+from tol3d.assembly.picking.step_picks import looked_up, with_numbers
 from tol3d.errors import GeometryError
 from tol3d.files import Files
 from tol3d.parts.details import DetailError
@@ -77,7 +79,7 @@ NO_FILES: Final[Files] = {}
 
 def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Scene, Files]:
     """See tol3d.scene.load.Settle."""
-    solids = {name: own for name, own in scene.of(SolidSpec).items() if own.builder is not None}
+    solids = {name: own for name, own in scene.of(SolidSpec).items() if own.has_solid}
     if not solids:
         return scene, {}
     if known is not None:
@@ -90,6 +92,9 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
         features = {}
         for feature, spec in own.features.items():
             path = ("parts", name, "features", feature)
+            if isinstance(spec, SelectorSpec):
+                features[feature] = with_numbers(spec, kept.selected(name, feature, own))
+                continue
             faces = kept.faces_of(name, feature, spec)
             features[feature] = spec if not spec.faces_picked else _with_numbers(spec, faces, path, problems)
         parts[name] = own.model_copy(update={"features": features})
@@ -108,6 +113,9 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
     files = {}
     problems: list[Problem] = []
     for name, own in solids.items():
+        if isinstance(own, StepSpec):
+            picks[name] = looked_up(name, own, scene.files[own.file], problems)
+            continue
         here: KeyPath = ("parts", name, "builder")
         try:
             shape = built_shape(scene, name, run_builders=run_builders)

@@ -42,6 +42,7 @@ from tol3d.report.system_check import MIDDLE, system_blocks
 from tol3d.solids import BuiltShape
 from tol3d.solids.display_mesh import bounding_box
 from tol3d.solids.kept_shape import KeptShape
+from tol3d.step.step_shape import StepShape
 from tol3d.study.simulation import Simulation
 
 SIGNS: Final = "z: a shift along z; turns z: a turn about z; each holds of what those above it leave"
@@ -179,6 +180,10 @@ def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float6
     return words
 
 
+WORDS: Final[Mapping[type[BuiltShape], str]] = {KeptShape: "file", StepShape: "STEP file"}
+"""What builds solids that have no builder of ours."""
+
+
 def _builder_words(shape: BuiltShape) -> str:
     """The builder of a shape: that of a ThrustRing is "thrust ring"."""
     return "".join(f" {own.lower()}" if own.isupper() else own for own in type(shape).__name__).strip()
@@ -190,7 +195,7 @@ def _solids(system: AssemblySystem) -> Sequence[PageItem]:
     for part in system.assembly.parts:
         if part.solid is not None:
             low, high = bounding_box(part.solid)
-            builder = "file" if isinstance(part.solid, KeptShape) else _builder_words(part.solid)
+            builder = WORDS.get(type(part.solid)) or _builder_words(part.solid)
             rows.append(Row(part.name, (builder, _listed(high - low, " × "), _listed(low, ", "), _listed(high, ", "))))
     columns = [Heading("builder", words=True), *map(Heading, ("size x × y × z [mm]", "from [mm]", "to [mm]"))]
     return titled("solids, in the frames of their parts", Table("", columns, rows)) if rows else ()

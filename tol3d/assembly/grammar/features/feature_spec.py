@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.features.nominal_frame import ALONG
-from tol3d.assembly.grammar.features.pattern import PatternSpec
+from tol3d.assembly.grammar.features.pattern import PatternSpec, Scattered
 from tol3d.assembly.model import Shape
 from tol3d.numerics.arrays import Array
 from tol3d.scene.name import Name
@@ -100,6 +100,8 @@ class FeatureSpec(Strict):
         """The features that it stands for: itself, or those of its pattern, numbered row by row."""
         if self.pattern is None:
             return {name: self}
+        if isinstance(self.pattern, Scattered):  # only of a scene whose selectors were looked up
+            return {f"{name} {k}": own for k, own in enumerate(self.pattern.members, start=1)}
         places = self.pattern.places(known(self.at, "at"), self.frame)
         return {
             f"{name} {k}": self.model_copy(update={"at": at, "pattern": None}) for k, at in enumerate(places, start=1)

@@ -1,6 +1,7 @@
 """Patterns of features: one entry for all that lie in rows and columns."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Annotated, Any, Final, Self
 
 import numpy as np
@@ -78,6 +79,22 @@ class PatternSpec(Strict):
         if not 1 < self.count <= MOST:
             raise refused("", f"2 to {MOST} features in rows and columns", str(self.count))
         return self
+
+
+@dataclass(frozen=True)
+class Scattered:
+    """Features that one entry selects, wherever each lies: in place of a pattern.
+
+    Args:
+        members: the features, in their order.
+    """
+
+    members: tuple[Any, ...]
+
+    @property
+    def count(self) -> int:
+        """How many features there are."""
+        return len(self.members)
 
 
 def _moved(at: Quantity, steps: list[tuple[int, Quantity, float]]) -> Quantity:

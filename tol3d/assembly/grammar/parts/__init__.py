@@ -1,5 +1,6 @@
 """Kinds of part, one file each."""
 
 from tol3d.assembly.grammar.parts.solid import SolidSpec, likes
+from tol3d.assembly.grammar.parts.step import StepSpec
 
-__all__ = ["SolidSpec", "likes"]
+__all__ = ["SolidSpec", "StepSpec", "likes"]

@@ -1,0 +1,126 @@
+"""Features that a scene selects on parts from STEP files: what their faces are, and the features by numbers."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
+from tol3d.assembly.grammar.features.feature_spec import FaceKind, lengths
+from tol3d.assembly.grammar.features.pattern import Scattered
+from tol3d.assembly.grammar.features.selector import SelectorSpec
+from tol3d.assembly.grammar.parts import StepSpec
+from tol3d.errors import SceneError
+from tol3d.files import FileContent
+from tol3d.scene.place import KeyPath
+from tol3d.solids.pick import PickedFace
+from tol3d.step.found import FoundFeature
+from tol3d.step.reading import StepPart, read_step
+from tol3d.step.refused import StepError
+from tol3d.step.selecting import SelectionError, Selector, numbers, selected
+
+Problem = tuple[KeyPath, str]
+
+FACE_KINDS: Final[dict[str, FaceKind]] = {
+    "plane": "plane",
+    "hole": "cylinder",
+    "pin": "cylinder",
+    "fillet": "cylinder",
+    "round": "cylinder",
+    "cone": "cone",
+    "ball": "sphere",
+    "socket": "sphere",
+}
+"""What a feature of each kind is to a scene."""
+
+
+def looked_up(
+    part: str, spec: StepSpec, file: FileContent, problems: list[Problem]
+) -> dict[str, tuple[PickedFace, ...]]:
+    """What the features of a part are that it selects, by their names; what is wrong is added to the problems."""
+    try:
+        found = read_step(file).part(spec.product)
+    except StepError as error:
+        field = "product" if spec.product is not None and "product" in str(error) else "file"
+        problems.append((("parts", part, field), str(error)))
+        return {}
+    return dict(_each(part, spec, found, problems))
+
+
+def _each(
+    part: str, spec: StepSpec, found: StepPart, problems: list[Problem]
+) -> Iterator[tuple[str, tuple[PickedFace, ...]]]:
+    for name, own in spec.selectors.items():
+        path: KeyPath = ("parts", part, "features", name)
+        try:
+            features = selected(found, selector_of(own))
+            yield name, tuple(face_of(each) for each in features)
+        except SelectionError as error:
+            problems.append(((*path, *([error.field] if error.field else [])), str(error)))
+        except StepError as error:
+            problems.append((path, str(error)))
+
+
+def selector_of(spec: SelectorSpec) -> Selector:
+    """What an entry of a scene means."""
+    near = None if spec.near is None else tuple(own.internal for own in spec.near)
+    return Selector(
+        face=spec.number,
+        name=spec.face if spec.number is None else None,
+        faces=spec.numbers,
+        kind=spec.kind,
+        diameter=None if spec.diameter is None else spec.diameter.internal,
+        near=None if near is None else (near[0], near[1], near[2]),
+        within=None if spec.within is None else spec.within.internal,
+        count=spec.count,
+        along=spec.along,
+    )
+
+
+def face_of(feature: FoundFeature) -> PickedFace:
+    """A feature as runs keep it.
+
+    Raises:
+        StepError: a scene can do nothing with it.
+    """
+    if feature.kind not in FACE_KINDS:
+        raise StepError(f"expected a {', '.join(FACE_KINDS)}, got a {feature.kind} ({numbers(feature)})")
+    radius = 0.0 if feature.kind == "cone" else feature.radius
+    normal = feature.direction
+    return PickedFace(
+        numbers(feature), FACE_KINDS[feature.kind], feature.at, feature.direction, feature.x, feature.extent, radius,
+        feature.hollow, feature.on, normal,
+    )  # fmt: skip
+
+
+def with_numbers(spec: SelectorSpec, faces: Sequence[PickedFace]) -> FeatureUnion:
+    """A feature by numbers; of several, an entry that stands for all of them."""
+    made = [_by_numbers(spec, face) for face in faces]
+    if spec.count is None:
+        return made[0]
+    return made[0].model_copy(update={"pattern": Scattered(tuple(made))})
+
+
+def _by_numbers(spec: SelectorSpec, face: PickedFace) -> FeatureUnion:
+    at = lengths(*face.at)
+    if face.kind == "plane":
+        size = {"radius": lengths(face.radius)[0]} if face.radius else {"extent": lengths(*face.extent)}
+        along = {} if spec.along is None else {"along": spec.along}
+        return PlaneSpec.model_validate({"kind": "plane", "at": at, "normal": face.direction, **size, **along})
+    diameter = {"diameter": lengths(2 * face.radius)[0], "hole": face.hole}
+    if face.kind == "sphere":
+        return SphereSpec.model_validate({"kind": "sphere", "at": at, **diameter})
+    numbers = {"at": at, "axis": face.direction, "length": lengths(face.extent[0])[0]}
+    if face.kind == "cone":
+        return AxisSpec.model_validate({"kind": "axis", **numbers})
+    return CylinderSpec.model_validate({"kind": "cylinder", **numbers, **diameter})
+
+
+def checked(part: str, spec: StepSpec, name: str, faces: Sequence[PickedFace], file: str) -> None:
+    """Refuse what a run kept where it is not what its scene selects.
+
+    Raises:
+        SceneError: it is damaged.
+    """
+    own = spec.selectors[name]
+    wanted = {FACE_KINDS[own.kind]} if own.kind is not None else set(FACE_KINDS.values())
+    if len(faces) != (own.count or 1) or not all(face.kind in wanted for face in faces):
+        raise SceneError(f"{file}: expected the faces of {part}.{name}, found others; the run is damaged")

@@ -1,0 +1,46 @@
+"""The solid of a product of a foreign STEP file as mechanisms show and export it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.files import FileContent
+from tol3d.solids.built_shape import MeshedShape
+from tol3d.step.reading import read_step
+
+
+@dataclass(frozen=True)
+class StepShape(MeshedShape):
+    """A product by its file.
+
+    Args:
+        sha256: of the file.
+        product: its name; None where the file has one only.
+        file: the file.
+    """
+
+    builder: ClassVar[str] = "tol3d.step.step_cad:solid_of"
+
+    sha256: str
+    product: str | None
+    file: FileContent = field(repr=False, compare=False)
+
+    @classmethod
+    def of(cls, file: FileContent, product: str | None) -> "StepShape":
+        """A product of a file."""
+        return cls(file.sha256, product, file)
+
+    def mesh(self, deflection: float) -> Mapping[str, NDArray[np.generic]]:
+        """See MeshedShape; the solids without the loose faces beside them."""
+        part = read_step(self.file).part(self.product)
+        mesh = part.mesh(deflection)
+        mesh = mesh.of_faces(part.body.faces) if part.body.faces else mesh
+        return {
+            "vertices": mesh.vertices,
+            "triangles": mesh.triangles,
+            "side": np.zeros(len(mesh.vertices), dtype=np.int8),
+            "chord_error": np.array(mesh.chord_error),
+        }
