@@ -107,8 +107,8 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
 def test_the_scenes_use_every_field_of_every_kind() -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith(OWN)}
-    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face;
-    # selector
+    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face
+    # and the selector
     beside = 52
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}

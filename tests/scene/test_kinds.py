@@ -126,7 +126,7 @@ CHANGES = {
     "unknown kind": (
         ("kind: spring,", "kind: sprig,"),
         "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, internal_gear, shaft, spur_gear, "
-        "solid, flexible_carrier, planet, planet_carrier, crank_carrier, crankshaft, cycloid_disc, pin_ring, "
+        "solid, step, flexible_carrier, planet, planet_carrier, crank_carrier, crankshaft, cycloid_disc, pin_ring, "
         "spring, got 'sprig'; "
         'did you mean "spring"?',
     ),
