@@ -28,7 +28,7 @@ DOORS = {
         "tol3d/analyses/sweep_picture.py",
         "tol3d/records/identified_picture.py",
     ),
-    "PIL": ("tol3d/report/animation.py",),
+    "PIL": ("tol3d/report/animation.py", "tol3d/report/html/view_3d.py"),
     "ruamel": ("tol3d/scene/",),
     "yaml": ("tol3d/scene/text.py",),
     "joblib": ("tol3d/execution/pools.py",),

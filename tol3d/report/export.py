@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
-from typing import Final, cast
+from typing import Any, Final, cast
 
 import numpy as np
 import trimesh
+from trimesh.visual.material import PBRMaterial
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.body import Body, World
@@ -19,6 +20,7 @@ from tol3d.runs.run import Run
 from tol3d.solids import export_step
 
 FORMATS: Final = ("stl", "ply", "glb", "step")
+ROUGHNESS: Final = 0.55
 METRES_PER_MM: Final = 1e-3  # glTF 2.0, 3.4: all linear distances are in metres
 
 
@@ -143,12 +145,26 @@ def _joined(bodies: Sequence[Body]) -> trimesh.Trimesh:
 
 
 def _glb(world: World) -> object:
-    """A glTF scene of named meshes."""
+    """A glTF scene of named meshes, each with a material that is seen without a room around it, and normals."""
     scene = trimesh.Scene()
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
     for body in world.bodies:
-        scene.add_geometry(triangle_mesh(body), node_name=body.name, geom_name=body.name, transform=to_metres)
-    return scene.export(file_type="glb")
+        mesh = trimesh.Trimesh(*body.mesh, process=False)
+        mesh.visual = trimesh.visual.TextureVisuals(material=_material(body))
+        scene.add_geometry(mesh, node_name=body.name, geom_name=body.name, transform=to_metres)
+    return scene.export(file_type="glb", include_normals=True, tree_postprocessor=_with_words)
+
+
+def _material(body: Body) -> PBRMaterial:
+    colour = [*bytes.fromhex(body.colour.removeprefix("#")), round(255 * body.opacity)]
+    mode = "BLEND" if body.opacity < 1.0 else "OPAQUE"
+    return PBRMaterial(
+        name=body.name, baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=ROUGHNESS, alphaMode=mode
+    )
+
+
+def _with_words(tree: dict[str, Any]) -> None:
+    tree["asset"]["extras"] = {"lengths": "metres, as glTF has them; tol3d's are mm"}
 
 
 def file_words(names: Iterable[str]) -> dict[str, str]:

@@ -1,9 +1,9 @@
 """How much both roads differ, trial by trial, as SVG."""
 
 from tol3d.report.compare import Difference
+from tol3d.report.comparison_picture import DIFFERENCE_UNITS
 from tol3d.report.html.axis import LEFT, RIGHT, WIDTH, Axis, below, beside, chart
 from tol3d.report.html.tags import Markup, tag
-from tol3d.report.number import difference_text
 from tol3d.runs.summary.measure import MeasureSummary
 
 TOP, BOTTOM, FOOT = 14.0, 170.0, 44.0
@@ -11,10 +11,10 @@ TOP, BOTTOM, FOOT = 14.0, 170.0, 44.0
 
 def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
     """The histogram of the 3D simulation less the analytic road."""
-    bars = own.bars
-    x = Axis(float(bars.edges[0]), float(bars.edges[-1]), unit=measure.unit)
+    unit, factor = DIFFERENCE_UNITS[measure.unit]
+    bars = own.bars.times(factor)
+    x = Axis(float(bars.edges[0]), float(bars.edges[-1]))
     y = Axis(0.0, 1.05 * float(bars.counts.max()) or 1.0, start=BOTTOM, end=TOP)
-    unit = "arc minutes" if measure.unit == "arcmin" else measure.unit.replace("um", "µm")
     inside = [
         *below(x, TOP, BOTTOM, f"3D simulation − analytic, trial by trial [{unit}]"),
         *beside(y, LEFT, WIDTH - RIGHT, "trials"),
@@ -22,7 +22,7 @@ def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
     for k, count in enumerate(bars.counts):
         if count:
             low, high = float(bars.edges[k]), float(bars.edges[k + 1])
-            words = f"{difference_text(low, measure.unit)} to {difference_text(high, measure.unit)}: {count:.0f} trials"
+            words = f"{low:.4g} to {high:.4g} {unit}: {count:.0f} trials"
             left, top = x(low), y(float(count))
             inside.append(
                 tag(

@@ -22,6 +22,7 @@ from tol3d.report.html.histogram_chart import histogram_chart
 from tol3d.report.html.matrix_chart import matrix_chart
 from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
+from tol3d.report.html.view_3d import view_3d
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.number import number_text, share_text
 from tol3d.report.page import Heading, Page, PageItem, Row, Table, note, warning
@@ -41,7 +42,7 @@ TRIALS_A_BAR: Final = 5
 MOST_READ: Final = 200_000
 """Trials that are looked through for those of each bar."""
 POLICY: Final = (
-    "default-src 'none'; script-src 'sha256-{script}'; style-src 'sha256-{style}'; img-src data:; base-uri 'none'; "
+    "default-src 'none'; script-src {scripts}; style-src 'sha256-{style}'; img-src data:; base-uri 'none'; "
     "form-action 'none'"
 )
 VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to say", "none": "no limits to judge"}
@@ -52,6 +53,7 @@ def report_html(
     *,
     accepted_ppm: float = ACCEPTED_PPM,
     analyses: Mapping[str, Page] | None = None,
+    trials: Sequence[int] = (),
     made: str = "",
 ) -> str:
     """One run, or several beside each other, as a page.
@@ -60,6 +62,7 @@ def report_html(
         runs: finished ones.
         accepted_ppm: share of trials that may be out of a measure's limits.
         analyses: sections of the first run by their titles.
+        trials: of the first run, that the 3D view has besides its nominal and its worst build.
         made: when and where, the one element that differs between two reports of the same runs.
 
     Raises:
@@ -70,7 +73,7 @@ def report_html(
     if first is None:
         raise InputError("nothing to report: give the folder of at least one run")
     body = [tag("h1", first.scene), *_head(runs[0])]
-    body += [*_compared(runs)] if len(runs) > 1 else [*_single(runs[0], accepted_ppm, analyses or {})]
+    body += [*_compared(runs)] if len(runs) > 1 else [*_single(runs[0], accepted_ppm, analyses or {}, trials)]
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
 
@@ -96,7 +99,7 @@ def _described(run: Run) -> str:
 # one run ------------------------------------------------------------------------------------------
 
 
-def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page]) -> Iterator[Markup]:
+def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials: Sequence[int]) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
     sections: dict[str, Inside] = {"verdict": together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
     sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
@@ -109,6 +112,7 @@ def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page]) -> Iter
         )
     if pairs := page_blocks(correlation_blocks(found)):
         sections["correlations"] = pairs
+    sections["in 3D"] = view_3d(run, presenter, trials)
     sections["trials"] = together(*_trials(shown))
     sections["provenance"] = together(*_provenance(run))
     anchors = {name: f"section-{number}" for number, name in enumerate(sections)}
@@ -267,8 +271,11 @@ def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
 
 
 def _document(name: str, body: Sequence[Inside]) -> str:
-    style, script = _resource("style.css"), _resource("script.js")
-    policy = POLICY.format(script=_hash_of(script), style=_hash_of(style))
+    style, scripts = _resource("style.css"), [_resource("script.js")]
+    if any('class="view"' in own for own in body if isinstance(own, Markup)):
+        scripts.append(_resource("viewer.js"))
+    allowed = " ".join(f"'sha256-{_hash_of(own)}'" for own in scripts)
+    policy = POLICY.format(scripts=allowed, style=_hash_of(style))
     head = tag(
         "head",
         tag("meta", http_equiv="Content-Security-Policy", content=policy),
@@ -278,7 +285,7 @@ def _document(name: str, body: Sequence[Inside]) -> str:
         tag("title", f"{name} · tol3d"),
         tag("style", Markup(style)),
     )
-    inside = tag("body", tag("main", *body), tag("script", Markup(script)))
+    inside = tag("body", tag("main", *body), *(tag("script", Markup(own)) for own in scripts))
     return f"<!doctype html>\n{tag('html', head, inside, lang='en')}\n"
 
 

@@ -10,8 +10,10 @@ from tol3d.report.label import legible
 from tol3d.runs.summary.run import RunSummary
 
 MOST_COLUMNS, MOST_ROWS = 24, 40
-NAMES, HEADS, CELL = 230.0, 150.0, 18.0
-LONGEST: Final = 38
+NAMES, CELL = 230.0, 18.0
+LONGEST, LONGEST_HEAD = 38, 26
+SIGN: Final = 6.2
+"""Width of a sign of a name."""
 FEWEST: Final = 2
 """Measures of a matrix; of one the contributors' bars say all."""
 
@@ -30,21 +32,30 @@ def matrix_chart(run: RunSummary) -> Markup | None:
     rows = largest(sorted(sums, key=lambda each: -sums[each]), sums, MOST_ROWS)
     wide = min(CELL * 2, (WIDTH - NAMES - 10) / len(names))
     most = max([share for own in shares.values() for share in own.values()], default=0.0) or 1.0
+    heads = SIGN * max(len(legible(name, LONGEST_HEAD)) for name in names) + 12
     inside = [
         tag(
             "text",
             tag("title", name),
-            legible(name, 26),
+            legible(name, LONGEST_HEAD),
             class_="name",
-            transform=f"translate({NAMES + wide * (k + 0.65):.1f} {HEADS - 6:.0f}) rotate(-90)",
+            transform=f"translate({NAMES + wide * (k + 0.65):.1f} {heads - 6:.0f}) rotate(-90)",
             text_anchor="start",
         )
         for k, name in enumerate(names)
     ]
     for row, contributor in enumerate(rows):
-        y = HEADS + CELL * row
+        y = heads + CELL * row
         inside.append(
-            tag("text", tag("title", contributor), legible(contributor, LONGEST), x=NAMES - 8, y=y + 13, class_="name")
+            tag(
+                "text",
+                tag("title", contributor),
+                legible(contributor, LONGEST),
+                x=NAMES - 8,
+                y=y + CELL / 2,
+                text_anchor="end",
+                class_="name",
+            )
         )
         for k, name in enumerate(names):
             if contributor not in shares[name]:
@@ -69,4 +80,4 @@ def matrix_chart(run: RunSummary) -> Markup | None:
                 inside.append(
                     tag("text", f"{share:.0f}", x=place["x"] + wide / 2, y=y + 13, text_anchor="middle", class_=dark)
                 )
-    return chart("shares of the variance of contributors in measures", HEADS + CELL * len(rows) + 8, *inside)
+    return chart("shares of the variance of contributors in measures", heads + CELL * len(rows) + 8, *inside)

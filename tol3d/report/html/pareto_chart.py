@@ -30,7 +30,15 @@ def pareto_chart(measure: MeasureSummary) -> Markup | None:
     inside = [*below(x, 4.0, bottom, "share of the variance [%]")]
     for row, (name, names) in enumerate(rows):
         top = 8 + high * row
-        label = tag("text", tag("title", name), legible(name, LONGEST), x=NAMES - 8, y=top + high / 2, class_="name")
+        label = tag(
+            "text",
+            tag("title", name),
+            legible(name, LONGEST),
+            x=NAMES - 8,
+            y=top + high / 2,
+            text_anchor="end",
+            class_="name",
+        )
         inside.append(label)
         for k, column in enumerate(columns):
             share = _share(column, names)

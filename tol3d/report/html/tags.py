@@ -6,7 +6,7 @@ from typing import Final
 
 UNSAFE: Final = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp"))
 """Unicode categories that hide or turn text: told by their numbers."""
-VOID: Final = frozenset(("br", "meta"))
+VOID: Final = frozenset(("br", "meta", "img", "input"))
 ENTITIES: Final[Mapping[str, str]] = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;"}
 
 

@@ -1,0 +1,235 @@
+"""The 3D view of a report: every mesh once, and the poses that builds were really seated in, as one packed model."""
+
+import base64
+import gzip
+import json
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import Any, Final, cast
+
+import numpy as np
+import trimesh
+from PIL import Image
+
+from tol3d.errors import Tol3dError
+from tol3d.numerics.arrays import Array
+from tol3d.report.body import Body, Surface, World
+from tol3d.report.html.tags import Markup, tag
+from tol3d.report.presenter import Display, Presenter, Which
+from tol3d.report.view import view_run
+from tol3d.runs.run import Run
+
+FACTORS: Final = (1.0, 10.0, 100.0)
+"""Magnifications of a trial's deviations; a build that does not allow one says so."""
+LARGEST: Final = 2_500_000
+"""Bytes of the packed model; beyond it parts that deviate are shown nominal."""
+ALIKE: Final = 2e-3
+"""Of a part's size: shapes that differ by less are drawn as one, where they lie best on each other."""
+STILL_WIDTH, STILL_QUALITY = 1100, 80
+GRID: Final = 2.0**-13
+"""mm; places of corners are rounded to it, an eighth of a micrometre, so that they pack."""
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """A build as it is shown.
+
+    Args:
+        words: what it is, and what should be known of it.
+        meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
+    """
+
+    words: str
+    meshes: tuple[int, ...]
+    poses: tuple[list[float], ...]
+
+
+@dataclass(eq=False)
+class _Model:
+    """Meshes by what they hold, each once."""
+
+    surfaces: list[Surface] = field(default_factory=list)
+    of_parts: dict[str, list[int]] = field(default_factory=dict)
+
+    def place(self, name: str, surface: Surface) -> tuple[int, Array]:
+        """Which mesh a part's surface is, and where that lies on it (4, 4)."""
+        vertices, triangles = surface
+        for mesh in self.of_parts.setdefault(name, []):
+            known, alike = self.surfaces[mesh]
+            if known.shape == vertices.shape and np.array_equal(alike, triangles):
+                pose = laid_on(known, vertices)
+                left = vertices - (known @ pose[:3, :3].T + pose[:3, 3])
+                if float(np.abs(left).max()) <= ALIKE * float(np.ptp(vertices, axis=0).max()):
+                    return mesh, pose
+        self.of_parts[name].append(len(self.surfaces))
+        self.surfaces.append((np.round(np.asarray(vertices, dtype=np.float64) / GRID) * GRID, triangles))
+        return len(self.surfaces) - 1, np.eye(4)
+
+    def packed(self) -> bytes:
+        """The model as a GLB, packed the same way every time."""
+        scene = trimesh.Scene()
+        for number, (vertices, triangles) in enumerate(self.surfaces):
+            mesh = trimesh.Trimesh(vertices, triangles, process=False)
+            scene.add_geometry(mesh, node_name=f"mesh-{number}", geom_name=f"mesh-{number}")
+        return gzip.compress(cast(bytes, scene.export(file_type="glb")), 9, mtime=0)
+
+
+def laid_on(points: Array, others: Array) -> Array:
+    """The pose (4, 4) that lays points (n, 3) best on others, by least squares (Kabsch 1976)."""
+    middle, there = points.mean(axis=0), others.mean(axis=0)
+    left, _, right = np.linalg.svd((points - middle).T @ (others - there))
+    turn = (left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right).T
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turn, there - turn @ middle
+    return pose
+
+
+def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Markup:
+    """Nominal, worst and chosen builds in 3D; a sentence where there is nothing to show.
+
+    Args:
+        run: a finished run.
+        presenter: of its system.
+        trials: which are shown besides.
+    """
+    wanted: list[Which] = ["nominal", *(["worst"] if run.keeps_trials else []), *trials]
+    model, world = _Model(), None
+    builds = list[tuple[str, list[_State]]]()
+    for which in wanted:
+        try:
+            states, world = _states(run, presenter, which, model, world)
+        except Tol3dError as error:
+            if not builds:
+                return tag("p", f"no 3D view: {error}", class_="note")
+            continue
+        builds.append((_called(which), states))
+    assert world is not None, "the nominal build has one"
+    packed, nominal = model.packed(), tuple[str, ...]()
+    if len(packed) > LARGEST:
+        builds, model, nominal = _undeviated(builds, model, world)
+        packed = model.packed()
+    return _figure(world, builds, packed, _still(run), nominal)
+
+
+def _states(
+    run: Run, presenter: Presenter, which: Which, model: _Model, shown: World | None
+) -> tuple[list[_State], World]:
+    """A build at every magnification, of its world that shows the most."""
+    found = list[_State]()
+    for factor in (1.0,) if which == "nominal" else FACTORS:
+        display = presenter.display(run, which, magnify=factor)
+        world = _world_of(display, shown)
+        shown = shown or world
+        if shown is None or world is None:
+            continue
+        placed = [model.place(body.name, _surface(body)) for body in world.bodies]
+        poses = tuple(_pose(body, on) for body, (_, on) in zip(world.bodies, placed, strict=True))
+        words = "; ".join((display.label, *display.notes))
+        found.append(_State(words, tuple(mesh for mesh, _ in placed), poses))
+    if shown is None or not found:
+        raise Tol3dError(f"{which}: there is nothing to show in 3D")
+    return found, shown
+
+
+def _world_of(display: Display, shown: World | None) -> World | None:
+    """The world with the most bodies, or the one of that name."""
+    worlds = [own for own in display.worlds if own.bodies and (shown is None or own.name == shown.name)]
+    return max(worlds, key=lambda own: len(own.bodies), default=None)
+
+
+def _surface(body: Body) -> Surface:
+    surface = body.surface()
+    if body.details is None:
+        return surface
+    (vertices, triangles), (more, further) = surface, body.details()
+    return np.vstack([vertices, more]), np.vstack([triangles, further + len(vertices)])
+
+
+def _pose(body: Body, on_part: Array) -> list[float]:
+    """Of a part's mesh that lies so on it, the growth in it; column by column."""
+    grown = np.array(body.world_from_part, dtype=np.float64)
+    grown[:3, :3] *= body.scale
+    pose = grown @ on_part
+    return [float(f"{value:.12g}") for value in pose.T.ravel()]
+
+
+def _called(which: Which) -> str:
+    return which if isinstance(which, str) else f"trial {which}"
+
+
+def _undeviated(
+    builds: Sequence[tuple[str, list[_State]]], model: _Model, world: World
+) -> tuple[list[tuple[str, list[_State]]], _Model, tuple[str, ...]]:
+    """The same with every part as it is nominally, and which parts are not as they were built."""
+    nominal = builds[0][1][0].meshes
+    deviate = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh != nominal[k]}
+    fewer = _Model([model.surfaces[mesh] for mesh in nominal])
+    places = tuple(range(len(nominal)))
+    kept = [(name, [_State(own.words, places, own.poses) for own in states]) for name, states in builds]
+    return kept, fewer, tuple(world.bodies[k].name for k in sorted(deviate))
+
+
+def _still(run: Run) -> str:
+    """The picture that stands there where nothing can be turned: as `tol3d view` shows it."""
+    which: Which = "worst" if run.keeps_trials else "nominal"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "still.png"
+        try:
+            view_run(run, which, screenshot=path)
+        except Tol3dError:
+            return ""
+        picture = BytesIO()
+        with Image.open(path) as drawn:
+            drawn.thumbnail((STILL_WIDTH, STILL_WIDTH))
+            drawn.convert("RGB").save(picture, "JPEG", quality=STILL_QUALITY)
+        return base64.b64encode(picture.getvalue()).decode()
+
+
+def _figure(
+    world: World,
+    builds: Sequence[tuple[str, list[_State]]],
+    packed: bytes,
+    still: str,
+    nominal: Sequence[str],
+) -> Markup:
+    told: dict[str, Any] = {
+        "up": list(world.up),
+        "parts": [{"colour": own.colour, "opacity": own.opacity} for own in world.bodies],
+        "builds": [
+            {"states": [{"words": own.words, "meshes": own.meshes, "poses": own.poses} for own in states]}
+            for _, states in builds
+        ],
+    }
+    data = json.dumps(told, sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
+    picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
+    return tag(
+        "figure",
+        tag("div", tag("canvas"), picture if still else None, class_="stage"),
+        *_controls(world, builds),
+        tag("p", class_="state note"),
+        tag("p", f"shown nominal: {', '.join(nominal)}", class_="note") if nominal else None,
+        tag("script", Markup(data), type="application/json", id="view-data"),
+        tag("script", Markup(base64.b64encode(packed).decode()), type="text/plain", id="view-model"),
+        class_="view",
+    )
+
+
+def _controls(world: World, builds: Sequence[tuple[str, list[_State]]]) -> Iterator[Markup]:
+    options = (tag("option", name, value=number) for number, (name, _) in enumerate(builds))
+    slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
+    yield tag(
+        "div",
+        tag("label", "build ", tag("select", *options, name_="build")),
+        tag("label", "deviations × ", slider),
+        tag("button", "fit", type="button", name_="fit"),
+        tag("span", "drag turns, wheel zooms, double click fits", class_="dim"),
+        class_="controls",
+    )
+    boxes = (
+        tag("label", tag("input", type="checkbox", name_="part", value=k, checked=""), f" {own.name}")
+        for k, own in enumerate(world.bodies)
+    )
+    yield tag("details", tag("summary", "parts"), tag("div", *boxes, class_="controls"), open="")
