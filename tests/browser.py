@@ -79,10 +79,9 @@ class Page:
 
     def picture(self, selector: str) -> np.ndarray:
         """What an element looks like (height, width, 3)."""
-        box = self.ask(
-            f"(() => {{ const e = document.querySelector({json.dumps(selector)}); e.scrollIntoView({{block: 'center'}});"
-            "const b = e.getBoundingClientRect(); return [b.x + scrollX, b.y + scrollY, b.width, b.height]; })()"
-        )
+        element = f"document.querySelector({json.dumps(selector)})"
+        self.ask(f"{element}.scrollIntoView({{block: 'center'}})")
+        box = self.ask(f"(b => [b.x + scrollX, b.y + scrollY, b.width, b.height])({element}.getBoundingClientRect())")
         clip = dict(zip(("x", "y", "width", "height"), box, strict=True)) | {"scale": 1}
         found = self.call("Page.captureScreenshot", format="png", clip=clip, captureBeyondViewport=True)
         with Image.open(io.BytesIO(base64.b64decode(found["data"]))) as drawn:

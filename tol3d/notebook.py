@@ -267,6 +267,7 @@ def write_report(
     out: Path | str,
     *,
     accepted_ppm: float = ACCEPTED_PPM,
+    trials: Sequence[int] = (),
     force: bool = False,
 ) -> Path:
     """Write a run, or several compared, as one page of HTML, as `tol3d report` does.
@@ -275,6 +276,7 @@ def write_report(
         runs: finished runs, or their folders.
         out: the file.
         accepted_ppm: share of trials that may be out of a measure's limits.
+        trials: which the 3D view has besides the nominal build and the worst one.
         force: replace a file that is there.
 
     Raises:
@@ -286,7 +288,7 @@ def write_report(
     several = [runs] if isinstance(runs, Run | Path | str) else runs
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
-    text = report.report_html([opened_run(run) for run in several], accepted_ppm=accepted_ppm, made=made)
+    text = report.report_html([opened_run(run) for run in several], accepted_ppm=accepted_ppm, trials=trials, made=made)
     try:
         write_whole(path, text.encode())
     except OSError as error:

@@ -156,6 +156,7 @@ async function show(figure) {
     figure.classList.add("live");
     figure.view = new View(figure, told, renderer, found.scene);
     figure.dataset.ready = "yes";
+    performance.mark("seen");
   }, () => {});
 }
 

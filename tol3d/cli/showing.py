@@ -158,6 +158,9 @@ def compare(
 def report(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
     out: Annotated[Path, typer.Option(help="The page to write.")] = Path("report.html"),
+    trials: Annotated[
+        str, typer.Option("--trials", metavar="N,…", help="Trials that its 3D view has besides nominal and worst.")
+    ] = "",
     accept: AcceptOption = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
@@ -165,7 +168,10 @@ def report(
     from tol3d.notebook import write_report
     from tol3d.report.verdict import ACCEPTED_PPM
 
-    write_report(runs, out, accepted_ppm=ACCEPTED_PPM if accept is None else accept, force=force)
+    accepted = ACCEPTED_PPM if accept is None else accept
+    chosen = [whole(0)(own.strip()) for own in trials.split(",") if own.strip()]
+    with err_console.status("report"):
+        write_report(runs, out, accepted_ppm=accepted, trials=chosen, force=force)
     tell(str(out))
 
 

@@ -1,0 +1,154 @@
+"""Reports as a reader sees them, in Chromium: the picture is judged, not that there is one."""
+
+import re
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import Page, browser
+
+from tol3d import run_scene
+from tol3d.notebook import write_report
+from tol3d.runs.run import Run
+from tol3d.simulate import Overrides
+
+pytestmark = pytest.mark.slow
+
+READY = "document.querySelector('figure.view').dataset.ready === 'yes'"
+STAGE = ".stage"
+LARGEST = 2_000_000
+"""Bytes of the page of a bevel pair, and of gears in a housing."""
+SOON = 8.0
+"""s, until the parts can be turned, beside other work; alone it takes 1.3."""
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[Page]:
+    with browser() as own:
+        yield own
+
+
+@pytest.fixture(scope="module")
+def spur(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return run_scene(
+        "spur_pair", overrides=Overrides(trials=300, witness=0), out=tmp_path_factory.mktemp("run") / "spur"
+    )
+
+
+@pytest.fixture(scope="module")
+def written(spur: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_report(spur, tmp_path_factory.mktemp("report") / "report.html", trials=(5,))
+
+
+def _hues(picture: np.ndarray) -> dict[str, np.ndarray]:
+    """Which pixels (height, width) are of the pinion's blue and of the wheel's orange, in light and in shade."""
+    red, green, blue = np.moveaxis(picture, -1, 0)
+    lively = picture.max(axis=-1) - picture.min(axis=-1) > 60
+    return {"pinion": lively & (blue > red) & (blue > green), "wheel": lively & (red > green) & (green > blue)}
+
+
+def test_parts_are_seen_whole_in_their_colours_and_can_be_hidden(page: Page, written: Path) -> None:
+    page.open(written)
+    page.wait(READY)
+    seen = page.picture(STAGE)
+    hues = _hues(seen)
+    assert 0.005 < hues["pinion"].mean() < 0.2
+    assert 0.1 < hues["wheel"].mean() < 0.6
+    for part in hues.values():
+        rows, columns = np.nonzero(part)
+        assert rows.min() > 2, "nothing is cut off"
+        assert rows.max() < seen.shape[0] - 3
+        assert columns.min() > 2
+        assert columns.max() < seen.shape[1] - 3
+        assert 40 < np.median(seen[part].max(axis=-1)) < 250, "neither black nor blinding"
+    page.ask("document.querySelector('[name=part][value=\"0\"]').click()")
+    hidden = _hues(page.picture(STAGE))
+    assert hidden["pinion"].mean() < 1e-3
+    assert hidden["wheel"].mean() > 0.1
+    page.ask("document.querySelector('[name=part][value=\"0\"]').click()")
+
+
+def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, written: Path) -> None:
+    page.open(written)
+    page.wait(READY)
+    choices = page.ask("[...document.querySelectorAll('[name=build] option')].map(own => own.textContent)")
+    assert choices == ["nominal", "worst", "trial 5"]
+    moved = []
+    for factor in (0, 2):
+        page.ask(
+            "(() => { const of = name => document.querySelector(`[name=${name}]`); of('build').value = 1;"
+            f"of('build').dispatchEvent(new Event('change')); of('factor').value = {factor};"
+            "of('factor').dispatchEvent(new Event('input')); })()"
+        )
+        moved.append(page.picture(STAGE))
+    assert "magnified" in page.ask("document.querySelector('.state').textContent")
+    assert np.abs(moved[0] - moved[1]).max() > 60
+
+
+def test_a_page_says_nothing_asks_nothing_and_fits(page: Page, written: Path) -> None:
+    page.told.clear()
+    page.asked.clear()
+    for width in (390, 1400):
+        for dark in (False, True):
+            page.open(written, width, dark=dark)
+            page.wait(READY)
+            assert page.ask("document.documentElement.scrollWidth <= innerWidth"), "no part of it is beside the screen"
+            brightness = float(np.median(page.picture("h1")))
+            assert brightness < 60 if dark else brightness > 200
+    assert page.told == []
+    assert {own.partition(":")[0] for own in page.asked} <= {"file", "data"}
+    assert all(own == written.resolve().as_uri() for own in page.asked if own.startswith("file"))
+
+
+def test_a_bar_lists_its_trials_with_the_commands_that_show_them(page: Page, spur: Run, written: Path) -> None:
+    page.open(written)
+    page.ask(
+        "document.querySelector('figure[data-trials] rect[data-bar]:nth-of-type(9)')"
+        ".dispatchEvent(new MouseEvent('click', {bubbles: true}))"
+    )
+    told = page.ask("document.querySelector('.picked').innerText")
+    low, high = (float(own) for own in re.findall(r"(-?[\d.]+) µm", told)[:2])
+    trials = [int(own) for own in re.findall(r"--trial (\d+)", told)]
+    values = spur.columns("geometric:normal backlash")["geometric:normal backlash"][trials]
+    assert trials
+    assert ((values > low - 0.051) & (values < high + 0.051)).all(), "bars are told to 0.1 µm"
+
+
+def test_code_that_is_put_into_a_page_does_nothing(page: Page, written: Path, tmp_path: Path) -> None:
+    attacks = (
+        "<script>window.struck = 1</script><img src=x onerror='window.struck = 1'>"
+        "<a id=trap href='javascript:window.struck = 1'>x</a>"
+    )
+    attacked = tmp_path / "attacked.html"
+    attacked.write_text(written.read_text().replace("<main>", f"<main>{attacks}"))
+    page.open(attacked)
+    page.ask("document.getElementById('trap').click()")
+    assert page.ask("window.struck === undefined")
+    page.told.clear()
+
+
+def test_a_page_prints_with_its_tables_and_a_still_picture(page: Page, written: Path) -> None:
+    page.open(written)
+    page.wait(READY)
+    pdf = page.pdf()
+    assert 3 <= len(re.findall(rb"/Type\s*/Page\b", pdf)) <= 12
+    streams = [
+        zlib.decompress(own) for own in re.findall(rb"/FlateDecode[^>]*>>\s*stream\r?\n(.*?)endstream", pdf, re.S)
+    ]
+    assert sum(own.count(b"Tj") + own.count(b"TJ") for own in streams) > 200, "text, not a picture of it"
+    assert b"/DCTDecode" in pdf, "the still picture, where nothing can be turned"
+
+
+@pytest.mark.parametrize("name", ["bevel_pair", "gearbox_in_housing"])
+def test_pages_are_small_and_soon_ready(name: str, page: Page, tmp_path: Path) -> None:
+    run = run_scene(name, overrides=Overrides(trials=100, witness=0), out=tmp_path / name)
+    path = write_report(run, tmp_path / "report.html")
+    assert path.stat().st_size < LARGEST
+    waited = []
+    for _ in range(3):
+        page.open(path)
+        page.wait(READY)
+        waited.append(page.ask("performance.getEntriesByName('seen')[0].startTime"))
+    assert sorted(waited)[1] < 1000 * SOON
