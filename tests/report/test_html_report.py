@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
 from tol3d import InputError, load_scene, run_scene
 from tol3d.notebook import write_report
@@ -17,6 +18,10 @@ from tol3d.report.html.tags import escaped, tag
 from tol3d.runs.run import Run
 from tol3d.simulate import Execution, Overrides
 
+PACKED = "H4sI"
+"""What is packed by gzip begins so, in base64."""
+BARS = '{"bars"'
+"""Data of a histogram begin so."""
 HOSTILE = ("<script>alert(1)</script>", "\"'>", "</script>", "a" * 2000, "&lt;", "javascript:alert(1)")
 
 
@@ -33,7 +38,7 @@ class _Read(HTMLParser):
 
     def handle_starttag(self, name: str, attributes: list[tuple[str, str | None]]) -> None:
         self.elements.append((name, dict(attributes)))
-        if name not in ("meta", "br"):
+        if name not in ("meta", "br", "img", "input"):
             self._open.append(name)
 
     def handle_endtag(self, name: str) -> None:
@@ -53,27 +58,33 @@ def spur(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run_scene("spur_pair", overrides=Overrides(trials=300, witness=0), out=folder)
 
 
+@pytest.fixture(scope="module")
+def text(spur: Run) -> str:
+    return report_html([spur])
+
+
 def _no_way_out(text: str) -> _Read:
     """A page that asks nothing of anybody, whose scripts and styles are those that its policy allows."""
     page = _Read(text)
     policy = next(own["content"] or "" for name, own in page.elements if own.get("http-equiv"))
     assert page.elements[2][1].get("http-equiv") == "Content-Security-Policy", "before anything that it rules"
     for kind in ("script", "style"):
-        allowed = re.search(rf"{kind}-src 'sha256-([^']+)'", policy)
-        own = [text for text in page.inside(kind) if not text.startswith("{")]
-        assert allowed
-        assert [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in own] == [allowed[1]]
+        rule = next(own for own in policy.split(";") if f"{kind}-src" in own)
+        own = [text for text in page.inside(kind) if not text.startswith(("{", PACKED))]
+        hashes = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in own]
+        assert re.findall(r"'sha256-([^']+)'", rule) == hashes
     for name, attributes in page.elements:
         for key, value in attributes.items():
             assert key != "style"
             assert not key.startswith("on")
-            assert key not in ("src", "srcset", "action")
+            assert key not in ("srcset", "action")
+            assert key != "src" or str(value).startswith("data:")
             assert key != "href" or str(value).startswith("#"), f"{name} leads out: {value}"
     return page
 
 
-def test_numbers_of_a_page_are_those_of_its_summary(spur: Run) -> None:
-    page = _no_way_out(report_html([spur]))
+def test_numbers_of_a_page_are_those_of_its_summary(spur: Run, text: str) -> None:
+    page = _no_way_out(text)
     told = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
     for measure in spur.found.measures.values():
         for sample in (measure.analytic, measure.geometric):
@@ -82,12 +93,12 @@ def test_numbers_of_a_page_are_those_of_its_summary(spur: Run) -> None:
     assert "too few trials to say" in [*page.inside("p")], "of 300 trials none is out: less than 1.2 % are, at 95 %"
 
 
-def test_bars_hold_every_trial_and_name_some_of_theirs(spur: Run) -> None:
-    page = _no_way_out(report_html([spur]))
+def test_bars_hold_every_trial_and_name_some_of_theirs(spur: Run, text: str) -> None:
+    page = _no_way_out(text)
     counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
     measures = len(spur.found.measures)
     assert sum(counted) == 2 * measures * spur.trials, "each in its histogram, and in that of the differences"
-    data = [json.loads(text) for text in page.inside("script") if text.startswith("{")]
+    data = [json.loads(text) for text in page.inside("script") if text.startswith(BARS)]
     assert len(data) == measures
     edges = [own for own in page.elements if own[1].get("data-bar")]
     assert {own[1]["data-bar"] for own in edges} >= {bar for own in data for bar in own["bars"]}
@@ -96,13 +107,11 @@ def test_bars_hold_every_trial_and_name_some_of_theirs(spur: Run) -> None:
     assert max(groups) < 0.1 * (values.max() - values.min()), "trials of one bar are alike"
 
 
-def test_the_same_run_gives_the_same_bytes(spur: Run, tmp_path: Path) -> None:
-    assert report_html([spur]) == report_html([spur])
+def test_the_same_run_gives_the_same_bytes(spur: Run, text: str, tmp_path: Path) -> None:
+    """But for one element, which says when and where."""
     written = write_report(spur, tmp_path / "report.html")
-    first, second = (
-        re.sub(r'<p class="note" id="made">.*?</p>', "", own) for own in (written.read_text(), report_html([spur]))
-    )
-    assert first == second
+    made = r'<p class="note" id="made">.*?</p>'
+    assert re.sub(made, "", written.read_text()) == re.sub(made, "", text)
     with pytest.raises(InputError, match="there is one already"):
         write_report(spur, written)
 
@@ -131,7 +140,7 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
     run = run_scene(path, overrides=Overrides(trials=50, witness=0), out=tmp_path / "run")
     page = _no_way_out(report_html([run]))
     assert hostile in "".join(page.inside("h1"))
-    assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 1
+    assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 2
 
 
 def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run, tmp_path: Path) -> None:
@@ -141,7 +150,7 @@ def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run,
         out=tmp_path / "bare",
         execution=Execution(keep_trials=False),
     )
-    assert not [text for text in _no_way_out(report_html([bare])).inside("script") if text.startswith("{")]
+    assert not [text for text in _no_way_out(report_html([bare])).inside("script") if text.startswith(BARS)]
     together = _no_way_out(report_html([spur, bare]))
     assert {"spur", "bare"} <= set(together.inside("th"))
     other = run_scene("door", overrides=Overrides(trials=50), out=tmp_path / "door")
@@ -156,3 +165,12 @@ def test_every_kind_of_system_has_a_page(name: str, tmp_path: Path) -> None:
     run = run_scene(name, overrides=Overrides(trials=60, witness=0), out=tmp_path / name)
     page = _no_way_out(report_html([run]))
     assert sum(own == "svg" for own, _ in page.elements) >= len(run.found.measures)
+
+
+def test_the_3d_view_is_the_one_that_was_bundled() -> None:
+    told = (ROOT / "viewer" / "viewer.sha256").read_text().strip()
+    bundle = (ROOT / "tol3d" / "report" / "html" / "viewer.js").read_bytes()
+    assert hashlib.sha256(bundle).hexdigest() == told
+    assert b"</script" not in bundle
+    licence = (ROOT / "tol3d" / "report" / "html" / "LICENSE.three").read_text()
+    assert licence.startswith("The MIT License")
