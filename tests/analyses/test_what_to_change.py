@@ -1,6 +1,8 @@
 """What to change: closed forms of a normal sum, and scenes changed as it says and simulated again."""
 
+import json
 import math
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +17,12 @@ from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides
+from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.estimated_changes import estimated_changes, not_ok
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import keep, sections_of
 from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
+from tol3d.analyses.what_to_change_picture import changes_of_one, draw_changes
 from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
 from tol3d.distributions.normal import Normal
 from tol3d.report.page import page
@@ -30,6 +34,7 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
 from tol3d.system.draw import Scalar
 from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
+from tol3d.units import Quantity
 
 Array = NDArray[np.float64]
 
@@ -188,6 +193,62 @@ def test_a_scene_changed_as_it_says_has_what_was_said(spur: Scene, changes: Chan
             )
 
 
+def changed(scene: Scene, name: str, shift: float, factor: float) -> Scene | None:
+    """With a tolerance's law moved [um] and so many times as wide, as one would write it; None of others."""
+    entry = scene.tolerances[name].model_dump(mode="json")
+    law, own = entry.get("distribution") or {}, f"tolerances.{name}"
+    if "lower" in law and "upper" in law and law["lower"] is not None:
+        lower, upper = (1e3 * Quantity.parse(law[key]).internal for key in ("lower", "upper"))
+        middle, half = (lower + upper) / 2 + shift, factor * (upper - lower) / 2
+        fields = {"lower": middle - half, "upper": middle + half}
+    elif law.get("sigma") is not None:
+        mean, sigma = (1e3 * Quantity.parse(law[key]).internal for key in ("mean", "sigma"))
+        fields = {"mean": mean + shift, "sigma": factor * sigma}
+    elif "diameter" in (entry.get("zone") or {}) and entry.get("law") == {"kind": "uniform"} and not shift:
+        diameter = 1e3 * Quantity.parse(entry["zone"]["diameter"]).internal
+        return scene.with_({f"{own}.zone.diameter": f"{factor * diameter!r} um"})
+    else:
+        return None
+    return scene.with_({f"{own}.distribution.{key}": f"{value!r} um" for key, value in fields.items()})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "least"), [("door", 25), ("four_pads", 12), ("gearbox_in_housing", 4), ("every_planetary_field", 3)]
+)
+def test_other_scenes_changed_as_it_says_have_what_was_said(name: str, least: int) -> None:
+    _changed_as_it_says(name, least)
+
+
+def test_an_assembly_changed_as_it_says_has_what_was_said() -> None:
+    _changed_as_it_says("clutch", 2)
+
+
+def _changed_as_it_says(name: str, least: int) -> None:
+    """The same draws: means and sigmas within rounding, and the same share out of limits; so many changes at least.
+
+    Of nominals that move a mean and whose law can be moved, and of halved laws and zones.
+    """
+    scene, builds = load(name), 400
+    found = changes_of(response_of(simulation_of(scene)), ChangesQuestion(builds=builds, accepted_ppm=1000.0))
+    held = 0
+    for measure, own in found.measures.items():
+        moved = [(each.contributor, each.change, 1.0, each.after) for shift in own.shifts for each in shift.by]
+        for contributor, shift, factor, after in [*moved, *((e.contributor, 0.0, 0.5, e.after) for e in own.halved)]:
+            if contributor not in scene.tolerances or (other := changed(scene, contributor, shift, factor)) is None:
+                continue
+            response = response_of(simulation_of(other)).of(measure)
+            built = response.values(*drawn_builds(response, builds))
+            values = built.values[built.seated[:, 0], 0]
+            got = (float(values.mean()), float(values.std(ddof=1)))
+            assert got == pytest.approx((after.mean, after.sigma), rel=1e-5, abs=1e-4)
+            lower, upper = (-math.inf if own.lower_limit is None else own.lower_limit), own.upper_limit
+            inside = (values >= lower) & (values <= (math.inf if upper is None else upper))
+            assert 1e6 * (1 - inside.sum() / builds) == pytest.approx(after.out_ppm, abs=1e6 / builds + 1e-6)
+            held += 1
+    assert held >= least
+
+
 def test_no_clearance_is_asked_to_be_less_than_nothing() -> None:
     """The bearing clearance of 2 to 30 um acts by half: it cannot take 30 um out of the backlash."""
     scene = load("spur_pair").with_({"measures.normal backlash.upper_limit": "25 um"})
@@ -274,6 +335,34 @@ def test_what_cannot_be_asked_is_refused() -> None:
         changes_of(formula(linear, None, None))
     with pytest.raises(InputError, match="got 'valu'"):
         changes_of(formula(linear, None, 1.0), ChangesQuestion("valu"))
+
+
+def test_a_curve_is_told_by_its_ends() -> None:
+    """The spring's profile has an upper limit: its highest value is asked for, of a run that names the curve."""
+    with known(PARABOLA):
+        response = response_of(simulation_of(load(TOYS / "parabola" / "spring.yaml")))
+        assert list(changes_of(response, ChangesQuestion(builds=200), bad=["profile"]).measures) == ["profile, highest"]
+
+
+def test_a_picture_shows_every_change(changes: Changes, tmp_path: Path) -> None:
+    own = changes.measures["normal backlash"]
+    words = [each for each, _, _ in changes_of_one(own)]
+    assert words[0] == "as it is"
+    assert len(words) == 1 + sum(1 + len(shift.by) for shift in own.shifts) + len(own.halved)
+    draw_changes("pair", changes, tmp_path / "changes.png")
+    assert (tmp_path / "changes.png").stat().st_size > 10_000
+
+
+def test_the_command_keeps_what_it_finds(run: Any, tol3d: Any, tmp_path: Path) -> None:
+    """The fixture `run` is left as it is: a copy of it is asked."""
+    copy = tmp_path / "run"
+    shutil.copytree(run.path, copy)
+    code, out, _ = tol3d("changes", str(copy), "--builds", "100", "--csv", str(tmp_path / "c.csv"))
+    assert code == 0
+    assert "normal backlash · limits 48 µm to 75 µm · 100 builds each" in out
+    assert json.loads((copy / "analyses" / "changes.json").read_text("utf-8"))["by"] == "simulation"
+    assert (tmp_path / "c.csv").read_text("utf-8").count("\n") == 1 + 2 * 7  # two measures, seven contributors
+    assert tol3d("changes", "spur_pair", "--measure", "lost motion")[0] == 2
 
 
 def test_a_mechanism_from_outside() -> None:

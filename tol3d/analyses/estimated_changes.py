@@ -10,9 +10,11 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.response import response_of
 from tol3d.analyses.slopes import few_slopes, levers_of
 from tol3d.analyses.what_to_change import (
+    SHARE_OF_PLAY,
     TOLD,
     Asked,
     Changes,
@@ -21,7 +23,6 @@ from tol3d.analyses.what_to_change import (
     Moved,
     Shift,
     Spread,
-    drawn_builds,
     helpful,
     levers_for,
     limits_of,
@@ -189,7 +190,9 @@ class _Told(Asked):
         good = now[~np.isnan(now)]
         mean = float(good.mean()) if len(good) else 0.0
         found = []
-        for name, share in [*self.shares.items()][:TOLD]:
+        units = {own.name: own.unit for own in self.response.contributors}
+        shares = {name: share for name, share in self.shares.items() if units.get(name) != SHARE_OF_PLAY}
+        for name, share in [*shares.items()][:TOLD]:
             after = self.spread(mean + (now - mean) * float(np.sqrt(1.0 - 0.75 * share)))
             found.append(made(Halved, contributor=name, share_percent=100 * share, after=after))
         return helpful(found, spread)

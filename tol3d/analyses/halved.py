@@ -1,25 +1,32 @@
-"""Deviations of builds as if one tolerance were half as wide: halved about their mean, also where others read it."""
+"""Deviations of builds as if one tolerance were half as wide, by the same draws."""
+
+from typing import Final
 
 import numpy as np
 
+from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.response import Response
+from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
-HALF = 0.5
+HALF: Final = 0.5
 
 
 def halved_deviations(response: Response, name: str, deviations: Array) -> Array:
-    """Deviations (n, components) with those of a contributor halved about their mean.
+    """Deviations (n, components) with a contributor's law half as wide about its middle, and what follows it.
 
-    Of draws that follow others only the deviations themselves are halved: a zone that a size widens keeps its width.
+    Of a law that cannot be scaled the deviations themselves are halved about their mean.
 
     Args:
         response: whose draws.
         name: of the contributor.
-        deviations: as they were drawn (n, components) [mm, rad, K].
+        deviations: as `drawn_builds` drew them (n, components) [mm, rad, K].
     """
-    found = np.array(deviations)
-    own = response.slices[name]
-    mean = np.asarray(response.draws[name].mean(turning=False))
-    found[:, own] = mean + HALF * (deviations[:, own] - mean)
-    return found
+    try:
+        other = response.scaled({name: HALF}, {name: "middle"})
+    except InputError:
+        found, own = np.array(deviations), response.slices[name]
+        mean = np.asarray(response.draws[name].mean(turning=False))
+        found[:, own] = mean + HALF * (deviations[:, own] - mean)
+        return found
+    return drawn_builds(other, len(deviations))[0]

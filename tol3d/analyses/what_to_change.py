@@ -1,18 +1,19 @@
 """What to change where limits are left: which nominal to move, which tolerance to halve, and what takes the mean off.
 
 Rates say which contributors come into question (slopes.py). What each change does is then simulated: the same builds
-again, as the study draws them, but with a nominal moved, or with a tolerance's deviations halved about their mean. What
-differs is the change alone, for draws are the same. estimated_changes.py says it below a verdict, by rates alone.
+again, as the study draws them, but with a nominal moved, or with a tolerance half as wide. What differs is the change
+alone, for draws are the same. estimated_changes.py says it below a verdict, by rates alone.
 """
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
 from pydantic import Field
 
+from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.halved import halved_deviations
 from tol3d.analyses.response import Response
 from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, rates_of
@@ -48,6 +49,8 @@ SURE: Final = 3.0
 """Standard errors of a mean, within which it stays too."""
 MET: Final = 0.01
 """Of a shift, what may be left of it."""
+SHARE_OF_PLAY: Final = "1"
+"""Unit of what is no tolerance: where a part lies in its play."""
 USELESS: Final = 1e-3
 """Of the steepest slope; by a flatter one no mean is moved."""
 
@@ -81,7 +84,7 @@ class Shift(Section):
 
 
 class Halved(Section):
-    """A tolerance whose deviations are halved about their mean."""
+    """A tolerance that is half as wide about its middle."""
 
     contributor: Label
     share_percent: Known = Field(description="of the variance, by slopes")
@@ -223,15 +226,6 @@ class Effort:
         builds = int(SECONDS / cost / (TRIED + 2 * LEVERS + 1))
         builds = question.builds or min(max(builds, FEWEST_BUILDS), MOST_BUILDS)
         return cls(min(max(rows, 2), MOST_ROWS), builds)
-
-
-def drawn_builds(response: Response, count: int) -> tuple[Array, Mapping[str, Array]]:
-    """So many builds as the study draws them, by independent draws."""
-    study = response.simulation.study
-    if study.sampler != "monte_carlo":
-        simulation = replace(response.simulation, study=replace(study, sampler="monte_carlo", replicates=1))
-        response = replace(response, simulation=simulation)
-    return response.drawn(count)
 
 
 def _read_of(response: Response, name: str) -> list[str]:
@@ -408,8 +402,10 @@ class _Simulated(Asked):
         """The tolerances whose halving helps most."""
         shares = self.rates.shares[0]
         found = []
-        for k in [k for k in np.argsort(-shares, kind="stable") if shares[k] > 0.0][:TRIED]:
-            name = self.response.contributors[int(k)].name
+        known = self.response.contributors
+        ranked = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] > 0.0]
+        for k in [k for k in ranked if known[k].unit != SHARE_OF_PLAY][:TRIED]:
+            name = known[k].name
             after = self.spread(self.built(halved_deviations(self.response, name, self.deviations)))
             found.append(made(Halved, contributor=name, share_percent=100 * float(shares[k]), after=after))
         return helpful(found, now)

@@ -26,8 +26,8 @@ ERRORS: Final = 1.96
 """Standard errors of an interval of 95 %."""
 BY: Final = {
     "simulation": (
-        "each change is simulated: the same draws with a nominal moved, or with a tolerance's deviations halved about "
-        "their mean; out of limits with its interval of 95 %"
+        "each change is simulated: the same draws with a nominal moved, or with a tolerance half as wide about its "
+        "middle; out of limits with its interval of 95 %"
     ),
     "rates": (
         "estimates: the run's trials shifted, or narrowed by the contributor's share of the variance; "

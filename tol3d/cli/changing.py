@@ -24,6 +24,7 @@ from tol3d.cli.console import INTERRUPTED, err_console, out_console, tell
 SubjectArgument = Annotated[
     str, typer.Argument(metavar="SCENE|RUN", help="A scene's file or bundled name, or the folder of a finished run.")
 ]
+PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the picture here.")]
 CsvOption = Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write the table to this file.")]
 
 
@@ -38,6 +39,7 @@ def changes(
         Path | None,
         typer.Option("--csv", metavar="FILE", help="Write slopes and shares of every contributor and measure."),
     ] = None,
+    picture: PictureOption = None,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
@@ -62,6 +64,11 @@ def changes(
     out_console.print(changes_report(subject.simulation.system.name, found))
     if csv is not None:
         tell(f"contributions: {csv}")
+    if picture is not None:
+        from tol3d.analyses.what_to_change_picture import draw_changes
+
+        draw_changes(subject.simulation.system.name, found, picture)
+        tell(f"picture: {picture}")
     if (path := subject.keep("changes", found)) is not None:
         tell(f"kept: {path}")
 
@@ -100,7 +107,7 @@ def sweep(
         typer.Option(help="Keep variants here; by default runs/<scene>-sweep. What is there is not run again."),
     ] = None,
     csv: CsvOption = None,
-    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the picture here.")] = None,
+    picture: PictureOption = None,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
