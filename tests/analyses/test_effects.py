@@ -306,6 +306,31 @@ def test_what_cannot_be_asked_is_refused() -> None:
         response_of(simulation_of(load("every_field"))).of("normal backlash curve")
 
 
+KINDS = ("bevel_pair", "every_field", "housed_gears", "robot_shoulder_swing", "slider_crank")
+    "bevel_pair",
+    "cover_on_base",
+    "every_field",
+    "housed_gears",
+    "reducer_3k",
+    "robot_shoulder_swing",
+    "slider_crank",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", KINDS)
+def test_scenes_of_every_mechanism_have_effects(name: str) -> None:
+    """Of all measures, ends of curves too, each with what acts on it; what is shown of them has as many rows."""
+    response = response_of(simulation_of(load(name)))
+    found = effects(response, base=4)
+    assert list(found.measures) == [own.name for own in response.measures]
+    for own in response.measures:
+        acting = {each.name for each in response.acting(own)}
+        assert acting <= set(found.measures[own.name].contributors)
+    rows = sum(len(own.contributors) for own in found.measures.values())
+    assert len(effects_csv(found).splitlines()) == rows + 1
+
+
 def test_a_mechanism_from_outside() -> None:
     """The bundled spring: what terms of second order add is no share of the first order, but of the total."""
     with known(PARABOLA):

@@ -35,6 +35,10 @@ FREQUENT: Final = 1000
 FREQUENT_SHARE: Final = 1 / 8
 """Builds that fail, of those of all pairs, from which on a simulation says who is to blame; of few such a share."""
 PLACES: Final = 8
+FEWEST_PLACES: Final = 2
+MOST_MINUTES: Final = 0.02
+"""Of a processor for one step towards the design points at all positions."""
+LEAST_MINUTES: Final = 1e-9
 STARTS, STARTS_ALONE = 1, 8
 
 
@@ -102,8 +106,10 @@ def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | 
 
 def _points(state: LimitState, seed: int) -> Sequence[DesignPoint]:
     generator = np.random.default_rng(seed)
-    places = PLACES if state.response.simulation.system.streams else 1
-    positions = state.response.positions(places, "drawn" if places > 1 else "rest", int(generator.integers(2**31)))
+    response = state.response
+    most = MOST_MINUTES / max(2 * len(state.acting) * response.minutes, LEAST_MINUTES)
+    places = min(max(int(most), FEWEST_PLACES), PLACES) if response.simulation.system.streams else 1
+    positions = response.positions(places, "drawn" if places > 1 else "rest", int(generator.integers(2**31)))
     starts = STARTS if places > 1 else STARTS_ALONE
     return [own for its in design_points(state, positions, places, starts, generator) for own in its]
 

@@ -27,14 +27,14 @@ from tol3d.system.road import ANALYTIC_ROAD
 
 PLACES: Final = 16
 """Positions at which changes are averaged."""
-FEWEST_PLACES: Final = 4
-MOST_SLOPES: Final = 20_000
-"""Builds that slopes may take; of very many components fewer positions are averaged."""
+FEWEST_PLACES: Final = 2
+"""Positions where builds take long."""
 MOST_EVALUATIONS: Final = 150_000
 """Of pairs and what is mixed of them, for measures that are asked together."""
-MOST_MINUTES: Final = 0.5
+MOST_MINUTES: Final = 0.1
 """Of a processor that these may take, by the contacts a minute of the road."""
-LEAST_BASE: Final = 256
+LEAST_MINUTES: Final = 1e-9
+LEAST_BASE: Final = 128
 MOST_BASE: Final = 2**14
 
 PositionIs = Literal["averaged", "input", "none"]
@@ -110,8 +110,8 @@ def effects(
 
     Args:
         response: of one or several measures.
-        base: pairs of builds, a power of two; as many as 150 000 evaluations allow, or half a minute of a
-            processor, 256 at least and 16 384 at most, if not given.
+        base: pairs of builds, a power of two; as many as 150 000 evaluations allow, or six seconds of a
+            processor, 128 at least and 16 384 at most, if not given.
         seed: of their points.
         position: whether the position is an input as well, in place of being averaged over.
         shapley: whether Shapley effects are wanted also where no contributors are correlated.
@@ -165,17 +165,15 @@ def _alike(response: Response) -> Sequence[Sequence[Measure]]:
 
 def default_base(response: Response, inputs: int) -> int:
     """Pairs of builds that are worth their time."""
-    asked = list({own.name: own for own in map(response.source, response.measures)}.values())
-    minutes = response.simulation.system.cost(asked) / response.simulation.road.contacts_per_minute
-    most = min(MOST_EVALUATIONS, MOST_MINUTES / minutes if minutes > 0.0 else math.inf)
+    most = min(MOST_EVALUATIONS, MOST_MINUTES / response.minutes if response.minutes > 0.0 else math.inf)
     size = 1 << int(math.log2(max(most / (inputs + 2), 1.0)))
     return min(max(size, LEAST_BASE), MOST_BASE)
 
 
 def _averaged(response: Response, seed: int) -> tuple[Array, Array]:
     """Slopes per unit and changes over the tolerance (measures, contributors), averaged over positions."""
-    builds = 2 * max(len(response.acting_columns), 1)
-    places = min(max(MOST_SLOPES // builds, FEWEST_PLACES), PLACES) if response.simulation.system.streams else 1
+    most = MOST_MINUTES / max(response.minutes * 2 * len(response.acting_columns), LEAST_MINUTES)
+    places = min(max(int(most), FEWEST_PLACES), PLACES) if response.simulation.system.streams else 1
     positions = response.positions(places, "drawn" if places > 1 else "rest", seed)
     slopes, changes = [], []
     for k in range(places):

@@ -117,6 +117,12 @@ class Response:
         """Contributors that act on one of the measures."""
         return self.simulation.system.acting(self.source(measure))
 
+    @property
+    def minutes(self) -> float:
+        """What an evaluation takes of a processor, by the contacts that its road makes in a minute."""
+        asked = list({own.name: own for own in map(self.source, self.measures)}.values())
+        return self.simulation.system.cost(asked) / self.simulation.road.contacts_per_minute
+
     @cached_property
     def components(self) -> int:
         """Columns of the deviations."""

@@ -5,6 +5,7 @@ from typing import Final, Protocol, runtime_checkable
 
 from tol3d.report.page import Page, PageItem, Table, line, note, page, some, warning
 from tol3d.report.presenter import Presenter, presenter_at
+from tol3d.study.correlated import correlation_warnings
 from tol3d.study.simulation import Simulation
 from tol3d.system.faults import faults_of
 
@@ -36,7 +37,7 @@ def check_report(simulation: Simulation) -> Page:
         line(simulation.system.name, "bold"),
         *(block.shortened(MOST_ROWS) if isinstance(block, Table) else block for block in shown),
         line(f"\nstudy: {', '.join(words)}"),
-        *map(warning, some(simulation.warnings)),
+        *map(warning, some([*simulation.warnings, *correlation_warnings(simulation)])),
     )
     return whole if whole.is_whole else page(*whole.blocks, note(LEFT_OUT))
 
