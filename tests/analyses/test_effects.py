@@ -307,14 +307,6 @@ def test_what_cannot_be_asked_is_refused() -> None:
 
 
 KINDS = ("bevel_pair", "every_field", "housed_gears", "robot_shoulder_swing", "slider_crank")
-    "bevel_pair",
-    "cover_on_base",
-    "every_field",
-    "housed_gears",
-    "reducer_3k",
-    "robot_shoulder_swing",
-    "slider_crank",
-)
 
 
 @pytest.mark.slow
