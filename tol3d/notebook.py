@@ -67,6 +67,10 @@ class Report:
     def __repr__(self) -> str:
         return str(self)
 
+    def _repr_html_(self) -> str:
+        """Its lines and tables, for notebooks."""
+        return report.page_html(self.page)
+
     def to_csv(self, path: Path | str | None = None) -> str | None:
         """Its tables as comma-separated values, written to a file, or returned where none is named.
 
@@ -358,6 +362,7 @@ def find_shims(
     rounding: Rounding = "down",
     overrides: Overrides = AS_WRITTEN,
     trust_parts: bool = False,
+    run_builders: bool = False,
 ) -> Shims:
     """The thickness of shims with which a bevel pair has a wanted minimum of backlash, as `tol3d shim` finds it.
 
@@ -378,7 +383,7 @@ def find_shims(
     """
     target = length_of("target_min", target_min)
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
-    plan = shim_plan(simulate.load(scene, trust_parts=trust_parts), question, overrides)
+    plan = shim_plan(simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders), question, overrides)
     return Shims(shim_report(plan), plan)
 
 

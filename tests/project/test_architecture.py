@@ -25,6 +25,7 @@ DOORS = {
         "tol3d/report/",
         "tol3d/gearing/presenting/",
         "tol3d/adjustment/compensation_picture.py",
+        "tol3d/analyses/",
         "tol3d/analyses/sweep_picture.py",
         "tol3d/records/identified_picture.py",
     ),

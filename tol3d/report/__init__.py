@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from tol3d.report.comparison_picture import draw_comparison
     from tol3d.report.export import export_run, part_meshes
     from tol3d.report.histogram import draw_histogram
+    from tol3d.report.html.blocks import page_html
     from tol3d.report.html.document import report_html
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
@@ -23,6 +24,7 @@ _HOMES = {
     "draw_comparison": "tol3d.report.comparison_picture",
     "draw_histogram": "tol3d.report.histogram",
     "export_run": "tol3d.report.export",
+    "page_html": "tol3d.report.html.blocks",
     "part_meshes": "tol3d.report.export",
     "report_html": "tol3d.report.html.document",
     "run_report": "tol3d.report.table",
@@ -35,6 +37,7 @@ __all__ = [
     "draw_comparison",
     "draw_histogram",
     "export_run",
+    "page_html",
     "part_meshes",
     "report_html",
     "run_report",

@@ -88,10 +88,10 @@ def draw_measure(summary: RunSummary, name: str, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    save_figure(histogram_figure(_of_measures(summary, [name])), path)
+    save_figure(histogram_figure(of_measures(summary, [name])), path)
 
 
-def _of_measures(summary: RunSummary, names: Sequence[str]) -> RunSummary:
+def of_measures(summary: RunSummary, names: Sequence[str]) -> RunSummary:
     """A summary with some of its measures alone."""
     return summary.model_copy(update={"measures": {name: summary.measures[name] for name in names}})
 
@@ -99,7 +99,7 @@ def _of_measures(summary: RunSummary, names: Sequence[str]) -> RunSummary:
 def histogram_figure(summary: RunSummary) -> Figure:
     """Measures of a summary one below the other, of many the worst, not yet written."""
     names, count = shown_measures(summary.measures, MOST_TOGETHER), len(summary.measures)
-    measures = shown_run(_of_measures(summary, names)).measures
+    measures = shown_run(of_measures(summary, names)).measures
     heights = [_height(measure) for measure in measures.values()]
     worst = f"   ·   the {len(names)} worst of {count} measures" if len(names) < count else ""
     figure = _headed(summary, sum(heights) + 0.5, worst)

@@ -3,9 +3,14 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from tol3d.report.html.tags import Inside, Markup, lines, tag, together
-from tol3d.report.page import Branch, Heading, Line, PageItem, Row, Shown, Table
+from tol3d.report.page import Branch, Heading, Line, Page, PageItem, Row, Shown, Table
 
 SECTION = "bold cyan"  # style of titles
+
+
+def page_html(page: Page) -> str:
+    """A page by itself, as notebooks show it."""
+    return str(page_blocks(page.blocks))
 
 
 def page_blocks(blocks: Iterable[PageItem], level: int = 3) -> Markup:
