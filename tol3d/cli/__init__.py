@@ -15,7 +15,20 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import adjustment, changing, deciding, design, effects, methods, rare, records, showing, step, studies
+from tol3d.cli import (
+    adjustment,
+    changing,
+    deciding,
+    design,
+    effects,
+    methods,
+    pmi,
+    rare,
+    records,
+    showing,
+    step,
+    studies,
+)
 from tol3d.cli.arguments import app
 from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
@@ -28,6 +41,7 @@ __all__ = [
     "effects",
     "main",
     "methods",
+    "pmi",
     "rare",
     "records",
     "showing",
@@ -40,6 +54,7 @@ COMMANDS = (
     showing.scenes,
     showing.check,
     step.features,
+    pmi.pmi,
     showing.workspace,
     showing.compare,
     showing.report,
