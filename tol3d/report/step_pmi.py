@@ -20,7 +20,7 @@ from tol3d.step.units import Measure
 MOST_FACES: Final = 8  # of a feature that are listed
 WORDS: Final = (
     "frames and dimensions are in the unit that the file has them in, limits in mm or rad; `#` numbers stand in this "
-    'file: those of faces select a feature in a scene, faces: ["#12", "#13"]; a + joins faces of a pattern's member'
+    'file: those of faces select a feature in a scene, faces: ["#12", "#13"]; a + joins faces of one hole'
 )
 DATUM_HEADINGS: Final = (
     Heading("what it is", words=True),
