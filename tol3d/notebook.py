@@ -21,6 +21,7 @@ from tol3d.adjustment import ShimPlan, ShimQuestion, length_of, shim_plan, stock
 from tol3d.adjustment.shim import Rounding
 from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
+from tol3d.analyses.kept_pages import kept_pages
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.sweep import sweep as swept
@@ -292,7 +293,9 @@ def write_report(
     several = [runs] if isinstance(runs, Run | Path | str) else runs
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
-    text = report.report_html([opened_run(run) for run in several], accepted_ppm=accepted_ppm, trials=trials, made=made)
+    opened = [opened_run(run) for run in several]
+    analyses = kept_pages(opened[0]) if len(opened) == 1 else {}
+    text = report.report_html(opened, analyses=analyses, accepted_ppm=accepted_ppm, trials=trials, made=made)
     try:
         write_whole(path, text.encode())
     except OSError as error:

@@ -12,11 +12,13 @@ import pytest
 from places import ROOT
 
 from tol3d import InputError, load_scene, run_scene
+from tol3d.analyses.methods import methods
+from tol3d.analyses.subject import Subject
 from tol3d.notebook import write_report
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
 from tol3d.runs.run import Run
-from tol3d.simulate import Execution, Overrides
+from tol3d.simulate import Execution, Overrides, simulation_again
 
 PACKED = "H4sI"
 """What is packed by gzip begins so, in base64."""
@@ -141,6 +143,13 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
     page = _no_way_out(report_html([run]))
     assert hostile in "".join(page.inside("h1"))
     assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 2
+
+
+def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> None:
+    subject = Subject(simulation_again(spur), spur)
+    subject.keep("methods", methods(subject.response.of("lost motion")))
+    page = _Read(write_report(spur, tmp_path / "report.html").read_text())
+    assert "methods side by side" in page.inside("h2")
 
 
 def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run, tmp_path: Path) -> None:
