@@ -184,6 +184,12 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(tmp_path: Path) -> None:
     assert not list((tmp_path / "kept").rglob("*.parquet"))
 
 
+def test_an_engine_that_the_scene_has_not_ends_it_before_anything_runs(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="expected one of exact, fcl, analytic, got .exakt."):
+        sweep(load("spur_pair"), question(f"{UPPER}=1um"), Order(tmp_path / "none", Overrides(engine="exakt")))
+    assert not (tmp_path / "none").exists()
+
+
 def test_a_field_that_is_not_there_ends_it_before_anything_runs(tmp_path: Path) -> None:
     with pytest.raises(InputError, match='did you mean "centre distance"'):
         trials_of("tolerances.centre distanc.distribution.upper=1um", out=tmp_path / "none")

@@ -24,7 +24,7 @@ from tol3d.runs.summary.values import Count, Known, Label, Number, Ppm, PpmRange
 from tol3d.scene import Scene
 from tol3d.scene.vary import known_path
 from tol3d.simulate import Execution, run_simulation, simulation_of
-from tol3d.study.overrides import AS_WRITTEN, Overrides
+from tol3d.study.overrides import AS_WRITTEN, Overrides, asked_study
 from tol3d.system.outcome import SEATED
 
 NAME: Final = "sweep.json"
@@ -127,7 +127,7 @@ def sweep(scene: Scene, question: SweepQuestion, order: Order) -> Sweep:
         InputError: a field that the scene has not, values that are none, or a folder that cannot be written.
     """
     points, order = question.points, replace(order, overrides=replace(order.overrides, witness=0))
-    study = simulation_of(scene, order.overrides).study
+    study = asked_study(scene, order.overrides)
     _refuse_all(scene, points[0], order.out)
     variants = []
     for k, point in enumerate(points):

@@ -12,6 +12,7 @@ from tol3d.scene.options import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.correlated import copula_of
 from tol3d.study.simulation import Simulation, study_of
+from tol3d.study.study import Study
 from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
 from tol3d.system.mechanism import mechanism_of, origin_of, requires_of
@@ -67,6 +68,16 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         implausible=implausible,
         copula=copula_of(asked, system),
     )
+
+
+def asked_study(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Study:
+    """What a run of a scene is asked to do, without looking at what the scene means.
+
+    Raises:
+        InputError: an override that no scene could say.
+    """
+    _refuse_engine(scene, overrides, overrides.engine or scene.study.engine, mechanism_of(scene).engines)
+    return study_of(_overridden(scene, overrides))
 
 
 def _refuse_engine(scene: Scene, overrides: Overrides, engine: str, known: Iterable[str]) -> None:
