@@ -185,7 +185,7 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 
 def test_an_engine_that_the_scene_has_not_ends_it_before_anything_runs(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="expected one of exact, fcl, analytic, got .exakt."):
+    with pytest.raises(InputError, match="expected one of exact, fcl, analytic, got"):
         sweep(load("spur_pair"), question(f"{UPPER}=1um"), Order(tmp_path / "none", Overrides(engine="exakt")))
     assert not (tmp_path / "none").exists()
 
