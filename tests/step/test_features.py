@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -257,3 +258,58 @@ def test_normals_of_planes_point_out_of_the_triangles(model: str) -> None:
             a, b, c = np.moveaxis(mesh.corners(own.faces), 1, 0)
             area = np.cross(b - a, c - a).sum(axis=0) / 2
             assert area @ np.array(own.direction) == pytest.approx(own.area, rel=2e-2)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_datums_and_tolerances_select_what_the_text_joins_to_them(model: str) -> None:
+    """Names and letters mean features of just the faces that they are joined to, and whole holes."""
+    (part,) = read_step(nist_file(model)).parts
+    owner = {number: own for own in part.features for number in (*own.faces, *own.repeated)}
+    assert {own.name for own in part.named if own.what == "datum"} == set(DATUMS[model])
+    for each in part.named:
+        if not each.name or any(own.loose for own in map(owner.get, each.faces) if own):
+            continue
+        found = _meant(part, each.what, each.name)
+        same = [own for own in part.named if (own.what == "datum") == (each.what == "datum") and own.name == each.name]
+        wanted = {face for own in same for face in own.faces}
+        flat = {face for own in found if own.kind == "plane" for face in own.faces}
+        assert flat == {face for face in wanted if owner[face].kind == "plane" and face not in owner[face].repeated} | {
+            face for own in found if own.kind == "plane" and wanted & {*own.repeated} for face in own.faces
+        }
+        assert {own.faces for own in found if own.kind != "plane"} == {
+            owner[face].faces for face in wanted if owner[face].kind != "plane"
+        }
+
+
+DATUMS = {
+    "ftc_10": "ABCDEFGHJKL",
+    "ctc_01": "ABC",
+    "ctc_05": "AB",
+    "ftc_07": "ABCDE",
+    "stc_06": "ABCDEF",
+    "stc_07": "ABCDE",
+}
+"""Letters of each model that are on faces."""
+
+
+def _meant(part: StepPart, what: str, name: str) -> tuple[FoundFeature, ...]:
+    """All features that a letter or a name means, however many there are."""
+    by = Selector(datum=name) if what == "datum" else Selector(pmi=name)
+    try:
+        return selected(part, by)
+    except InputError as error:
+        found = re.search(r"expected exactly 1 feature, found (\d+)", str(error))
+    assert found
+    return selected(part, replace(by, count=int(found[1])))
+
+
+def test_the_bores_of_ftc_10_by_name_and_by_frame() -> None:
+    (part,) = read_step(nist_file("ftc_10")).parts
+    by_name = selected(part, Selector(pmi="Position.2", count=2))
+    assert [2 * own.radius for own in by_name] == [6.0, 6.0]
+    frame = Selector(tolerance="position", value=0.65, datums="A|B|C", count=2)
+    assert selected(part, frame) == by_name
+    (seat,) = selected(part, Selector(datum="A"))
+    assert seat.faces == (11986,)
+    (middle,) = selected(part, Selector(datum="D"))
+    assert set(middle.faces) == {404, 633, 792}

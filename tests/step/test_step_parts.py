@@ -2,10 +2,11 @@
 
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import cadquery as cq
 import numpy as np
 import pytest
 from fixtures import Command
@@ -15,10 +16,12 @@ from tol3d import load_scene
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.errors import SceneError
+from tol3d.files import read_file
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE
 from tol3d.runs.run import open_run
 from tol3d.simulate import run_scene, simulation_again
 from tol3d.step import reading
+from tol3d.step.reading import read_step
 from tol3d.study.overrides import Overrides
 
 SELECTED = {
@@ -159,6 +162,71 @@ def test_a_part_like_a_step_part_has_its_features_and_draws_of_its_own(folder: P
     assert {"pin place", "pin place of twin", "edge place 4", "edge place 4 of twin"} <= set(names)
 
 
+def test_parts_of_an_assembly_stand_where_its_file_says_bit_by_bit(tmp_path: Path) -> None:
+    """A bolt that is used four times is four parts, each with draws of its own."""
+    places = [cq.Location((x, y, 5.0), (1.0, 2.0, 0.5), angle) for x, y, angle in PLACES]
+    inner = cq.Assembly(name="bolts")
+    bolt = cq.Workplane().circle(3).extrude(20)
+    for k, place in enumerate(places, 1):
+        inner.add(bolt, name=f"bolt {k}", loc=place)
+    whole = cq.Assembly(name="top").add(slotted_block(), name="block", loc=cq.Location((1.0, 2.0, 3.0)))
+    whole.add(inner, name="bolts", loc=cq.Location((0.0, 0.0, 7.0), (0.0, 1.0, 0.0), 30.0))
+    whole.export(str(tmp_path / "all.step"), exportType="STEP")
+    cq.Assembly(name="one").add(bolt, name="bolt").export(str(tmp_path / "bolt.step"), exportType="STEP")
+    uses = read_step(read_file(tmp_path / "all.step")).uses
+    assert [own.path for own in uses] == ["block", *(f"bolts/bolt {k}" for k in (1, 2, 3, 4))]
+    in_world = cq.Location((0.0, 0.0, 7.0), (0.0, 1.0, 0.0), 30.0) * places[1]
+    assert uses[2].frame[0] == pytest.approx(in_world.toTuple()[0], abs=1e-9)
+    placed = [own.frame for own in uses[1:]]
+    assembled, alone = (
+        run_scene(_bolted(tmp_path, name, placed), overrides=Overrides(trials=200), out=tmp_path / f"run {name}")
+        for name in ("assembled", "alone")
+    )
+    for name in ("from 1 to 2", "from 2 to 3", "from 3 to 4"):
+        one, other = (run.columns(f"geometric:{name}")[f"geometric:{name}"] for run in (assembled, alone))
+        assert np.array_equal(one, other)
+        assert np.ptp(one) > 0.0
+    names = [own.name for own in simulation_again(assembled).system.contributors]
+    assert names == ["axis", "axis of bolt 2", "axis of bolt 3", "axis of bolt 4"]
+
+
+PLACES = ((10.0, 4.0, 10.0), (-10.0, 4.0, 20.0), (-10.0, -4.0, 30.0), (10.0, -4.0, 40.0))
+
+
+def _bolted(folder: Path, name: str, placed: Sequence[tuple[Any, Any, Any]]) -> Path:
+    """Four bolts, by their uses in the assembly, or each from the file of one with its place typed."""
+    features = "features: {shaft: {kind: pin}, foot: {kind: plane, near: [0 mm, 0.5 mm, 0 mm]}}"
+    parts = []
+    for k, (at, z, x) in enumerate(placed, 1):
+        own = features if k == 1 else "like: bolt 1"
+        place = f"at: [{', '.join(f'{v!r} mm' for v in at)}], z: {list(z)}, x: {list(x)}"
+        file = f"file: all.step, use: bolts/bolt {k}" if name == "assembled" else "file: bolt.step, product: bolt"
+        said = "" if name == "assembled" else f", placed: {{{place}}}"
+        parts.append(f"  bolt {k}: {{kind: step, {file}, {own}{said}}}")
+    fixed = "\n".join(f"  fix {k}: {{kind: fix, part: bolt {k}}}" for k in (1, 2, 3, 4))
+    read = "\n".join(
+        f"  from {k} to {k + 1}: {{kind: gap, from: bolt {k}.shaft, to: bolt {k + 1}.shaft, along: [1, 0, 0]}}"
+        for k in (1, 2, 3)
+    )
+    zone = "zone: {diameter: 0.1 mm}, law: {kind: uniform}"
+    text = "\n".join(
+        [
+            "scene: bolts",
+            "parts:",
+            *parts,
+            "tolerances:",
+            f"  axis: {{kind: position, of: bolt 1.shaft, {zone}}}",
+            "moves:",
+            fixed,
+            "measures:",
+            read,
+        ]
+    )
+    path = folder / f"{name}.yaml"
+    path.write_text(text + "\n", "utf-8")
+    return path
+
+
 WRONG = {
     "none": ({"pin": "{kind: socket}"}, "features.pin.kind: expected a socket, found none there"),
     "several": ({"pin": "{kind: round}"}, "features.pin: expected exactly 1 feature, found 4: {kind: round, near: ["),
@@ -170,6 +238,9 @@ WRONG = {
     "faces by name": ({"pin": "{faces: [lid]}"}, 'features.pin.faces: expected numbers of faces, such as "#764"'),
     "within alone": ({"pin": "{kind: pin, within: 1 mm}"}, "features.pin.within: expected the point `near` it as well"),
     "a torus": ({"pin": "{kind: torus}"}, "features.pin.kind: expected "),
+    "no datum": ({"pin": "{datum: Q}"}, "features.pin.datum: expected the letter of a datum of 'block', got 'Q'"),
+    "two ways": ({"pin": "{datum: Q, pmi: x}"}, "features.pin: expected one of `datum`, `pmi` and `tolerance`, got"),
+    "value alone": ({"pin": "{datum: Q, value: 1 mm}"}, "features.pin.value: expected the kind of `tolerance` as well"),
     "unknown key": ({"pin": "{kind: pin, radius: 3 mm}"}, 'features.pin.radius: unknown key "radius"'),
 }
 

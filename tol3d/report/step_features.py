@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Final
 
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
 from tol3d.step.found import FoundFeature
 from tol3d.step.reading import StepFile, StepPart
 from tol3d.step.refused import shown
-from tol3d.step.selecting import line_of, names, numbers
+from tol3d.step.selecting import best_line, names, numbers
 
 LONGEST_FACES: Final = 4  # faces of a feature that are listed
 WORDS: Final = (
@@ -32,7 +32,20 @@ def features_report(file: StepFile) -> Page:
     for part in file.parts:
         blocks += [BLANK] if blocks else []
         blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part)]
+    if len(file.uses) > 1:
+        blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
     return page(*blocks, BLANK, note(WORDS))
+
+
+def _uses(file: StepFile) -> Table:
+    """Where each part stands, as `use` and `placed` of a scene have it."""
+    products = {own.body.product: shown(own.name) for own in file.parts}
+    rows = []
+    for own in file.uses:
+        at, z, x = own.frame
+        cells = (products[own.product], _numbers(at, 4), _numbers(z, 6), _numbers(x, 6))
+        rows.append(Row(shown(own.path), cells))
+    return Table("use", [Heading("product", words=True), *map(Heading, ("origin [mm]", "z", "x"))], rows)
 
 
 def _counted(part: StepPart) -> str:
@@ -48,11 +61,11 @@ def _counted(part: StepPart) -> str:
 
 
 def _table(part: StepPart) -> Table:
-    rows = [_row(name, own) for name, own in zip(names(part.features), part.features, strict=True)]
+    rows = [_row(part, name, own) for name, own in zip(names(part.features), part.features, strict=True)]
     return Table("", HEADINGS, rows)
 
 
-def _row(name: str, feature: FoundFeature) -> Row:
+def _row(part: StepPart, name: str, feature: FoundFeature) -> Row:
     beside = " (beside the solid)" if feature.loose else ""
     colour = [feature.colour] if feature.colour else []
     listed = numbers(feature)
@@ -64,10 +77,20 @@ def _row(name: str, feature: FoundFeature) -> Row:
         _numbers(feature.at, 4),
         "–" if feature.kind in ("ball", "socket", "free form") else _numbers(feature.direction, 4),
         listed,
-        ", ".join([*(repr(shown(own)) for own in feature.names), *colour]) or "–",
-        f'face: "#{feature.faces[0]}"' if feature.loose else line_of(feature),
+        ", ".join([*_drawn(part, feature), *(repr(shown(own)) for own in feature.names), *colour]) or "–",
+        best_line(part, feature),
     )
     return Row(name, cells)
+
+
+def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
+    """What the drawing names on a feature: datums, tolerances and dimensions."""
+    own = {*feature.faces, *feature.repeated}
+    return [
+        shown(each.words if each.what == "datum" else f"{each.name} {each.words}".strip())
+        for each in part.named
+        if own & {*each.faces}
+    ]
 
 
 def size_text(feature: FoundFeature) -> str:
@@ -102,10 +125,21 @@ NUMBERS: Final = (
 def features_csv(file: StepFile) -> str:
     """All numbers with all their digits, a line a feature [mm, rad, mm²]."""
     heads = [
-        Heading(own) for own in ("product", "kind", *NUMBERS, "faces", "loose faces on it", "names", "colour", "line")
+        Heading(own)
+        for own in (
+            "product",
+            "kind",
+            *NUMBERS,
+            "faces",
+            "loose faces on it",
+            "in the drawing",
+            "names",
+            "colour",
+            "line",
+        )
     ]
     rows = [
-        Row(name, (shown(part.name), own.kind, *_all_numbers(own), *_words(own)))
+        Row(name, (shown(part.name), own.kind, *_all_numbers(own), *_words(part, own)))
         for part in file.parts
         for name, own in zip(names(part.features), part.features, strict=True)
     ]
@@ -127,7 +161,14 @@ def _all_numbers(feature: FoundFeature) -> Sequence[Shown]:
     return [Shown("" if own is None else f"{own:g}", own) for own in values]
 
 
-def _words(feature: FoundFeature) -> Sequence[str]:
+def _words(part: StepPart, feature: FoundFeature) -> Sequence[str]:
     repeated = ", ".join(f"#{own}" for own in feature.repeated)
-    line = f'{{face: "#{feature.faces[0]}"}}' if feature.loose else line_of(feature)
-    return numbers(feature), repeated, ", ".join(map(shown, feature.names)), feature.colour, line
+    drawn = ", ".join(_drawn(part, feature))
+    return (
+        numbers(feature),
+        repeated,
+        drawn,
+        ", ".join(map(shown, feature.names)),
+        feature.colour,
+        best_line(part, feature),
+    )

@@ -7,6 +7,7 @@ from tol3d.step.part21 import Part21
 from tol3d.step.placement import length_unit, representation
 from tol3d.step.read_structure import StructureReader, references_in
 from tol3d.step.refused import StepError
+from tol3d.step.structure import Structure
 from tol3d.step.values import Reference
 
 DEEPEST: Final = 64  # styles that refer to each other
@@ -35,14 +36,13 @@ class Body:
     unit: float
 
 
-def bodies_of(file: Part21) -> tuple[Body, ...]:
+def bodies_of(file: Part21, structure: Structure) -> tuple[Body, ...]:
     """The products of a file that have solids or faces, in its order.
 
     Raises:
-        StepError: the text of a product cannot be read, it stands in another file, or there is none with a solid.
+        StepError: their unit cannot be read, or there is none with a solid.
     """
     reader = StructureReader(file)
-    structure = reader.read()
     found = [
         Body(
             product.id,

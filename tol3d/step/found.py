@@ -215,7 +215,9 @@ class Shell:
         elif face.kind in makers:
             found = makers[face.kind](ids)
         else:
-            found = FoundFeature(tuple(ids), "free form", _length(face.centre), _cosines(face.normal), (1.0, 0.0, 0.0))
+            found = FoundFeature(
+                tuple(ids), "free form", lengths_of(face.centre), cosines_of(face.normal), (1.0, 0.0, 0.0)
+            )
         return replace(found, area=round(area, DECIMALS), loose=ids[0] in self.loose)
 
     def is_one(self, ids: Sequence[int]) -> bool:
@@ -225,7 +227,7 @@ class Shell:
 
     def _plane(self, ids: Sequence[int], along: Triple | None) -> FoundFeature:
         face = self.faces[ids[0]]
-        normal = np.array(_cosines(_normal(face)))
+        normal = np.array(cosines_of(_normal(face)))
         x = _x_of(normal, along)
         y = np.cross(normal, x)
         height = float(np.dot(face.at, normal))
@@ -235,17 +237,17 @@ class Shell:
             radius = round(outline[0].radii[0], DECIMALS)
             sides = 2 * radius, 2 * radius
             return FoundFeature(
-                tuple(ids), "plane", _length(outline[0].centre), _cosines(normal), _cosines(x), sides, radius
+                tuple(ids), "plane", lengths_of(outline[0].centre), cosines_of(normal), cosines_of(x), sides, radius
             )
         (left, right), (low, high) = self.along(ids, x), self.along(ids, y)
         at = (left + right) / 2 * x + (low + high) / 2 * y + height * normal
         sides = round(right - left, DECIMALS), round(high - low, DECIMALS)
-        return FoundFeature(tuple(ids), "plane", _length(at), _cosines(normal), _cosines(x), sides)
+        return FoundFeature(tuple(ids), "plane", lengths_of(at), cosines_of(normal), cosines_of(x), sides)
 
     def _axis(self, ids: Sequence[int]) -> tuple[Array, Array, float]:
         """Middle (3,), direction (3,) towards +x, +y or +z, and length of a round feature."""
         face = self.faces[ids[0]]
-        axis = np.array(_cosines(face.axis))
+        axis = np.array(cosines_of(face.axis))
         if axis[int(np.argmax(np.abs(axis)))] < 0.0:
             axis = 0.0 - axis
         low, high = self.along(ids, axis)
@@ -260,9 +262,15 @@ class Shell:
         kinds: tuple[FeatureKind, FeatureKind] = ("hole", "pin") if turn > HELD else ("fillet", "round")
         kind = kinds[0] if face.is_hollow else kinds[1]
         return FoundFeature(
-            tuple(ids), kind, _length(at), _cosines(axis), _cosines(_x_of(axis, None)), (round(length, DECIMALS), 0.0),
-            round(face.radius, DECIMALS), turn=turn,
-        )  # fmt: skip
+            tuple(ids),
+            kind,
+            lengths_of(at),
+            cosines_of(axis),
+            cosines_of(_x_of(axis, None)),
+            (round(length, DECIMALS), 0.0),
+            round(face.radius, DECIMALS),
+            turn=turn,
+        )
 
     def _turn(self, ids: Sequence[int], length: float) -> float:
         """How far faces reach together about their axis [rad]."""
@@ -295,9 +303,9 @@ class Shell:
         return FoundFeature(
             tuple(ids),
             "cone",
-            _length(at),
-            _cosines(axis),
-            _cosines(_x_of(axis, None)),
+            lengths_of(at),
+            cosines_of(axis),
+            cosines_of(_x_of(axis, None)),
             (round(length, DECIMALS), 0.0),
             round(large, DECIMALS),
             round(small, DECIMALS),
@@ -312,13 +320,13 @@ class Shell:
         face = self.faces[ids[0]]
         kind: FeatureKind = "socket" if face.is_hollow else "ball"
         ends = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-        return FoundFeature(tuple(ids), kind, _length(face.at), *ends, radius=round(face.radius, DECIMALS))
+        return FoundFeature(tuple(ids), kind, lengths_of(face.at), *ends, radius=round(face.radius, DECIMALS))
 
     def _torus(self, ids: Sequence[int]) -> FoundFeature:
         face = self.faces[ids[0]]
         _, axis, _ = self._axis(ids)
         return FoundFeature(
-            tuple(ids), "torus", _length(face.at), _cosines(axis), _cosines(_x_of(axis, None)),
+            tuple(ids), "torus", lengths_of(face.at), cosines_of(axis), cosines_of(_x_of(axis, None)),
             radius=round(face.radius, DECIMALS), minor_radius=round(face.minor_radius, DECIMALS),
         )  # fmt: skip
 
@@ -392,13 +400,13 @@ def _x_of(z: Array, along: Triple | None) -> Array:
     return np.asarray(across / np.linalg.norm(across))
 
 
-def _length(place: Sequence[float] | Array) -> Triple:
+def lengths_of(place: Sequence[float] | Array) -> Triple:
     """A place without rounding noise and minus zeros."""
     x, y, z = (round(float(own), DECIMALS) + 0.0 for own in place)
     return x, y, z
 
 
-def _cosines(direction: Sequence[float] | Array) -> Triple:
+def cosines_of(direction: Sequence[float] | Array) -> Triple:
     """A direction without rounding noise and minus zeros."""
     x, y, z = (round(float(own), COSINE_DECIMALS) + 0.0 for own in direction)
     return x, y, z

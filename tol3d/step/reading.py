@@ -28,12 +28,15 @@ from tol3d.errors import InputError
 from tol3d.files import FileContent
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
+from tol3d.scene.nearest import hint
 from tol3d.solids.cache import CacheWarning
 from tol3d.solids.lazy import Arrays
 from tol3d.step.bodies import Body, bodies_of, colours_of, names_of
 from tol3d.step.face_mesh import FaceMesh
 from tol3d.step.faces import Face, Faces
-from tol3d.step.found import FoundFeature, Shell, shell_of
+from tol3d.step.found import FoundFeature, Shell, Triple, cosines_of, lengths_of, shell_of
+from tol3d.step.named import Named, named_in
+from tol3d.step.outline import read_step_text
 from tol3d.step.part21 import Part21, read_part21
 from tol3d.step.refused import StepError, shown
 
@@ -61,15 +64,45 @@ class ReadPart:
         body: the product.
         features: with names and colours of their faces.
         names: what the file calls its faces, by their numbers.
+        named: what its drawing names on its faces.
     """
 
     body: Body
     features: tuple[FoundFeature, ...]
     names: Mapping[int, str]
+    named: tuple[Named, ...]
 
 
-PARTS: Final = TypeAdapter(tuple[ReadPart, ...])
-"""As they are kept."""
+@dataclass(frozen=True)
+class Use:
+    """A part as it stands in a file.
+
+    Args:
+        path: names from the top assembly down, with / between them.
+        product: the `#id` of its product definition.
+        placed: where it stands in the file's world, rows of a 4 by 4 matrix [mm].
+    """
+
+    path: str
+    product: int
+    placed: tuple[tuple[float, float, float, float], ...]
+
+    @property
+    def frame(self) -> tuple[Triple, Triple, Triple]:
+        """Origin [mm], z axis and x axis in the file's world, without rounding noise."""
+        (x, z, at) = ([row[k] for row in self.placed[:3]] for k in (0, 2, 3))
+        return lengths_of(at), cosines_of(z), cosines_of(x)
+
+
+@dataclass(frozen=True)
+class ReadFile:
+    """A file as it is kept: its products with geometry, and where each is used."""
+
+    parts: tuple[ReadPart, ...]
+    uses: tuple[Use, ...]
+
+
+READ: Final = TypeAdapter(ReadFile)
 
 
 @dataclass(frozen=True)
@@ -81,12 +114,14 @@ class StepPart:
         body: the product.
         features: what is found on its faces, with names and colours.
         names: what the file calls its faces, by their numbers.
+        named: what its drawing names on its faces: datums, tolerances, dimensions.
     """
 
     file: "StepFile"
     body: Body
     features: tuple[FoundFeature, ...]
     names: Mapping[int, str]
+    named: tuple[Named, ...]
 
     @property
     def name(self) -> str:
@@ -113,11 +148,11 @@ class StepFile:
 
     Args:
         content: its bytes.
-        read: its products with geometry.
+        read: its products with geometry, and where they are used.
     """
 
     content: FileContent
-    read: tuple[ReadPart, ...]
+    read: ReadFile
 
     @property
     def name(self) -> str:
@@ -132,28 +167,55 @@ class StepFile:
     @cached_property
     def faces(self) -> Faces:
         """What Open CASCADE says of its faces."""
-        return _geometry(self.content, [own.body for own in self.read])[0]
+        return _geometry(self.content, [own.body for own in self.read.parts])[0]
 
     @cached_property
     def parts(self) -> tuple[StepPart, ...]:
         """Its products with geometry of their own, in the order of the file."""
-        return tuple(StepPart(self, own.body, own.features, own.names) for own in self.read)
+        return tuple(StepPart(self, own.body, own.features, own.names, own.named) for own in self.read.parts)
 
-    def part(self, product: str | None) -> StepPart:
-        """The product of that name; the only one if none is said.
+    def part(self, product: str | None, use: str | None = None) -> StepPart:
+        """The product of that name, or that a use has; the only one if none is said.
 
         Raises:
-            StepError: there is no such product, or several.
+            StepError: there is no such product or use, or several.
         """
+        if use is not None:
+            number = self.use(use).product
+            return next(own for own in self.parts if own.body.product == number)
         names = [own.name for own in self.parts]
         fitting = self.parts if product is None else [own for own in self.parts if own.name == product]
         if len(fitting) == 1:
             return fitting[0]
-        listed = ", ".join(repr(shown(own)) for own in names[:8]) + (", …" if len(names) > 8 else "")
+        listed = _listed(names)
         if product is None:
             raise StepError(f"expected a product, for {self.name} has {len(names)}: {listed}; write `product:`")
         got = f"{len(fitting)} of that name" if fitting else "none of that name"
         raise StepError(f"expected a product of {self.name}, got {product!r}, {got}; it has {listed}")
+
+    @property
+    def uses(self) -> tuple[Use, ...]:
+        """Where parts with geometry stand in it, in its order."""
+        return self.read.uses
+
+    def use(self, path: str) -> Use:
+        """A part as it stands in the file.
+
+        Raises:
+            StepError: there is none.
+        """
+        found = next((own for own in self.uses if own.path == path), None)
+        if found is None:
+            known = [own.path for own in self.uses]
+            near = hint(path, known)
+            raise StepError(
+                f"expected a use in {self.name}, got {path!r}, which is none{near}; it has {_listed(known)}"
+            )
+        return found
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(repr(shown(own)) for own in names[:8]) + (", …" if len(names) > 8 else "")
 
 
 def read_step(content: FileContent) -> StepFile:
@@ -164,24 +226,30 @@ def read_step(content: FileContent) -> StepFile:
     """
 
     def make() -> Arrays:
-        text = read_part21(content.content, content.path.name)
-        bodies = bodies_of(text)
-        faces, mesh = _geometry(content, bodies, text)
-        parts = tuple(_read_part(text, body, faces, mesh) for body in bodies)
-        return {"parts": np.frombuffer(PARTS.dump_json(parts), dtype=np.uint8)}
+        text = read_step_text(content.content, content.path.name)
+        bodies = bodies_of(text.file, text.structure)
+        faces, mesh = _geometry(content, bodies, text.file)
+        named = tuple(named_in(text))
+        parts = tuple(_read_part(text.file, body, faces, mesh, named) for body in bodies)
+        own = {body.product for body in bodies}
+        uses = (Use("/".join(leaf.path), leaf.product, leaf.placement) for leaf in text.structure.leaves)
+        found = ReadFile(parts, tuple(use for use in uses if use.product in own))
+        return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
 
     sources = sources_of(__name__)
-    arrays = _cached(f"step-parts-{_key(content, {'sources': sources})}.npz", make)
+    arrays = _cached(f"step-read-{_key(content, {'sources': sources})}.npz", make)
     try:
-        return StepFile(content, PARTS.validate_json(arrays["parts"].tobytes()))
+        return StepFile(content, READ.validate_json(arrays["read"].tobytes()))
     except (KeyError, ValidationError):
         raise StepError(f"{cache_folder()}: an entry of the cache is not what it was; delete the folder") from None
 
 
-def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh) -> ReadPart:
+def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Sequence[Named]) -> ReadPart:
     names, colours = names_of(text, body.faces | body.loose), colours_of(text, body)
     found = (replace(own, on=mesh.middle(own.faces)) for own in _shell(body, faces).features)
-    return ReadPart(body, tuple(_described(own, names, colours) for own in found), names)
+    features = tuple(_described(own, names, colours) for own in found)
+    own = body.faces | body.loose
+    return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}))
 
 
 def _described(feature: FoundFeature, names: Mapping[int, str], colours: Mapping[int, str]) -> FoundFeature:

@@ -1,7 +1,7 @@
 """Which features of a foreign part a selector means: exactly one, exactly as many as it counts, or none at all."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -10,6 +10,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
 from tol3d.step.face_mesh import FaceMesh
 from tol3d.step.found import FeatureKind, FoundFeature, Triple
+from tol3d.step.named import Named
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError, shown
 
@@ -19,7 +20,10 @@ SAME_DISTANCE: Final = 1e-6
 """mm; features whose distances from a point differ by less are as near as each other."""
 TWICE: Final = 2.0
 """How many times as far the next feature must be, so that a point says which one is meant."""
+SAME_VALUE: Final = 1e-6
+"""mm; a tolerance whose value differs by more is another one."""
 MOST_SHOWN: Final = 6
+MOST_KNOWN: Final = 12
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,11 @@ class Selector:
     Args:
         face: the number of a face in the file; the whole feature that it is of.
         name: of a face in the file.
+        datum: its letter.
+        pmi: the name that the file gives a tolerance or dimension of it.
+        tolerance: the kind of a tolerance of it, such as "position".
+        value: of that tolerance [mm].
+        datums: the letters of that tolerance's datums, such as "A | B-C".
         faces: numbers of faces that together are the feature, and no others.
         kind: of the feature.
         diameter: of a round one [mm].
@@ -40,6 +49,11 @@ class Selector:
 
     face: int | None = None
     name: str | None = None
+    datum: str | None = None
+    pmi: str | None = None
+    tolerance: str | None = None
+    value: float | None = None
+    datums: str | None = None
     faces: tuple[int, ...] = ()
     kind: FeatureKind | None = None
     diameter: float | None = None
@@ -105,6 +119,9 @@ def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
             known = sorted({name for own in part.features for name in own.names})
             got = f"got {shown(selector.name)!r}, which is none"
             raise SelectionError(f"expected the name of a face, {got}{hint(selector.name, known)}", "face")
+    if (field := _by_drawing(selector)) is not None:
+        meant = _named(part, selector, field)
+        found = [own for own in meant if selector.face is None or selector.face in (*own.faces, *own.repeated)]
     for field, kept in (("kind", _of_kind(found, selector)), ("diameter", _of_size(found, selector))):
         both = [own for own in found if own in kept]
         if not both:
@@ -113,6 +130,69 @@ def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
             raise SelectionError(f"expected {said}, found none there; there are {there}", field)
         found = both
     return found
+
+
+def _by_drawing(selector: Selector) -> str | None:
+    """The field by which a drawing names what is meant; None where it does not."""
+    return next((own for own in ("datum", "pmi", "tolerance") if getattr(selector, own) is not None), None)
+
+
+def _named(part: StepPart, selector: Selector, field: str) -> list[FoundFeature]:
+    """The features whose faces a drawing names."""
+    fitting = [own for own in part.named if _fits(own, selector)]
+    if not fitting:
+        what = {"datum": ("datum",), "pmi": ("tolerance", "dimension"), "tolerance": ("tolerance",)}[field]
+        known = sorted({own.kind if field == "tolerance" else own.name for own in part.named if own.what in what})
+        got = shown(getattr(selector, field))
+        beside = f" {_said(selector)}" if field == "tolerance" else ""
+        raise SelectionError(
+            f"expected {_words(field)} of {shown(part.name)!r}, got {got!r}{beside}, which it does not have"
+            f"{hint(got, known)}; it has {', '.join(map(shown, known[:MOST_KNOWN])) or 'none'}",
+            field,
+        )
+    faces = list(dict.fromkeys(face for own in fitting for face in own.faces))
+    found = []
+    for own in part.features:
+        here = [face for face in faces if face in own.faces]
+        if own.kind == "plane" and here and len(here) < len(own.faces):
+            exact = part.shell.made_of(here)
+            found.append(replace(exact, names=own.names, colour=own.colour, on=part.mesh().middle(here)))
+        elif here or set(faces) & {*own.repeated}:
+            found.append(own)
+    if not found:
+        words = "; ".join(shown(own.words) for own in fitting[:MOST_SHOWN])
+        raise SelectionError(f"expected what has faces, got {words}, which the file gives none of this part", field)
+    return found
+
+
+def _fits(named: Named, selector: Selector) -> bool:
+    """Whether something that a drawing names is what a selector says."""
+    if selector.datum is not None and (named.what != "datum" or named.name != selector.datum):
+        return False
+    if selector.pmi is not None and (named.what == "datum" or named.name != selector.pmi):
+        return False
+    if selector.tolerance is not None and (named.what != "tolerance" or named.kind != selector.tolerance):
+        return False
+    if selector.value is not None and (named.value is None or abs(named.value - selector.value) > SAME_VALUE):
+        return False
+    return selector.datums is None or _letters(named.datums) == _letters(selector.datums)
+
+
+def _letters(datums: str) -> list[str]:
+    return [own.strip() for own in datums.split("|")]
+
+
+def _said(selector: Selector) -> str:
+    value = [] if selector.value is None else [f"{selector.value:.9g} mm"]
+    return " ".join([*value, *([] if selector.datums is None else [f"to {selector.datums}"])])
+
+
+def _words(field: str) -> str:
+    return {
+        "datum": "the letter of a datum",
+        "pmi": "the name of a tolerance or dimension",
+        "tolerance": "the kind of a tolerance",
+    }[field]
 
 
 def _of_kind(found: Sequence[FoundFeature], selector: Selector) -> Sequence[FoundFeature]:
@@ -170,6 +250,17 @@ def line_of(feature: FoundFeature) -> str:
     near = ", ".join(f"{round(own, 4) + 0.0:.10g} mm" for own in place)
     size = f", diameter: {round(2 * feature.radius, 6):.10g} mm" if round_one else ""
     return f"{{kind: {feature.kind}{size}, near: [{near}]}}"
+
+
+def best_line(part: StepPart, feature: FoundFeature) -> str:
+    """A selector that means a feature: by the letter of a datum that is this feature alone, else by its place."""
+    if feature.loose:
+        return f'{{face: "#{feature.faces[0]}"}}'
+    for own in part.named:
+        alone = own.what == "datum" and own.name and {*own.faces} <= {*feature.faces, *feature.repeated}
+        if alone and (feature.kind != "plane" or {*feature.faces} <= {*own.faces}):
+            return f"{{datum: {own.name}}}" if own.name.isalpha() else line_of(feature)
+    return line_of(feature)
 
 
 def _lines(part: StepPart, found: Sequence[FoundFeature]) -> str:

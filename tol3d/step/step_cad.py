@@ -20,7 +20,7 @@ def solid_of(shape: StepShape) -> NamedSolid:
         GeometryError: it cannot be read, or is none.
     """
     text = read_part21(shape.file.content, shape.file.path.name)
-    body = read_step(shape.file).part(shape.product).body
+    body = read_step(shape.file).part(shape.product, shape.use).body
     with TemporaryDirectory(prefix="tol3d-step-") as name:
         path = Path(name) / "file.stp"
         path.write_bytes(shape.file.content)

@@ -18,7 +18,8 @@ class StepShape(MeshedShape):
 
     Args:
         sha256: of the file.
-        product: its name; None where the file has one only.
+        product: its name; None where the file has one only, or where a use says it.
+        use: a part as it stands in the file.
         file: the file.
     """
 
@@ -26,16 +27,17 @@ class StepShape(MeshedShape):
 
     sha256: str
     product: str | None
+    use: str | None
     file: FileContent = field(repr=False, compare=False)
 
     @classmethod
-    def of(cls, file: FileContent, product: str | None) -> "StepShape":
+    def of(cls, file: FileContent, product: str | None, use: str | None) -> "StepShape":
         """A product of a file."""
-        return cls(file.sha256, product, file)
+        return cls(file.sha256, product, use, file)
 
     def mesh(self, deflection: float) -> Mapping[str, NDArray[np.generic]]:
         """See MeshedShape; the solids without the loose faces beside them."""
-        part = read_step(self.file).part(self.product)
+        part = read_step(self.file).part(self.product, self.use)
         mesh = part.mesh(deflection)
         mesh = mesh.of_faces(part.body.faces) if part.body.faces else mesh
         return {

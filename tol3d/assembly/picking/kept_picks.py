@@ -62,6 +62,16 @@ class KeptFace(BaseModel):
     normal: Unit
 
 
+class KeptPlace(BaseModel):
+    """Where a part stands as its file says: its origin, z and x."""
+
+    model_config = READ
+
+    at: Place
+    z: Unit
+    x: Unit
+
+
 class KeptPicks(BaseModel):
     """The file: lengths in mm, in the frames of the parts."""
 
@@ -69,6 +79,7 @@ class KeptPicks(BaseModel):
 
     picks: Mapping[str, Mapping[str, tuple[KeptFace, ...]]]
     faces: Mapping[str, tuple[str, ...]]
+    placed: Mapping[str, KeptPlace] = Field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -78,10 +89,12 @@ class Kept:
     Args:
         picks: the faces, by part and feature.
         faces: of parts that a program of the user built, the names of all faces in the order of the solid's.
+        placed: of parts that stand where their file says: origin, z and x.
     """
 
     picks: Mapping[str, Mapping[str, tuple[PickedFace, ...]]]
     faces: Mapping[str, tuple[str, ...]]
+    placed: Mapping[str, tuple[Triple, Triple, Triple]]
 
     def faces_of(self, part: str, feature: str, spec: FeatureUnion) -> tuple[PickedFace, ...]:
         """The faces of a feature.
@@ -127,6 +140,8 @@ def file_of(kept: Kept) -> FileContent:
         },
         "faces": {part: list(names) for part, names in kept.faces.items()},
     }
+    if kept.placed:
+        plain["placed"] = {part: {"at": at, "z": z, "x": x} for part, (at, z, x) in kept.placed.items()}
     return FileContent(Path(FEATURES), (json.dumps(plain, indent=1) + "\n").encode())
 
 
@@ -148,7 +163,8 @@ def kept_in(files: Files, source: Path) -> Kept:
         part: {feature: tuple(PickedFace(**dict(face)) for face in faces) for feature, faces in own.items()}
         for part, own in found.picks.items()
     }
-    return Kept(picks, found.faces)
+    placed = {part: (own.at, own.z, own.x) for part, own in found.placed.items()}
+    return Kept(picks, found.faces, placed)
 
 
 def face_names(scene: Scene) -> dict[str, str]:
@@ -179,7 +195,7 @@ def shapes_of(scene: Scene) -> dict[str, BuiltShape]:
         own = solids[part]
         builder = own.builder
         if isinstance(own, StepSpec):
-            found[name] = StepShape.of(scene.files[own.file], own.product)
+            found[name] = StepShape.of(scene.files[own.file], own.product, own.use)
         elif isinstance(builder, OwnFileSpec):
             content = scene.files[solid_file(part)].content
             found[name] = KeptShape.of(content, kept_in(scene.files, scene.source).faces.get(part, ()))

@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.features.point import PointSpec
 from tol3d.assembly.grammar.features.selector import SelectorSpec
 from tol3d.assembly.grammar.parts import SolidSpec, StepSpec
 from tol3d.assembly.picking.kept_picks import FEATURES, Kept, built_shape, file_of, kept_in, kept_solid, solid_file
-from tol3d.assembly.picking.step_picks import looked_up, with_numbers
+from tol3d.assembly.picking.step_picks import looked_up, place_in_file, placed, with_numbers
 from tol3d.errors import GeometryError
 from tol3d.files import Files
 from tol3d.parts.details import DetailError
@@ -97,7 +97,8 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
                 continue
             faces = kept.faces_of(name, feature, spec)
             features[feature] = spec if not spec.faces_picked else _with_numbers(spec, faces, path, problems)
-        parts[name] = own.model_copy(update={"features": features})
+        place = {"placed": placed(kept.placed[name])} if name in kept.placed else {}
+        parts[name] = own.model_copy(update={"features": features, **place})
     refuse(scene, problems)
     return scene.model_copy(update={"parts": parts}).read_from(scene.origin), files
 
@@ -110,11 +111,15 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
     """
     picks: dict[str, dict[str, tuple[PickedFace, ...]]] = {}
     names: dict[str, tuple[str, ...]] = {}
+    places: dict[str, tuple[Triple, Triple, Triple]] = {}
     files = {}
     problems: list[Problem] = []
     for name, own in solids.items():
         if isinstance(own, StepSpec):
+            before = len(problems)
             picks[name] = looked_up(name, own, scene.files[own.file], problems)
+            if len(problems) == before and (place := place_in_file(own, scene.files[own.file])) is not None:
+                places[name] = place
             continue
         here: KeyPath = ("parts", name, "builder")
         try:
@@ -141,7 +146,7 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
             by_feature[feature] = (*by_feature.get(feature, ()), face)
         picks[name] = by_feature
     refuse(scene, problems)
-    kept = Kept(picks, names)
+    kept = Kept(picks, names, places)
     return kept, {**files, FEATURES: file_of(kept)}
 
 

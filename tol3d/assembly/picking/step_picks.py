@@ -8,10 +8,11 @@ from tol3d.assembly.grammar.features.feature_spec import FaceKind, lengths
 from tol3d.assembly.grammar.features.pattern import Scattered
 from tol3d.assembly.grammar.features.selector import SelectorSpec
 from tol3d.assembly.grammar.parts import StepSpec
+from tol3d.assembly.grammar.parts.solid import Placement
 from tol3d.errors import SceneError
 from tol3d.files import FileContent
 from tol3d.scene.place import KeyPath
-from tol3d.solids.pick import PickedFace
+from tol3d.solids.pick import PickedFace, Triple
 from tol3d.step.found import FoundFeature
 from tol3d.step.reading import StepPart, read_step
 from tol3d.step.refused import StepError
@@ -37,9 +38,14 @@ def looked_up(
 ) -> dict[str, tuple[PickedFace, ...]]:
     """What the features of a part are that it selects, by their names; what is wrong is added to the problems."""
     try:
-        found = read_step(file).part(spec.product)
+        read = read_step(file)
     except StepError as error:
-        field = "product" if spec.product is not None and "product" in str(error) else "file"
+        problems.append((("parts", part, "file"), str(error)))
+        return {}
+    try:
+        found = read.part(spec.product, spec.use)
+    except StepError as error:
+        field = "use" if spec.use is not None else "file" if spec.product is None else "product"
         problems.append((("parts", part, field), str(error)))
         return {}
     return dict(_each(part, spec, found, problems))
@@ -66,6 +72,11 @@ def selector_of(spec: SelectorSpec) -> Selector:
         face=spec.number,
         name=spec.face if spec.number is None else None,
         faces=spec.numbers,
+        datum=spec.datum,
+        pmi=spec.pmi,
+        tolerance=spec.tolerance,
+        value=None if spec.value is None else spec.value.internal,
+        datums=spec.datums,
         kind=spec.kind,
         diameter=None if spec.diameter is None else spec.diameter.internal,
         near=None if near is None else (near[0], near[1], near[2]),
@@ -89,6 +100,19 @@ def face_of(feature: FoundFeature) -> PickedFace:
         numbers(feature), FACE_KINDS[feature.kind], feature.at, feature.direction, feature.x, feature.extent, radius,
         feature.hollow, feature.on, normal,
     )  # fmt: skip
+
+
+def place_in_file(spec: StepSpec, file: FileContent) -> tuple[Triple, Triple, Triple] | None:
+    """Origin, z and x of a part as its file has them; None where its scene says where it stands."""
+    if spec.use is None or "placed" in spec.model_fields_set:
+        return None
+    return read_step(file).use(spec.use).frame
+
+
+def placed(place: tuple[Triple, Triple, Triple]) -> Placement:
+    """Where a part stands as a scene has it, of origin, z and x."""
+    at, z, x = place
+    return Placement.model_validate({"at": lengths(*at), "z": z, "x": x})
 
 
 def with_numbers(spec: SelectorSpec, faces: Sequence[PickedFace]) -> FeatureUnion:

@@ -16,6 +16,8 @@ from tol3d.strict import Strict, refused
 
 NUMBER: Final = re.compile(r"#([0-9]{1,15})")
 
+DRAWN: Final = ("datum", "pmi", "tolerance", "value", "datums")
+
 Selected = Literal["plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"]
 
 
@@ -38,6 +40,13 @@ class SelectorSpec(Strict):
     faces: Annotated[tuple[FaceName, ...], listed("numbers of faces", 1, 1000)] | None = Field(
         default=None, description="the numbers of all of its faces; others on the same surface are then none of it"
     )
+    datum: str | None = Field(default=None, description="the letter of the datum that it is")
+    pmi: str | None = Field(default=None, description="the name that the file gives a tolerance or dimension of it")
+    tolerance: str | None = Field(
+        default=None, description="the kind of a tolerance of it in the file, such as position"
+    )
+    value: Length | None = Field(default=None, description="of that tolerance")
+    datums: str | None = Field(default=None, description="the letters of that tolerance's datums, such as A | B-C")
     kind: Selected | None = Field(default=None, description="what it is")
     diameter: Length | None = Field(default=None, description="of a round one")
     near: Vector | None = Field(
@@ -73,14 +82,19 @@ class SelectorSpec(Strict):
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
-        if not self.model_fields_set - {"along", "within", "count"}:
+        if not self.model_fields_set - {"along", "within", "count", "value", "datums"}:
             expected = "a face, or a kind with a diameter or a point near it: tol3d features FILE lists lines to paste"
             raise refused("", expected, "neither")
         if self.faces is not None:
             if wrong := next((own for own in self.faces if not NUMBER.fullmatch(own)), None):
                 raise refused("faces", 'numbers of faces, such as "#764"', repr(wrong))
-            if beside := self.model_fields_set & {"face", "near", "within", "count", "diameter"}:
+            if beside := self.model_fields_set & {"face", "near", "within", "count", "diameter", *DRAWN}:
                 raise refused(min(beside), "none beside `faces`, which say it all", "both")
+        if sum(own is not None for own in (self.datum, self.pmi, self.tolerance)) > 1:
+            raise refused("", "one of `datum`, `pmi` and `tolerance`", "several")
+        for field in ("value", "datums"):
+            if getattr(self, field) is not None and self.tolerance is None:
+                raise refused(field, "the kind of `tolerance` as well", "none")
         if self.within is not None and self.near is None:
             raise refused("within", "the point `near` it as well", "none")
         return self

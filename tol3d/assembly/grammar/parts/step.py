@@ -20,6 +20,11 @@ class StepSpec(SolidSpec):
     kind: Literal["step"]  # type: ignore[assignment]
     file: str = Field(description="the STEP file, in the scene's folder")
     product: str | None = Field(default=None, description="which of its products; the only one if not given")
+    use: str | None = Field(
+        default=None,
+        description="a part as it stands in the file's assembly, such as lower/bolt_2, in place of `product`; "
+        "placed as there if `placed` is not given",
+    )
     features: Mapping[OwnName, SelectedUnion] = Field(  # type: ignore[assignment]
         default_factory=dict, description="what its drawing names: selected on its faces, or by numbers"
     )
@@ -40,7 +45,8 @@ class StepSpec(SolidSpec):
 
     @model_validator(mode="after")
     def _refuse_other_solids(self) -> Self:
-        for field in ("builder", "like"):
-            if getattr(self, field) is not None:
-                raise refused(field, "none of a part from a STEP file, which has its solid", "one")
+        if self.builder is not None:
+            raise refused("builder", "none of a part from a STEP file, which has its solid", "one")
+        if self.product is not None and self.use is not None:
+            raise refused("product", "none beside `use`, which says it", "both")
         return self
