@@ -29,7 +29,7 @@ from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
-from tol3d.system.other_laws import Following, Zoned, refuse_impossible, with_law
+from tol3d.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
 from tol3d.system.other_laws import scaled as scaled_draw
 from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
@@ -359,19 +359,21 @@ class Response:
         """
         return self._made_again({name: partial(with_law, law=law) for name, law in laws.items()})
 
-    def scaled(self, factors: Mapping[str, float], stays: Mapping[str, Stays] = NOTHING_STAYS) -> "Response":
+    def scaled(
+        self, factors: Mapping[str, float], stays: Mapping[str, Stays] = NOTHING_STAYS, *, physical: bool = True
+    ) -> "Response":
         """The same system with tolerances that are so many times as wide, by contributor.
 
         Args:
             factors: above 0; the others' tolerances are as they are.
             stays: of some of them, which limit does; see `naturally_stays`, if not given.
+            physical: whether deviations below the least physical one are refused; else they are drawn.
 
         Raises:
             InputError: no such contributor, one whose law cannot be scaled, or deviations that cannot be.
         """
-        return self._made_again(
-            {name: partial(scaled_draw, factor=factor, stays=stays.get(name)) for name, factor in factors.items()}
-        )
+        changes = {name: partial(scaled_draw, factor=factor, stays=stays.get(name)) for name, factor in factors.items()}
+        return self._made_again(changes, physical=physical)
 
     def sized(self, widths: Mapping[str, float]) -> "Response":
         """The same system with zones of other widths [mm], by contributor.
@@ -381,7 +383,7 @@ class Response:
         """
         return self._made_again({name: partial(_sized, width=width) for name, width in widths.items()})
 
-    def _made_again(self, changes: Mapping[str, Callable[[Draw], Draw]]) -> "Response":
+    def _made_again(self, changes: Mapping[str, Callable[[Draw], Draw]], *, physical: bool = True) -> "Response":
         """With other draws, and those that follow them."""
         known = {own.name: own for own in self.contributors}
         made: dict[str, Draw] = {}
@@ -391,7 +393,9 @@ class Response:
                 made[name] = change(before)
             except InputError as error:
                 raise InputError(f"{name}: {error}") from None
-            refuse_impossible(known[name], made[name])
+            refuse_held(known[name])
+            if physical:
+                refuse_impossible(known[name], made[name])
         draws = {**self.draws, **made}
         for name, own in made.items():
             for other, draw in draws.items():

@@ -118,22 +118,27 @@ def scaled(draw: Draw, factor: float, stays: Stays | None = None) -> Draw:
     return with_law(draw, own.distribution.scaled_at(factor, stays or naturally_stays(draw)))
 
 
-def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
-    """Refuse a draw below what is physical, or one whose tolerance acts elsewhere too.
+def refuse_held(contributor: Contributor) -> None:
+    """Refuse a tolerance that acts elsewhere too.
 
     Raises:
         InputError: naming the contributor.
     """
-    name = contributor.name
     if isinstance(contributor, Holding) and contributor.held:
-        raise InputError(
-            f"{name}: expected a tolerance that acts by its deviation alone, got one that {contributor.held}; "
-            "write it into the scene"
-        )
+        words = "expected a tolerance that acts by its deviation alone"
+        raise InputError(f"{contributor.name}: {words}, got one that {contributor.held}; write it into the scene")
+
+
+def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
+    """Refuse a draw below what is physical.
+
+    Raises:
+        InputError: naming the contributor.
+    """
     least, law, per = contributor.least, draw.distribution, contributor.per_unit
     if least is not None and law.low < min(least, contributor.distribution.low) - LEAST_OFF:
         raise InputError(
-            f"{name}: expected at least {least / per:g} {contributor.unit}, for less is not physical, "
+            f"{contributor.name}: expected at least {least / per:g} {contributor.unit}, for less is not physical, "
             f"got down to {law.low / per:.4g} {contributor.unit}"
         )
 
