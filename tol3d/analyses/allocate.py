@@ -14,13 +14,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
-from scipy.optimize import brentq, minimize
+from scipy.optimize import minimize
 from scipy.special import ndtr
 
 from tol3d.analyses.changes import told
 from tol3d.analyses.costs import Costs, Discrete
 from tol3d.analyses.form import Points, concerned, points_of
-from tol3d.analyses.rare import Side, rare_event
+from tol3d.analyses.limit_state import Side
+from tol3d.analyses.rare import rare_event
 from tol3d.analyses.response import Response
 from tol3d.analyses.what_if import limits_of
 from tol3d.distributions.base import Stays
@@ -31,9 +32,9 @@ from tol3d.scene.nearest import hint
 
 BOUNDS: Final = (0.5, 3.0)
 ROUNDS: Final = 8
-AIM: Final = 0.99
+AIM: Final = 0.995
 """Of the target: what is aimed at, so that what is found is rather below."""
-NEAR: Final = 0.96
+NEAR: Final = 0.97
 """Of the target: nearer than that is near enough."""
 DAMPING: Final = 0.8
 DRAWS: Final = 12_000
@@ -44,6 +45,14 @@ ACCURACY: Final = 1e-6
 ITERATIONS: Final = 60
 CURVE: Final = (0.1, 0.3, 3.0, 10.0)
 """Of the target: where else the cost is told."""
+LOOKS: Final = 3
+"""Last looks; after each that is not content the search goes on below."""
+SURE: Final = 1.03
+"""Of the target: what the last look may say at most."""
+BRACKET: Final = 0.2
+HALVINGS: Final = 10
+FAR: Final = 0.02
+"""Of a target: what first order has below that is within reach, however far it is off."""
 TINY: Final = 1e-300
 MOST_PPM: Final = 500_000.0
 STRAIGHT: Final = 1e-3
@@ -170,21 +179,26 @@ class _Search:
         each = {own: factor for name, factor in self.factors(x).items() for own in self.groups[name]}
         return self.response.scaled(each, self.question.stays, physical=False)
 
-    def probabilities(self, x: Array) -> tuple[Array, Array]:
+    def probabilities(self, x: Array, *, slopes: bool = True) -> tuple[Array, Array]:
         """Logarithms of what is beyond each target's limits (targets,), and their slopes (targets, factors)."""
-        other = self.scaled(x)
-        logs, slopes = [], []
+        other, asked = self.scaled(x), slopes
+        logs, rates = [], []
         for target in self.targets:
             own = [key for key in self.points if key[0] == target.measure and key[1] in target.sides]
             total, slope = 0.0, np.zeros(len(x))
             for key in own:
-                self.points[key] = followed = self.points[key].followed(other.of(target.measure))
+                followed = self.points[key].followed(other.of(target.measure))
                 part = float(followed.each.sum())
                 total += part
-                slope += part * self._slopes(followed, x)
+                slope += part * self._slopes(followed, x) if asked else 0.0
             logs.append(math.log(max(total, TINY)))
-            slopes.append(slope / max(total, TINY))
-        return np.array(logs), np.array(slopes)
+            rates.append(slope / max(total, TINY))
+        return np.array(logs), np.array(rates)
+
+    def move_to(self, x: Array) -> None:
+        """Follow the design points to other factors, from where they are followed next."""
+        other = self.scaled(x)
+        self.points = {key: own.followed(other.of(key[0])) for key, own in self.points.items()}
 
     def _slopes(self, points: Points, x: Array) -> Array:
         def at(logarithms: Array) -> Response:
@@ -225,21 +239,26 @@ def allocation(
         words = "expected contributors with a smooth map from normals, from which slopes of the ppm are known"
         raise InputError(f"{words}, got {', '.join(response.rough)}; ask tol3d what-if of single changes")
     search, held = _begun(response, targets, asked)
-    confirm = _Confirmation(search, draws, seed)
+    wanted = np.log([1e-6 * own.ppm for own in targets])
     activity("the tightest tolerances")
-    _refuse_out_of_reach(search, confirm)
-    scene = confirm.look(np.zeros(len(search.low)))
-    shift = np.zeros(len(targets))
+    _refuse_out_of_reach(search, draws, seed)
+    zero = np.zeros(len(search.low))
+    scene = _sampled(search, zero, draws, seed)
+    rounds = _Rounds(search, draws, seed, activity, np.zeros(len(targets)))
     activity("equal factors")
-    equal, shift, _ = _confirmed(search, confirm, shift, _equal, activity)
-    best, shift, rounds = _confirmed(search, confirm, shift, _least, activity)
-    x = np.log(np.maximum(np.floor(10**DIGITS * np.exp(best) + STRAIGHT) / 10**DIGITS, np.exp(search.low)))
-    x = np.where(_is_graded(search), best, x)
-    activity("confirmation")
+    equal = rounds.solved(_equal, zero, wanted)
+    x, last = equal, []
+    goal = wanted
+    for _ in range(LOOKS):
+        x = _rounded(search, rounds.solved(_least, x, goal))
+        activity("confirmation")
+        last = _looked(search, x, 2 * draws, seed + 1)
+        off = np.log([max(own.probability, TINY) for own in last]) - wanted
+        if float(off.max()) <= math.log(SURE):
+            break
+        goal = goal - np.maximum(off, 0.0)
     first = np.exp(search.probabilities(x)[0])
-    last = _Confirmation(search, 2 * draws, seed + 1).look(x)
-    equal_cost = None if equal is None else search.cost(equal)
-    curve = _trade_off(search, shift, x)
+    curve = _trade_off(search, rounds.shift, x)
     return made(
         Allocation,
         targets=[
@@ -248,7 +267,7 @@ def allocation(
                 measure=own.measure,
                 sides=list(own.sides),
                 wanted=own.ppm,
-                scene=_ppm(at_scene.probability),
+                scene=_ppm(float(at_scene)),
                 first_order=_ppm(float(formed)),
                 ppm=_ppm(found.probability),
                 interval=[_ppm(end) for end in found.interval],
@@ -257,14 +276,20 @@ def allocation(
         ],
         tolerances=_told(search, x, held),
         cost=search.cost(x),
-        scene_cost=search.cost(np.zeros(len(x))),
-        equal_factor=None if equal is None else float(np.exp(equal.max())),
-        equal_cost=equal_cost,
+        scene_cost=search.cost(zero),
+        equal_factor=float(np.exp(equal.max())),
+        equal_cost=search.cost(equal),
         trade_off=curve,
-        rounds=rounds,
+        rounds=rounds.count,
         draws=draws,
         evaluations=response.evaluations - before,
     )
+
+
+def _rounded(search: _Search, x: Array) -> Array:
+    """Factors of a few digits, rounded down; grades stay."""
+    down = np.log(np.floor(10**DIGITS * np.exp(x) + STRAIGHT) / 10**DIGITS)
+    return np.where(_is_graded(search), x, np.maximum(down, search.low))
 
 
 def _ppm(probability: float) -> float:
@@ -368,31 +393,36 @@ class _Seen:
     interval: tuple[float, float]
 
 
-@dataclass(frozen=True, eq=False)
-class _Confirmation:
-    """How often limits are left by importance sampling, always from the same seed."""
-
-    search: _Search
-    draws: int
-    seed: int
-
-    def look(self, x: Array) -> list[_Seen]:
-        """Of each target; of both limits together the sum, and of its interval the sums of the ends."""
-        other = self.search.scaled(x)
-        found = []
-        for target in self.search.targets:
-            alone = other.of(target.measure)
-            limits = limits_of(alone.measures[0])
-            events = [rare_event(alone, side, limits[side], draws=self.draws, seed=self.seed) for side in target.sides]
-            total = math.fsum(own.probability for own in events)
-            ends = [math.hypot(*(own.interval[end] - own.probability for own in events)) for end in (0, 1)]
-            found.append(_Seen(total, (max(0.0, total - ends[0]), min(1.0, total + ends[1]))))
-        return found
+def _sampled(search: _Search, x: Array, draws: int, seed: int) -> Array:
+    """How often limits are left (targets,) by importance sampling about the design points, always from a seed."""
+    other = search.scaled(x)
+    found = np.zeros(len(search.targets))
+    for k, target in enumerate(search.targets):
+        for key, points in search.points.items():
+            if key[0] == target.measure and key[1] in target.sides:
+                found[k] += points.followed(other.of(target.measure)).sampled(draws, seed)[0]
+    return found
 
 
-def _refuse_out_of_reach(search: _Search, confirm: _Confirmation) -> None:
-    tightest = confirm.look(search.low)
-    for target, found in zip(search.targets, tightest, strict=True):
+def _looked(search: _Search, x: Array, draws: int, seed: int) -> list[_Seen]:
+    """The same of each target by itself, whatever is known of it; of both limits the sum."""
+    other = search.scaled(x)
+    found = []
+    for target in search.targets:
+        alone = other.of(target.measure)
+        limits = limits_of(alone.measures[0])
+        events = [rare_event(alone, side, limits[side], draws=draws, seed=seed) for side in target.sides]
+        total = math.fsum(own.probability for own in events)
+        ends = [math.hypot(*(own.interval[end] - own.probability for own in events)) for end in (0, 1)]
+        found.append(_Seen(total, (max(0.0, total - ends[0]), min(1.0, total + ends[1]))))
+    return found
+
+
+def _refuse_out_of_reach(search: _Search, draws: int, seed: int) -> None:
+    formed = np.exp(search.probabilities(search.low)[0])
+    if all(own < FAR * 1e-6 * target.ppm for own, target in zip(formed, search.targets, strict=True)):
+        return
+    for target, found in zip(search.targets, _looked(search, search.low, draws, seed), strict=True):
         if found.probability > 1e-6 * target.ppm:
             sides = " and ".join(target.sides)
             raise InputError(
@@ -405,27 +435,42 @@ def _refuse_out_of_reach(search: _Search, confirm: _Confirmation) -> None:
 Solve = Callable[[_Search, Array, Array], Array]
 
 
-def _confirmed(
-    search: _Search, confirm: _Confirmation, shift: Array, solve: Solve, activity: Callable[[str], None]
-) -> tuple[Array, Array, int]:
-    """Factors that simulation confirms, by how much first order is off there (targets,) in logarithms, and rounds."""
-    wanted = np.log([1e-6 * own.ppm for own in search.targets])
-    x = np.zeros(len(search.low))
-    best: tuple[float, Array] | None = None
-    rounds = 0
-    for rounds in range(1, ROUNDS + 1):
-        x = solve(search, wanted + math.log(AIM) - shift, x)
-        seen = np.log([max(own.probability, TINY) for own in confirm.look(x)])
-        off = seen - wanted
-        activity(f"round {rounds}: cost {search.cost(x):.4g}, {1e6 * math.exp(float(seen.max())):.3g} ppm")
-        if float(off.max()) <= 0.0 and (best is None or search.cost(x) < best[0]):
-            best = (search.cost(x), x)
-        held = bool((x >= search.high - ACCURACY).all())
-        if float(off.max()) <= 0.0 and (float(off.max()) >= math.log(NEAR) or held):
-            break
-        formed = search.probabilities(x)[0]
-        shift = shift + DAMPING * (seen - formed - shift)
-    return (x if best is None else best[1]), shift, rounds
+@dataclass(eq=False)
+class _Rounds:
+    """Solutions by first order whose target is moved until sampling confirms them.
+
+    Args:
+        search: what is looked for.
+        draws, seed: of importance sampling.
+        tell: callback that gets what goes on, in words.
+        shift: by how much first order is off (targets,), in logarithms.
+        count: of rounds.
+    """
+
+    search: _Search
+    draws: int
+    seed: int
+    tell: Callable[[str], None]
+    shift: Array
+    count: int = 0
+
+    def solved(self, solve: Solve, x: Array, wanted: Array) -> Array:
+        """Factors of which sampling says that they reach what is wanted (targets,), in logarithms."""
+        best: tuple[float, Array] | None = None
+        for _ in range(ROUNDS):
+            self.count += 1
+            x = solve(self.search, wanted + math.log(AIM) - self.shift, x)
+            self.search.move_to(x)
+            seen = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
+            off, cost = float((seen - wanted).max()), self.search.cost(x)
+            self.tell(f"round {self.count}: cost {cost:.4g}, {math.exp(off):.3g} of the ppm")
+            if off <= STRAIGHT and (best is None or cost < best[0]):
+                best = cost, x
+            if off <= STRAIGHT and (off >= math.log(NEAR) or bool((x >= self.search.high - ACCURACY).all())):
+                break
+            formed = self.search.probabilities(x)[0]
+            self.shift = self.shift + DAMPING * (seen - formed - self.shift)
+        return x if best is None else best[1]
 
 
 def _equal(search: _Search, wanted: Array, begun: Array) -> Array:
@@ -435,14 +480,23 @@ def _equal(search: _Search, wanted: Array, begun: Array) -> Array:
         return np.asarray(np.clip(np.full(len(search.low), value), search.low, search.high))
 
     def beyond(value: float) -> float:
-        return float((search.probabilities(at(value))[0] - wanted).max())
+        return float((search.probabilities(at(value), slopes=False)[0] - wanted).max())
 
     low, high = float(search.low.min()), float(search.high.max())
-    if beyond(high) <= 0.0:
-        return at(high)
-    if beyond(low) >= 0.0:
-        return at(low)
-    return at(float(brentq(beyond, low, high, xtol=1e-4)))
+    inside = outside = float(np.clip(begun.max(), low, high))
+    sign = -1.0 if beyond(inside) > 0.0 else 1.0
+    while low < outside < high or outside == inside:
+        inside, outside = outside, min(max(outside + sign * BRACKET, low), high)
+        if outside == inside:
+            return at(outside)
+        if (beyond(outside) > 0.0) == (sign > 0.0):
+            break
+    else:
+        return at(outside)
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        inside, outside = (inside, middle) if (beyond(middle) > 0.0) == (sign > 0.0) else (middle, outside)
+    return at(min(inside, outside))
 
 
 def _least(search: _Search, wanted: Array, begun: Array) -> Array:
@@ -502,7 +556,7 @@ def _graded(search: _Search, wanted: Array, x: Array) -> Array:
         x[k] = below[-1] if len(below) else logs[0]
 
     def fits(other: Array) -> bool:
-        return bool((search.probabilities(other)[0] <= wanted + STRAIGHT).all())
+        return bool((search.probabilities(other, slopes=False)[0] <= wanted + STRAIGHT).all())
 
     def moved(own: Array, k: int, by: int) -> Array | None:
         place = int(np.argmin(np.abs(tables[k] - own[k]))) + by
@@ -553,9 +607,9 @@ def _told(search: _Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dic
         bounds = search.question.own_bounds.get(name, search.question.bounds)
         words = ""
         if x[k] >= search.high[k] - STRAIGHT:
-            words = "upper bound" if factor >= bounds[1] - STRAIGHT else "no wider, for that is not physical"
+            words = "upper bound" if factor >= bounds[1] - STRAIGHT else "at its physical least"
         elif x[k] <= search.low[k] + STRAIGHT:
-            words = "lower bound" if factor <= bounds[0] + STRAIGHT else "no tighter, for the zone is refined"
+            words = "lower bound" if factor <= bounds[0] + STRAIGHT else "refined: no tighter"
         found[name] = made(
             Allocated,
             factor=factor,

@@ -146,4 +146,7 @@ def told(contributor: Contributor, draw: Draw) -> str:
     limits = law.limits if isinstance(law, Distribution) else None
     if limits is not None:
         return f"{name} {limits[0] / per:.5g} … {limits[1] / per:.5g} {sign}".strip()
+    scale = getattr(law, "scale", None)
+    if scale is not None:
+        return f"{name} {scale / per:.5g} {sign}".strip()
     return f"{name} mean {law.mean / per:.5g}, sigma {law.sigma / per:.5g} {sign}".strip()

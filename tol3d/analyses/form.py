@@ -12,9 +12,10 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
+from scipy.special import logsumexp, ndtr
 
-from tol3d.analyses.rare import DesignPoint, LimitState, Side, design_points
+from tol3d.analyses.design_points import DesignPoint, design_points
+from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent
@@ -26,11 +27,15 @@ ALONE: Final = 8
 """Starts where there is one position."""
 STEP: Final = 1e-3
 """Of central differences, in standard normals and in logarithms of factors."""
-STEPS: Final = 8
-MET: Final = 1e-6
-"""What is left of the limit, in standard normals."""
-LONGEST: Final = 1.0
+STEPS: Final = 12
+MET: Final = 1e-3
+"""A step that is left, in standard normals: a distance is then known to its square."""
+LONGEST: Final = 3.0
 """Of a step, in standard normals."""
+SEEN: Final = 0.01
+"""Of the probability: design points that stand for less are left out."""
+PLAIN: Final = 0.1
+"""Share of the draws that are about no design point."""
 LEAST: Final = 1e-300
 
 
@@ -78,8 +83,10 @@ class Points:
         signs = self.signs.copy()
         for _ in range(STEPS):
             inside, gradients = _at(state, z, self.positions)
-            known = np.isfinite(inside) & np.isfinite(gradients).all(axis=1)
-            square = np.maximum((gradients * gradients).sum(axis=1), LEAST)
+            square = (gradients * gradients).sum(axis=1)
+            known = np.isfinite(inside) & (square > LEAST)
+            gradients, inside = np.where(known[:, None], gradients, 0.0), np.where(known, inside, 0.0)
+            square = np.where(known, square, 1.0)
             aim = (((gradients * z).sum(axis=1) - inside) / square)[:, None] * gradients
             step = np.where(known[:, None], aim - z, 0.0)
             size = np.linalg.norm(step, axis=1)
@@ -90,6 +97,40 @@ class Points:
         outwards = (gradients * z).sum(axis=1)
         signs = np.where(outwards < 0.0, 1.0, np.where(outwards > 0.0, -1.0, signs))
         return replace(self, state=state, normals=z, gradients=gradients, signs=signs)
+
+    def sampled(self, draws: int, seed: int) -> tuple[float, float]:
+        """Probability by importance sampling about the design points, and its standard error.
+
+        Positions are those of the design points: what these leave out, `rare_event` finds.
+
+        Args:
+            draws: all of them; positions have as many each.
+            seed: of the normals.
+        """
+        generator = np.random.default_rng(seed)
+        each, dimension = max(2, draws // self.count), self.normals.shape[1]
+        found = []
+        for place in range(self.count):
+            mine = np.flatnonzero(self.places == place)
+            if not mine.size:
+                continue
+            centres = np.vstack([np.zeros((1, dimension)), self.normals[mine]])
+            near = np.square(self.betas[mine])
+            shares = np.exp(-0.5 * (near - near.min())) * (self.signs[mine] > 0.0)
+            weights = np.concatenate([[PLAIN], (1.0 - PLAIN) * shares / max(float(shares.sum()), LEAST)])
+            weights /= weights.sum()
+            z = centres[generator.choice(len(weights), size=each, p=weights)]
+            z = z + generator.standard_normal((each, dimension))
+            row = {name: np.repeat(own[mine[:1]], each, axis=0) for name, own in self.positions.items()}
+            inside, seated = self.state.at(z, row)
+            with np.errstate(invalid="ignore"):
+                fails = ~seated & ~(inside < 0.0) | ~(inside >= 0.0)
+            tilt = z[fails] @ centres.T - 0.5 * (centres * centres).sum(axis=1)
+            ratio = np.zeros(each)
+            ratio[fails] = np.exp(-logsumexp(tilt, axis=1, b=weights))
+            found.append((float(ratio.mean()), float(ratio.var(ddof=1)) / each))
+        means, variances = np.array(found).T
+        return float(means.sum() / self.count), math.sqrt(float(variances.sum())) / self.count
 
     def slopes(self, x: Array, at: Callable[[Array], Response]) -> Array:
         """Change of the logarithm of the probability with the logarithm of each factor (factors,).
@@ -126,7 +167,12 @@ def points_of(response: Response, side: Side, limit: float, *, seed: int = 1) ->
     state = LimitState(response, limit, side)
     found = design_points(state, positions, count, STARTS if moves else ALONE, generator)
     own = [(place, point) for place, points in enumerate(found) for point in points]
-    return _gathered(state, own, count) if own else None
+    if not own:
+        return None
+    least = SEEN * max(float(ndtr(-point.beta)) for _, point in own)
+    firsts = {place: min(points, key=lambda each: each.beta) for place, points in enumerate(found) if points}
+    kept = [pair for pair in own if float(ndtr(-pair[1].beta)) >= least or pair[1] is firsts[pair[0]]]
+    return _gathered(state, kept, count)
 
 
 def _gathered(state: LimitState, own: Sequence[tuple[int, DesignPoint]], count: int) -> Points:

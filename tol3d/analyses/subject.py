@@ -10,10 +10,12 @@ from typing import Final
 from tol3d.analyses.response import Response, response_of
 from tol3d.errors import RunError, unwritable
 from tol3d.import_path import named
+from tol3d.kinds import NEEDED_KINDS
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.run import SUMMARY, Run, open_run
 from tol3d.runs.summary.text import parsed
 from tol3d.runs.summary.values import Section, as_json
+from tol3d.scene import Scene, read_scene
 from tol3d.scene.bundled import scene_path
 from tol3d.simulate import load, simulation_again, simulation_of
 from tol3d.study.simulation import Simulation
@@ -22,6 +24,7 @@ FOLDER: Final = "analyses"
 SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
     "what-if": "tol3d.analyses.what_if:WhatIf",
+    "allocation": "tol3d.analyses.allocate:Allocation",
     "rare": "tol3d.analyses.rare_section:RareEvents",
     "changes": "tol3d.analyses.what_to_change:Changes",
     "methods": "tol3d.analyses.methods_section:Methods",
@@ -36,10 +39,20 @@ class Subject:
     Args:
         simulation: what builds are made of.
         run: where sections are kept; None of a scene.
+        loaded: the scene; None of a run, which keeps its own.
     """
 
     simulation: Simulation
     run: Run | None = None
+    loaded: Scene | None = None
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene, of a run the one that it kept."""
+        if self.loaded is not None:
+            return self.loaded
+        assert self.run is not None
+        return read_scene(self.run.scene_path, NEEDED_KINDS, files=self.run.files)
 
     @property
     def name(self) -> str:
@@ -70,7 +83,8 @@ def subject_of(path: str, *, trust_parts: bool = False, run_builders: bool = Fal
     if (folder / SUMMARY).exists() or folder.is_dir():
         run = open_run(folder)
         return Subject(simulation_again(run), run)
-    return Subject(simulation_of(load(scene_path(path), trust_parts=trust_parts, run_builders=run_builders)))
+    scene = load(scene_path(path), trust_parts=trust_parts, run_builders=run_builders)
+    return Subject(simulation_of(scene), loaded=scene)
 
 
 def keep(run: Run, name: str, found: Section) -> Path:

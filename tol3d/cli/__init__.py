@@ -63,6 +63,7 @@ COMMANDS = (
     rare.rare,
     effects.effects,
     deciding.what_if,
+    deciding.allocate,
     changing.changes,
     methods.methods,
     changing.sweep,
