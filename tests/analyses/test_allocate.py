@@ -92,7 +92,7 @@ def test_grades_are_the_best_of_the_table() -> None:
 
 def test_the_clutch_costs_what_a_grid_finds() -> None:
     """Fortini's clutch: contact angle acos((hub + roller)/(cage - roller)) of four lengths, on a grid of factors."""
-    nominal, sigmas = np.array([27.645, 11.43, 11.43, 50.8]), np.array([0.0167, 0.0033, 0.0033, 0.0042]) * 2.0
+    nominal, sigmas = np.array([27.645, 11.43, 11.43, 50.8]), np.array([0.0167, 0.0033, 0.0033, 0.0042]) * 0.2
 
     def angle(x: np.ndarray) -> np.ndarray:
         hub, first, second, cage = (nominal + x).T
@@ -100,7 +100,7 @@ def test_the_clutch_costs_what_a_grid_finds() -> None:
         return np.asarray(np.arccos(np.clip((hub + half) / (cage - half), -1.0, 1.0)))
 
     at = float(angle(np.zeros((1, 4)))[0])
-    low = at - 0.035
+    low = at - 0.0035  # within which the angle is straight to about 2 %
     own = formula(angle, [Scalar(Normal(0.0, sigma)) for sigma in sigmas], low=low)
     found = allocation(own, [Target("value", (), 1350.0)], Question(bounds=(0.3, 3.0)), draws=6000)
     step = 1e-5
@@ -110,7 +110,7 @@ def test_the_clutch_costs_what_a_grid_finds() -> None:
     reach = (at - low) / np.linalg.norm(slopes * sigmas * factors, axis=1)
     fitting = factors[norm.sf(reach) <= 1350e-6]
     least = float((1.0 / fitting).sum(axis=1).min())
-    assert found.cost == pytest.approx(least, rel=0.02)  # a step of the grid is 8 %, along which cost is flat
+    assert found.cost == pytest.approx(least, rel=0.03)  # a step of the grid is 8 %, along which cost is flat
     draws = np.random.default_rng(3).standard_normal((1_000_000, 4)) * sigmas * [*found.factors.values()]
     assert float((angle(draws) < low).mean()) == pytest.approx(1350e-6, rel=0.12)
 
