@@ -289,3 +289,102 @@ CASES = (
         turns=True,
     ),
 )
+
+
+def _across(of: Callable[[float], float], *kinks: float) -> float:
+    """The mean of a function of a standard normal, by quadrature."""
+    found: float = quad(lambda y: norm.pdf(y) * of(y), -12, 12, points=[0.0, *kinks], limit=1000)[0]
+    return found
+
+
+def _log_normal(z: Array, mean: float, sigma: float) -> Array:
+    width = math.sqrt(math.log(1 + (sigma / mean) ** 2))
+    return np.asarray(np.exp(math.log(mean) - width**2 / 2 + width * z))
+
+
+def _frame(x: Array, _: Array) -> Array:
+    strengths = [_log_normal(x[:, k], 120.0, 12.0) for k in range(4)]
+    loads = [_log_normal(x[:, 4], 50.0, 10.0), _log_normal(x[:, 5], 40.0, 8.0)]
+    return np.asarray(strengths[0] + 2 * strengths[1] + 2 * strengths[2] + strengths[3] - 5 * (loads[0] + loads[1]))
+
+
+def _three_regions(x: Array, _: Array) -> Array:
+    a, b = x.T
+    first = np.maximum(-(a**2) + b**3 + 3, 2 - a - 8 * b)
+    return np.minimum(first, (a + 3) ** 2 + (b + 3) ** 2 - 4)
+
+
+def _misleading(x: Array, _: Array) -> Array:
+    a, b = x.T
+    return np.minimum(np.where(a > 3.5, 4 - a, 0.85 - 0.1 * a), np.where(b <= 2, 2.3 - b, 0.5 - 0.1 * b))
+
+
+def _four_branches(x: Array, _: Array) -> Array:
+    a, b = x.T
+    bent, along, across = 3 + 0.1 * (a - b) ** 2, (a + b) / math.sqrt(2), a - b
+    return np.min([bent - along, bent + along, across + 7 / math.sqrt(2), 7 / math.sqrt(2) - across], axis=0)
+
+
+def _product(x: Array, _: Array) -> Array:
+    return np.asarray((78064.4 + 11709.7 * x[:, 0]) * (0.0104 + 0.00156 * x[:, 1]) - 146.14)
+
+
+OTBENCHMARK = (
+    Case("RP8", _frame, 6, "low", 0.0, 7.89e-4),
+    Case(
+        "RP22",
+        lambda x, _: 2.5 - (x[:, 0] + x[:, 1]) / math.sqrt(2) + 0.1 * (x[:, 0] - x[:, 1]) ** 2,
+        2,
+        "low",
+        0.0,
+        _curved(0.4, 2.5),
+    ),
+    Case(
+        "RP24",
+        lambda x, _: 2.5 - 0.2357 * 3 * (x[:, 0] - x[:, 1]) + 0.00463 * (3 * (x[:, 0] + x[:, 1])) ** 4,
+        2,
+        "low",
+        0.0,
+        _across(lambda t: norm.sf((2.5 + 0.00463 * 324 * t**4) / (0.2357 * 3 * math.sqrt(2)))),
+    ),
+    Case(
+        "RP28",
+        _product,
+        2,
+        "low",
+        0.0,
+        _across(lambda y: norm.cdf((146.14 / (0.0104 + 0.00156 * y) - 78064.4) / 11709.7) if y > -6.6 else 0.0),
+    ),
+    Case(
+        "RP31",
+        lambda x, _: 2 - x[:, 1] + 256 * x[:, 0] ** 4,
+        2,
+        "low",
+        0.0,
+        _across(lambda a: norm.sf(2 + 256 * a**4), -0.2, 0.2),
+    ),
+    Case(
+        "RP33",
+        lambda x, _: np.minimum(3 * math.sqrt(3) - x.sum(axis=1), 3 - x[:, 2]),
+        3,
+        "low",
+        0.0,
+        _across(lambda c: 1.0 if c > 3 else norm.sf((3 * math.sqrt(3) - c) / math.sqrt(2)), 3.0),
+    ),
+    Case(
+        "RP53",
+        lambda x, _: np.sin(2.5 * (1.5 + x[:, 0])) + 2 - ((1.5 + x[:, 0]) ** 2 + 4) * (1.5 + x[:, 1]) / 20,
+        2,
+        "low",
+        0.0,
+        _across(lambda a: norm.sf(20 * (math.sin(2.5 * (1.5 + a)) + 2) / ((1.5 + a) ** 2 + 4) - 1.5)),
+    ),
+    Case("RP57", _three_regions, 2, "low", 0.0, 2.822e-2),
+    Case(
+        "RP75", lambda x, _: 3 - x[:, 0] * x[:, 1], 2, "low", 0.0, _across(lambda a: norm.sf(3 / abs(a)) if a else 0.0)
+    ),
+    Case("RP107", lambda x, _: 5 - x.sum(axis=1) / math.sqrt(10), 10, "low", 0.0, norm.sf(5)),
+    Case("RP110", _misleading, 2, "low", 0.0, norm.sf(4) + norm.cdf(4) * norm.sf(5)),
+    Case("four branches", _four_branches, 2, "low", 0.0, 2.2225e-3),
+)
+"""Limit states of otbenchmark (Fekhari and others 2021) by their numbers; RP8, RP57 and four branches by 10^7 draws."""
