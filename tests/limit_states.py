@@ -311,18 +311,20 @@ def _frame(x: Array, _: Array) -> Array:
 def _three_regions(x: Array, _: Array) -> Array:
     a, b = x.T
     first = np.maximum(-(a**2) + b**3 + 3, 2 - a - 8 * b)
-    return np.minimum(first, (a + 3) ** 2 + (b + 3) ** 2 - 4)
+    return np.asarray(np.minimum(first, (a + 3) ** 2 + (b + 3) ** 2 - 4))
 
 
 def _misleading(x: Array, _: Array) -> Array:
     a, b = x.T
-    return np.minimum(np.where(a > 3.5, 4 - a, 0.85 - 0.1 * a), np.where(b <= 2, 2.3 - b, 0.5 - 0.1 * b))
+    first, other = np.where(a > 3.5, 4 - a, 0.85 - 0.1 * a), np.where(b <= 2, 2.3 - b, 0.5 - 0.1 * b)
+    return np.asarray(np.minimum(first, other))
 
 
 def _four_branches(x: Array, _: Array) -> Array:
     a, b = x.T
     bent, along, across = 3 + 0.1 * (a - b) ** 2, (a + b) / math.sqrt(2), a - b
-    return np.min([bent - along, bent + along, across + 7 / math.sqrt(2), 7 / math.sqrt(2) - across], axis=0)
+    branches = [bent - along, bent + along, across + 7 / math.sqrt(2), 7 / math.sqrt(2) - across]
+    return np.asarray(np.min(branches, axis=0))
 
 
 def _product(x: Array, _: Array) -> Array:

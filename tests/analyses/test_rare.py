@@ -2,15 +2,19 @@
 
 import json
 import math
+import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fixtures import Command
-from limit_states import CASES, Case, formula
+from limit_states import CASES, OTBENCHMARK, Case, formula
 from scipy.stats import norm
+from toys.parabola import PARABOLA
+from toys.registered import TOYS, known
 
 from tol3d import InputError
+from tol3d.analyses.limit_state import Side
 from tol3d.analyses.rare import Method, limits_left, rare_event
 from tol3d.analyses.rare_section import RareEvents
 from tol3d.analyses.response import Response, response_of
@@ -21,7 +25,7 @@ from tol3d.simulate import load, simulation_of
 SPUR_15 = 0.0507e-6
 """Of the spur pair, below 15 µm: by 10^10 draws of a formula of its own."""
 SLOW = ("curved much in 12 dimensions", "curved in 60 dimensions", "60 contributors", "a ball in 8 dimensions")
-QUICK = [own for own in CASES if own.name not in SLOW]
+QUICK = [own for own in (*CASES, *OTBENCHMARK) if own.name not in SLOW]
 
 
 def test_a_plane_is_met_exactly() -> None:
@@ -53,7 +57,7 @@ def test_importance_sampling_knows_what_is_known(case: Case) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", CASES, ids=lambda own: own.name)
+@pytest.mark.parametrize("case", [*CASES, *OTBENCHMARK], ids=lambda own: own.name)
 def test_its_interval_holds_the_truth_in_about_95_of_100_seeds(case: Case) -> None:
     """Of 100 at 95 %, fewer than 88 happen in one of 300; wider intervals where the method cannot know are no fault."""
     found = [rare_event(case.response(), case.side, case.limit, method="importance", seed=k) for k in range(100)]
@@ -189,6 +193,38 @@ def test_the_command_keeps_its_section_and_shows_the_design_point(tol3d: Command
     assert limit.design_point is not None
     assert limit.design_point.contributors[0].name == "centre distance"
     assert json.loads((run / "analyses" / "rare.json").read_text("utf-8"))["limits"][0]["ppm_interval"] is None
+
+
+def test_a_mechanism_from_outside_has_rare_events_too(tol3d: Command) -> None:
+    """Springs of a toy mechanism: limits, among them one beyond which a spring is lost; curves by their ends."""
+    with known(PARABOLA):
+        code, out, err = tol3d("rare", str(TOYS / "parabola" / "spring.yaml"), "--draws", "500")
+    assert code == 0, err
+    assert "room" in out
+
+
+@pytest.mark.parametrize("side", ["low", "high"])
+def test_fortinis_clutch_is_known_in_closed_form(side: Side) -> None:
+    """The contact angle acos((a + c)/(e - c)) is beyond a limit where a + c - cos(limit) (e - c) has a sign: normal.
+
+    Half height of the hub 27.645 ±0.05, radii of roller 11.43 ±0.01 and ring 50.8 ±0.0125, at 3 sigma. Far from the
+    scene's own limits, which a percent of the builds leave, so that it is rare.
+    """
+    degrees = 5.9 if side == "low" else 8.1
+    cosine = math.cos(math.radians(degrees))
+    mean = 27.645 + 11.43 - cosine * (50.8 - 11.43)
+    sigma = math.sqrt(0.05**2 + (1 + cosine) ** 2 * 0.01**2 + cosine**2 * 0.0125**2) / 3
+    exact = norm.cdf(mean / sigma) if side == "low" else norm.sf(mean / sigma)
+    response = response_of(simulation_of(load("clutch"))).of("contact angle")
+    own = rare_event(response, side, 60 * degrees)
+    assert own.first_order == pytest.approx(exact, rel=1e-3)
+    assert own.probability == pytest.approx(exact, abs=4 * own.error)
+    assert own.error < 0.04 * exact
+
+
+def test_an_interrupted_question_ends_in_one_line(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tol3d.analyses.rare.searched", lambda *_: signal.raise_signal(signal.SIGINT))
+    assert tol3d("rare", "spur_pair") == (130, "", "stopped\n")
 
 
 def test_an_export_is_of_one_measure(tol3d: Command) -> None:

@@ -15,8 +15,9 @@ import numpy as np
 
 from tol3d.analyses.design_points import DesignPoint
 from tol3d.analyses.estimate import Estimate
-from tol3d.analyses.importance import importance_sampled, searched
+from tol3d.analyses.importance import importance_sampled
 from tol3d.analyses.limit_state import LimitState, Side
+from tol3d.analyses.places import searched
 from tol3d.analyses.response import Response
 from tol3d.analyses.second_order import SecondOrder, second_order
 from tol3d.analyses.subset import subset_simulated
@@ -128,7 +129,7 @@ def rare_event(
             activity("draws")
             estimate, where = importance_sampled(state, where, draws or DRAWS, generator)
         elif method == "sorm":
-            second, why = second_order(state, where.points, where.weights)
+            second, why = second_order(state, where.points, where.weights, where.out)
             value = second.hohenbichler if second else None
             estimate = Estimate(value, None, None, warnings=_unsure(where.points, (why,) if why else ()))
         else:

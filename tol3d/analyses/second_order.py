@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from tol3d.analyses.design_points import DesignPoint
@@ -33,18 +34,20 @@ class SecondOrder:
 
 
 def second_order(
-    state: LimitState, points: Sequence[Sequence[DesignPoint]], weights: Array
+    state: LimitState, points: Sequence[Sequence[DesignPoint]], weights: Array, out: NDArray[np.bool_]
 ) -> tuple[SecondOrder | None, str]:
     """By the nearest design point of each position; None where one has no curvatures, and why.
 
     Args:
         state: whose.
-        points: of each position; those that have none do not fail there.
+        points: of each position; where there are none all builds do as the one at the origin.
         weights: how much each position stands for.
+        out: where the build at the origin fails.
     """
     sums, count = np.zeros(2), len(points)
-    for own, weight in zip(points, weights, strict=True):
+    for own, weight, fails in zip(points, weights, out, strict=True):
         if not own:
+            sums += weight * float(fails)
             continue
         nearest = own[0]
         if not nearest.smooth or not nearest.gradient.any():

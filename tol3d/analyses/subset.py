@@ -26,7 +26,9 @@ LEVELS: Final = 24
 """After which it gives up: 1e-24."""
 ACCEPTED: Final = 0.44
 """Share of the steps of a chain that is aimed at."""
-FIRST_STEP: Final = 0.6
+FIRST_STEP, LEAST_STEP = 0.6, 0.02
+TURNED: Final = 0.2
+"""Share of the steps that draw another position and keep the deviations; the others keep the position."""
 FREQUENT: Final = 0.05
 """Probability from which on its first level is enough."""
 UNLIKE: Final = 0.6
@@ -160,11 +162,16 @@ def _chains(
     z = rows.normals[going[:, None], starts]
     here = Rows(z, rows.inside[going[:, None], starts], rows.unseated[going[:, None], starts])
     spread = np.minimum(z.std(axis=1), 1.0)[:, None]
+    moving = bool(state.response.simulation.system.streams)
     kept: list[Rows] = []
     for _ in range(length):
         sigma = np.clip(steps[:, None, None] * spread / max(float(spread.max()), 1e-12), 1e-4, 1.0)
         noise = generator.standard_normal(here.normals.shape)
-        moved = _evaluated(state, np.sqrt(1.0 - sigma**2) * here.normals + sigma * noise)
+        there = np.sqrt(1.0 - sigma**2) * here.normals + sigma * noise
+        turned = generator.random(here.inside.shape) < TURNED if moving else np.zeros(here.inside.shape, dtype=bool)
+        still = np.where(turned[:, :, None], here.normals, there)
+        still[:, :, state.dimension :] = np.where(turned[:, :, None], noise, here.normals)[:, :, state.dimension :]
+        moved = _evaluated(state, still)
         limits = bounds[going][:, None]
         good = np.where(limits > 0.0, moved.inside <= limits, moved.inside < 0.0)
         here = Rows(
@@ -173,7 +180,8 @@ def _chains(
             np.where(good, moved.unseated, here.unseated),
         )
         kept.append(here)
-        steps = np.clip(steps * np.exp(good.mean(axis=1) - ACCEPTED), 0.05, 1.0)
+        accepted = (good & ~turned).sum(axis=1) / np.maximum((~turned).sum(axis=1), 1)
+        steps = np.clip(steps * np.exp(accepted - ACCEPTED), LEAST_STEP, 1.0)
     joined = Rows(
         np.concatenate([own.normals for own in kept], axis=1),
         np.concatenate([own.inside for own in kept], axis=1),

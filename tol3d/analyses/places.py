@@ -1,0 +1,150 @@
+"""Positions at which a limit is looked at, with the design points there.
+
+They are drawn as the study draws them; where some fail much more easily, more of these are chosen, and weighed.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from tol3d.analyses.design_points import AT_ORIGIN, DesignPoint, design_points, kept, points_from, probed
+from tol3d.analyses.estimate import effective
+from tol3d.analyses.limit_state import LimitState, Positions, taken
+from tol3d.analyses.mixture import Shape
+from tol3d.numerics.arrays import Array
+
+SEEN: Final = 40
+"""Other positions at which the design points are looked at."""
+NEARER: Final = 0.5
+"""By how much nearer to failing a position may be than those that were searched."""
+SCREENED: Final = 1024
+CHOSEN: Final = 64
+"""Positions chosen among those that were screened."""
+DEFENCE: Final = 0.15
+"""Share of them that is chosen alike."""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Positions at which a limit is looked at, and design points there.
+
+    Args:
+        positions: one row each.
+        points: of each.
+        weights: how much each stands for, 1 where they were drawn as the study draws them.
+        out: where the build at the origin fails.
+        shapes: by how the limit curves at each of the points, if that is followed.
+    """
+
+    positions: Positions
+    points: Sequence[Sequence[DesignPoint]]
+    weights: Array
+    out: NDArray[np.bool_]
+    shapes: "Sequence[Sequence[Shape]] | None" = None
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return len(self.points)
+
+    @property
+    def beyond(self) -> NDArray[np.bool_]:
+        """Where the build at the origin fails, and what does not is drawn about."""
+        return np.array([any(own.beyond for own in each) for each in self.points], dtype=bool)
+
+    @property
+    def rare(self) -> Array:
+        """By first order, how often builds fail, or do not where the one at the origin fails; see `first_order`."""
+        return np.array([sum(float(ndtr(-own.distance)) for own in each) for each in self.points])
+
+    @property
+    def first_order(self) -> float | None:
+        """Φ(-β) of the nearest design points, the mean over positions; None without any."""
+        if not any(self.points):
+            return None
+        each = [
+            float(ndtr(-own[0].beta)) if own else float(out) for own, out in zip(self.points, self.out, strict=True)
+        ]
+        return float(np.mean(self.weights * each))
+
+
+def searched(state: LimitState, places: int, starts: int, alone: int, generator: np.random.Generator) -> Places:
+    """Design points at several positions, or at the only one there is; see `rare_event`."""
+    moving = bool(state.response.simulation.system.streams)
+    count = places if moving else 1
+    starts = starts if moving else max(starts, alone)
+    seed = int(generator.integers(2**31))
+    positions = state.response.positions(count, "drawn" if moving else "rest", seed)
+    points = design_points(state, positions, count, starts, generator)
+    ends, where = probed(state, positions, points, generator)
+    found = with_more(state, Places(positions, points, np.ones(count), _out(state, positions, count)), ends, where)
+    return _screened(state, found, generator) if moving else found
+
+
+def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.int64]) -> Places:
+    """Places with the design points to which builds lead that failed at some of them; they are tried at all."""
+    if not len(ends):
+        return places
+    points = [list(own) for own in places.points]
+    beyond = places.beyond
+    for place in range(places.count):
+        rows = np.full(len(ends), place)
+        at = taken(places.positions, rows)
+        points[place] = kept([*points[place], *points_from(state, ends, at, beyond[rows])])
+    return replace(places, points=points, shapes=None)
+
+
+def shaped(state: LimitState, places: Places) -> Places:
+    """Places whose draws follow the curvatures."""
+    shapes = [
+        [Shape.curved(state, own) if k == 0 else Shape.plain(own) for k, own in enumerate(each)]
+        for each in places.points
+    ]
+    return replace(places, shapes=shapes)
+
+
+# positions that fail more easily --------------------------------------------------------------------
+
+
+def _centres(places: Places, most: int) -> list[DesignPoint]:
+    own = [point for each in places.points for point in each[:1] if not point.beyond and point.gradient.any()]
+    return sorted(own, key=lambda point: point.beta)[:most]
+
+
+def _betas_elsewhere(state: LimitState, centres: Sequence[DesignPoint], positions: Positions, count: int) -> Array:
+    """About how far from failing positions are (count,), from what the limit state is there at known design points."""
+    builds = np.repeat(np.array([own.normals for own in centres]), count, axis=0)
+    at = {name: np.concatenate([own] * len(centres)) for name, own in positions.items()}
+    inside = np.nan_to_num(state.at(builds, at)[0].reshape(len(centres), count), nan=0.0)
+    slopes = np.array([float(np.linalg.norm(own.gradient)) for own in centres])
+    betas = np.array([own.beta for own in centres])
+    return np.asarray((betas[:, None] + inside / slopes[:, None]).min(axis=0))
+
+
+def _screened(state: LimitState, places: Places, generator: np.random.Generator) -> Places:
+    """The places, or others chosen among many where some fail much more easily."""
+    centres = _centres(places, places.count)
+    if not centres:
+        return places
+    first = state.response.positions(SEEN, "drawn", int(generator.integers(2**31)))
+    seen = _betas_elsewhere(state, centres, first, SEEN)
+    rare = places.rare
+    uneven = effective(rare) < places.count / 2
+    if seen.min() > min(own.beta for own in centres) - NEARER and not uneven:
+        return places
+    many = state.response.positions(SCREENED, "drawn", int(generator.integers(2**31)))
+    betas = _betas_elsewhere(state, centres[:8], many, SCREENED)
+    likely = ndtr(-np.clip(betas, -8.0, 12.0)) ** 0.9
+    shares = DEFENCE / SCREENED + (1 - DEFENCE) * likely / likely.sum()
+    chosen = generator.choice(SCREENED, size=CHOSEN, p=shares)
+    positions = taken(many, chosen)
+    points = design_points(state, positions, CHOSEN, 2, generator)
+    return Places(positions, points, 1.0 / (SCREENED * shares[chosen]), _out(state, positions, CHOSEN))
+
+
+def _out(state: LimitState, positions: Positions, count: int) -> NDArray[np.bool_]:
+    return state.failing(np.full((count, state.dimension), AT_ORIGIN), positions)[0]
