@@ -33,7 +33,7 @@ def main() -> None:
     ppm = 1e6 * np.array([own.probability for own in found])
     errors = np.array([own.error / own.probability for own in found])
     held = sum(_holds(own) for own in found)
-    console.print(f"importance sampling: {held} of {len(found)} intervals hold {1e6 * EXACT} ppm")
+    console.print(f"importance sampling: {held} of {len(found)} intervals hold {1e6 * EXACT:.4f} ppm")
     console.print(f"mean {ppm.mean():.4f} ppm, spread {100 * ppm.std() / ppm.mean():.1f} %")
     console.print(f"standard error {100 * errors.mean():.1f} %, at most {100 * errors.max():.1f} %")
     console.print(f"builds: at most {max(own.evaluations for own in found)}")

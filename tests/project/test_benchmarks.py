@@ -30,6 +30,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "memory": ("--trials", "100", "--scenes", "spur_pair", "cover_on_base"),
     "pairs": ("--trials", "500", "--rounds", "1"),
     "planetary": ("--trials", "1000", "--rounds", "1", "--workers", "1"),
+    "rare": ("--seeds", "2", "--level", "1000"),
     "rig_records": ("--rows", "4000"),
     "scale": ("--sizes", "3x2z", "--trials", "100"),
     "stages": ("--trials", "1024", "--rounds", "1"),
@@ -51,6 +52,7 @@ LONG = (
     "linkages",
     "memory",
     "pairs",
+    "rare",
     "rig_records",
     "scale",
     "startup",
@@ -102,6 +104,12 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     ),
     "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +[\d.]+ │ +[\d.]+ │ +{NUMBER}",),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
+    "rare": (
+        rf"importance sampling: {NUMBER} of 2 intervals hold 0.0507 ppm",
+        rf"mean {NUMBER} ppm, spread {NUMBER} %",
+        rf"first order: {NUMBER} ppm",
+        rf"subset simulation: {NUMBER} ppm, standard error +{NUMBER} %, {NUMBER} builds",
+    ),
     "rig_records": (rf"4000 rows a side: +{NUMBER} s, +{NUMBER} s of a processor, the fit +{NUMBER} s",),
     "startup": (
         rf"without both +{NUMBER} s",
