@@ -26,6 +26,10 @@ CHOSEN: Final = 64
 """Positions chosen among those that were screened."""
 DEFENCE: Final = 0.15
 """Share of them that is chosen alike."""
+FEWEST_PLACES, FEWEST_STARTS = 5, 3
+MOST_MINUTES: Final = 0.05
+"""Of a processor for one step of a walk from all positions: where builds take long there are fewer."""
+LEAST_MINUTES: Final = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,14 +79,20 @@ class Places:
 def searched(state: LimitState, places: int, starts: int, alone: int, generator: np.random.Generator) -> Places:
     """Design points at several positions, or at the only one there is; see `rare_event`."""
     moving = bool(state.response.simulation.system.streams)
-    count = places if moving else 1
-    starts = starts if moving else max(starts, alone)
+    count = _affordable(state, places, FEWEST_PLACES) if moving else 1
+    starts = starts if moving else max(starts, _affordable(state, alone, FEWEST_STARTS))
     seed = int(generator.integers(2**31))
     positions = state.response.positions(count, "drawn" if moving else "rest", seed)
     points = design_points(state, positions, count, starts, generator)
     ends, where = probed(state, positions, points, generator)
     found = with_more(state, Places(positions, points, np.ones(count), _out(state, positions, count)), ends, where)
     return _screened(state, found, generator) if moving else found
+
+
+def _affordable(state: LimitState, most: int, fewest: int) -> int:
+    """So many walks, fewer where their gradients take long."""
+    step = 2 * len(state.acting) * state.response.minutes
+    return min(most, max(fewest, int(MOST_MINUTES / max(step, LEAST_MINUTES))))
 
 
 def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.int64]) -> Places:
@@ -140,10 +150,11 @@ def _screened(state: LimitState, places: Places, generator: np.random.Generator)
     betas = _betas_elsewhere(state, centres[:8], many, SCREENED)
     likely = ndtr(-np.clip(betas, -8.0, 12.0)) ** 0.9
     shares = DEFENCE / SCREENED + (1 - DEFENCE) * likely / likely.sum()
-    chosen = generator.choice(SCREENED, size=CHOSEN, p=shares)
+    count = max(_affordable(state, CHOSEN, FEWEST_PLACES), places.count)
+    chosen = generator.choice(SCREENED, size=count, p=shares)
     positions = taken(many, chosen)
-    points = design_points(state, positions, CHOSEN, 2, generator)
-    return Places(positions, points, 1.0 / (SCREENED * shares[chosen]), _out(state, positions, CHOSEN))
+    points = design_points(state, positions, count, 2, generator)
+    return Places(positions, points, 1.0 / (SCREENED * shares[chosen]), _out(state, positions, count))
 
 
 def _out(state: LimitState, positions: Positions, count: int) -> NDArray[np.bool_]:
