@@ -20,8 +20,8 @@ BETA_WORDS: Final = (
     "averaged over positions"
 )
 SUBSET_WORDS: Final = (
-    "subset simulation takes about 100000 builds for 10 to 15 % at 0.1 ppm; β: of the failing build nearest to the mean "
-    "that was met, an upper bound"
+    "subset simulation takes about 100000 builds for 10 to 15 % at 0.1 ppm; β: of the failing build nearest to the "
+    "mean that was met, an upper bound"
 )
 
 
