@@ -27,7 +27,18 @@ from tol3d.numerics.arrays import Array
 from tol3d.runs.run import Run
 from tol3d.runs.summary.values import Unit, made
 from tol3d.study.draws import drawn_ones
-from tol3d.study.regions import Built, Codes, Space, Standing, builds_in, gradient_of, random_ends, repeated, space_of
+from tol3d.study.regions import (
+    Built,
+    Codes,
+    Space,
+    Standing,
+    builds_in,
+    gradient_of,
+    random_ends,
+    repeated,
+    space_of,
+    within_regions,
+)
 from tol3d.study.simulation import Simulation
 from tol3d.study.worst_case import (
     SIGMA,
@@ -56,9 +67,9 @@ PLACES: Final = 4
 WORST_TRIALS: Final = 3
 """Of each side, from which it begins too."""
 RANDOM: Final = 3
-JUDGED: Final = 64
+JUDGED: Final = 256
 """Trials of each side that are taken into the regions for it."""
-FEWEST: Final = 4
+FEWEST: Final = 6
 """Rows of a search: the mean build and an end by slopes, each side."""
 TOO_MANY: Final = 20.0
 """How many times as many builds as are paid for is too many to begin."""
@@ -260,30 +271,43 @@ def _worst(
     at_rest = response.positions(1, "rest")
     if not len(space.acting) or FEWEST * builds_a_row(space) > TOO_MANY * builds:
         return None
-    starts = [first_starts(space, built, at_rest, 0), *_worst_trials(space, built, trials, values)]
+    trial_starts, within = [], []
+    for sign in (-1.0, 1.0):
+        from_trials, best = _worst_trials(space, built, trials, values, sign)
+        trial_starts += from_trials
+        within += best
+    starts = [first_starts(space, built, at_rest, 0), *trial_starts]
     if response.simulation.system.streams:
         drawn = response.positions(PLACES, "drawn")
         starts.append(Starts.both_ways(builds_in(space, np.repeat(space.mean[None], PLACES, axis=0)), drawn))
     starts.append(Starts.both_ways(random_ends(space, RANDOM, seed=1), repeated(at_rest, RANDOM)))
     taken = list(accumulate(len(own.signs) for own in starts))
     afforded = [own for own, count in zip(starts, taken, strict=True) if count <= max(rows, FEWEST)]
-    return worst_case(space, built, joined(afforded), most=int(builds))
+    return worst_case(space, built, joined(afforded), most=int(builds)).with_builds(within)
 
 
-def _worst_trials(space: Space, built: Built, trials: Trials, values: Array) -> list[Starts]:
-    """The worst trials of each side, within the regions: laws without limits of their own draw beyond these."""
-    found = []
-    for sign in (-1.0, 1.0):
-        ranked = np.argsort(-sign * values)  # those that failed are last
-        ranked = ranked[np.isfinite(values[ranked])][:JUDGED]
-        if not ranked.size:
-            continue
-        deviations, places = trials.builds(ranked)
-        rows = builds_in(space, deviations)
-        within, _ = built(rows.deviations, places)
-        best = np.argsort(np.where(np.isfinite(within), -sign * within, np.inf))[:WORST_TRIALS]
-        found.append(Starts(rows.at(best), {n: own[best] for n, own in places.items()}, np.full(len(best), sign)))
-    return found
+def _worst_trials(
+    space: Space, built: Built, trials: Trials, values: Array, sign: float
+) -> tuple[list[Starts], list[WorstBuild]]:
+    """Starts at the worst trials of a side, taken into the regions, and the worst of those that lie within them.
+
+    Laws without limits of their own draw beyond their regions.
+    """
+    ranked = np.argsort(-sign * values)  # those that failed are last
+    ranked = ranked[np.isfinite(values[ranked])][:JUDGED]
+    if not ranked.size:
+        return [], []
+    deviations, places = trials.builds(ranked)
+    rows = builds_in(space, deviations)
+    found, _ = built(rows.deviations, places)
+    best = np.argsort(np.where(np.isfinite(found), -sign * found, np.inf))[:WORST_TRIALS]
+    starts = Starts(rows.at(best), {name: own[best] for name, own in places.items()}, np.full(len(best), sign))
+    inside = np.flatnonzero(within_regions(space, deviations))
+    first = [
+        WorstBuild(float(values[ranked[k]]), deviations[k], {name: own[k : k + 1] for name, own in places.items()})
+        for k in inside[:1]
+    ]
+    return [starts], first
 
 
 def _worst_found(response: Response, space: Space, worst: WorstCase) -> WorstFound:

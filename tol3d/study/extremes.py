@@ -7,13 +7,13 @@ looked for, which may be one of its limits or lie between them.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 
+from tol3d.distributions import DeviationLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.contributor import Contributor
-from tol3d.system.dependent import Dependent, in_draw_order, reads_of
+from tol3d.system.dependent import Dependent, Named, in_draw_order, reads_of
 from tol3d.system.draw import Each
 
 PLACES: Final = 65
@@ -24,7 +24,16 @@ SWEEPS: Final = 3
 """Through several contributors that are read."""
 
 
-def ends_alone(contributor: Contributor, slopes: Array, *, turning: bool) -> Array:
+class Ended(Named, Protocol):
+    """A contributor, as far as its ends hang on it."""
+
+    @property
+    def distribution(self) -> DeviationLaw:
+        """See Contributor."""
+        ...
+
+
+def ends_alone(contributor: Ended, slopes: Array, *, turning: bool) -> Array:
     """The ends (2, components) of a contributor that lower and that raise what has these slopes.
 
     Features that are drawn each for itself are all at their own worst ends. Not a number where a slope is none.
@@ -39,7 +48,7 @@ def ends_alone(contributor: Contributor, slopes: Array, *, turning: bool) -> Arr
 
 
 def ends_together(
-    contributors: Sequence[Contributor], slopes: Mapping[str, Array], turning: Mapping[str, bool]
+    contributors: Sequence[Ended], slopes: Mapping[str, Array], turning: Mapping[str, bool]
 ) -> Mapping[str, Array]:
     """The ends (2, components) of each contributor that lower and that raise a linear measure most, all together.
 
@@ -66,7 +75,7 @@ def ends_together(
 class _Side:
     """A measure that is to be as large as can be, of contributors that read or are read, in the order of drawing."""
 
-    group: Sequence[Contributor]
+    group: Sequence[Ended]
     slopes: Mapping[str, Array]
     alone: Mapping[str, Array]
 
@@ -81,11 +90,11 @@ class _Side:
                 at[own.name] = np.array([self._best(own, at)])
         return self._moved_along(at)
 
-    def _own_end(self, own: Contributor) -> Array:
+    def _own_end(self, own: Ended) -> Array:
         ends, slopes = self.alone[own.name], self.slopes[own.name]
         return np.asarray(ends[int(np.argmax(ends @ slopes))])
 
-    def _best(self, own: Contributor, at: Mapping[str, Array]) -> float:
+    def _best(self, own: Ended, at: Mapping[str, Array]) -> float:
         low, high, count = own.distribution.low, own.distribution.high, PLACES
         for _ in range(ZOOMS):
             places = np.linspace(low, high, count)

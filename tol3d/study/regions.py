@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.distributions import DeviationLaw
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, in_draw_order, reads_of
 from tol3d.system.draw import Draw, component_sigmas
@@ -47,6 +48,11 @@ class Drawing:
     columns: slice
     turning: bool = False
     acts: bool = True
+
+    @property
+    def distribution(self) -> DeviationLaw:
+        """See Contributor."""
+        return self.draw.distribution
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,6 +245,12 @@ def confined(space: Space, deviations: Array) -> Array:
     for own, region in space.free:
         found[:, own.columns] = region.confined(found[:, own.columns])
     return found
+
+
+def within_regions(space: Space, deviations: Array) -> NDArray[np.bool_]:
+    """Whether builds (rows, components) lie in the regions, as far as these have a nearest point."""
+    moved = np.abs(confined(space, deviations) - deviations)
+    return np.asarray((moved <= NOISE * (np.abs(deviations) + space.sigmas)).all(axis=1))
 
 
 def builds_in(space: Space, deviations: Array) -> Rows:

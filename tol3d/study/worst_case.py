@@ -7,12 +7,14 @@ the last one; else the worst found is a bound from inside, and no proof that not
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.extremes import ends_together
 from tol3d.study.regions import (
     AT_ONCE,
     Built,
@@ -43,6 +45,8 @@ SHARES: Final = 0.5 ** np.arange(9)
 """Of the way to where all contributors are furthest."""
 STRIDES: Final = 8.0 * 0.25 ** np.arange(9)
 """Along the gradient within the regions: of the largest component, in its sigma."""
+LEAST: Final = 1e-12
+"""The same of what is not moved, in the unit of the measure."""
 GAIN: Final = 1e-7
 """Of how far the measure has been moved: a row that gains less goes no further."""
 
@@ -81,6 +85,12 @@ class WorstCase:
     met: int
     evaluations: int
 
+    def with_builds(self, builds: Sequence[WorstBuild]) -> "WorstCase":
+        """The same where builds within the regions, known from elsewhere, are worse than those that were found."""
+        low = min([*([self.low] if self.low else []), *builds], key=lambda own: own.value, default=None)
+        high = max([*([self.high] if self.high else []), *builds], key=lambda own: own.value, default=None)
+        return replace(self, low=low, high=high)
+
 
 @dataclass(frozen=True, eq=False)
 class Starts:
@@ -117,13 +127,29 @@ def first_starts(space: Space, built: Built, at_rest: Standing, random: int) -> 
         at_rest: positions of one row.
         random: how many ends along slopes drawn at random.
     """
-    mean = builds_in(space, space.mean[None])
-    values, _ = built(mean.deviations, at_rest)
-    slopes = gradient_of(space, built, mean.deviations, at_rest, values, SIGMA)
-    ends = settled(space, furthest(space, np.repeat(mean.deviations, 2, axis=0), np.concatenate([-slopes, slopes])))
-    several = Rows.joined([mean, random_ends(space, random, seed=1)])
+    mean = space.mean[None]
+    values, _ = built(mean, at_rest)
+    slopes = gradient_of(space, built, mean, at_rest, values, SIGMA)
+    ends = settled(space, furthest(space, np.repeat(mean, 2, axis=0), np.concatenate([-slopes, slopes])))
+    several = Rows.joined([builds_in(space, mean), random_ends(space, random, seed=1)])
     found = Starts.both_ways(several, repeated(at_rest, random + 1))
-    return found.and_(Starts(ends, repeated(at_rest, 2), np.array([-1.0, 1.0])))
+    found = found.and_(Starts(ends, repeated(at_rest, 2), np.array([-1.0, 1.0])))
+    stated = _stated_ends(space, mean, slopes[0])
+    known = np.asarray(np.isfinite(stated.deviations).all(axis=1))  # ends are not where a slope is not
+    places = repeated(at_rest, int(known.sum()))
+    return found.and_(Starts(stated.at(known), places, np.array([-1.0, 1.0])[known]))
+
+
+def _stated_ends(space: Space, mean: Array, slopes: Array) -> Rows:
+    """The ends by slopes as first order states them (2, components): also of contributors that have no slope."""
+    acting = [own for own in space.drawings if own.acts]
+    ends = ends_together(
+        acting, {own.name: slopes[own.columns] for own in acting}, {own.name: own.turning for own in acting}
+    )
+    builds = np.repeat(mean, 2, axis=0)
+    for own in acting:
+        builds[:, own.columns] = ends[own.name]
+    return Rows(builds, np.stack([-slopes, slopes]), np.ones_like(builds))
 
 
 def joined(several: Sequence[Starts]) -> Starts:
@@ -216,19 +242,41 @@ class _Search:
         places = {name: own[going] for name, own in self.places.items()}
         values = self.values[going]
         slopes = signs[:, None] * gradient_of(self.space, self._count, rows.deviations, places, values, STEP)
-        steps = Rows.joined([*self._to_ends(rows, slopes), *self._along(rows, slopes), *self._alone(rows, slopes)])
-        steps, many = settled(self.space, steps), len(steps.deviations) // len(going)
-        tried = self._values(steps.deviations, {name: np.concatenate([own] * many) for name, own in places.items()})
-        found = tried.reshape(many, -1).T
-        gains = np.where(np.isfinite(found), signs[:, None] * (found - values[:, None]), -np.inf)
+        least = GAIN * max(float(np.nanmax(self.values) - np.nanmin(self.values)), LEAST)
+        together = [*self._to_ends(rows, slopes), *self._along(rows, slopes)]
+        ended = np.flatnonzero(~(self._take(going, together) > least))
+        if ended.size:
+            alone = self._alone(rows.at(ended), slopes[ended])
+            stopped = ~(self._take(going[ended], alone) > least)
+            self.going[going[ended[stopped]]] = False
+        self._drop_doubles()
+        return bool(self.going.any())
+
+    def _take(self, going: NDArray[np.int64], several: Sequence[Rows]) -> Array:
+        """Take the best of several steps of rows where it gains; how much (rows,)."""
+        if not several:
+            return np.zeros(len(going))
+        steps = settled(self.space, Rows.joined(several))
+        places = {name: np.concatenate([own[going]] * len(several)) for name, own in self.places.items()}
+        found = self._values(steps.deviations, places).reshape(len(several), -1).T
+        before, signs = self.values[going], self.signs[going]
+        gains = np.where(np.isfinite(found), signs[:, None] * (found - before[:, None]), -np.inf)
         best = gains.argmax(axis=1)
         gain = gains[np.arange(len(going)), best]
-        least = GAIN * max(float(np.nanmax(self.values) - np.nanmin(self.values)), 1e-12)
         better = np.flatnonzero(gain > 0.0)
         self.rows.put(going[better], steps.at(best[better] * len(going) + better))
         self.values[going[better]] = found[better, best[better]]
-        self.going[going[~(gain > least)]] = False
-        return bool(self.going.any())
+        return np.asarray(gain)
+
+    def _drop_doubles(self) -> None:
+        """Let go only one of the rows that have come to the same build."""
+        seen: set[bytes] = set()
+        for row in np.flatnonzero(self.going):
+            place = [own[row].tobytes() for own in self.places.values()]
+            key = b"".join([self.signs[row].tobytes(), self.rows.deviations[row].tobytes(), *place])
+            if key in seen:
+                self.going[row] = False
+            seen.add(key)
 
     def _to_ends(self, rows: Rows, slopes: Array) -> list[Rows]:
         """Shares of the way to where all are furthest."""

@@ -29,7 +29,7 @@ USUAL_SPEED: Final = 40_000_000
 """Contacts a minute of the roads for which CONTACTS is stated."""
 RANDOM: Final = 1
 """Builds at random ends, from which it is looked for beside the mean build and the ends by slopes."""
-ROWS: Final = 2 * (1 + RANDOM) + 2
+ROWS: Final = 2 * (1 + RANDOM) + 4
 
 
 def worst_cases(
