@@ -1,5 +1,6 @@
 """The process that reads foreign geometry: whatever it does, the one that asked it goes on."""
 
+import json
 import random
 import re
 import time
@@ -29,6 +30,11 @@ def block(tmp_path_factory: pytest.TempPathFactory) -> FileContent:
     return step_file({"block": slotted_block()}, tmp_path_factory.mktemp("block") / "block.step")
 
 
+FACE = {"id": 1, "kind": "plane", "area": 1.0, "centre": [0.0] * 3, "place": [0.0] * 3, "normal": [0.0] * 3}
+LOOSE, FLAT = (
+    json.dumps({"roots": [{"id": 1, "solid": True, "edges": [], "faces": [{**FACE, "outer": [], **own}]}]})
+    for own in ({"edges": [5]}, {"edges": [], "axis": [0.0] * 3})
+)
 ANSWER = "import json, sys, pathlib; folder = pathlib.Path(sys.argv[1]); "
 
 
@@ -46,6 +52,10 @@ ANSWER = "import json, sys, pathlib; folder = pathlib.Path(sys.argv[1]); "
         (ANSWER + "(folder / 'answer.json').write_text('[' * 100000)", "fails on it (exit code 0)"),
         (ANSWER + "(folder / 'answer.json').write_text('{\"roots\": []}')", "reads 0 of "),
         (ANSWER + "(folder / 'answer.json').write_text('{\"roots\": 1}')", "numbers that no part has"),
+        (ANSWER + "import os; os.mkfifo(folder / 'answer.json')", "fails on it (exit code 0)"),
+        (ANSWER + "(folder / 'answer.json').symlink_to('/dev/zero')", "fails on it (exit code 0)"),
+        (ANSWER + f"(folder / 'answer.json').write_text({LOOSE!r})", "should name edges that are there"),
+        (ANSWER + f"(folder / 'answer.json').write_text({FLAT!r})", "a direction of length 1"),
         (
             ANSWER + "(folder / 'answer.json').write_text('{\"refused\": \"no\"}')",
             "no; mend the file in the CAD system",

@@ -3,18 +3,35 @@
 Lengths are in mm, angles in rad, in the frame of the product that has the solid.
 """
 
+import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from tol3d.numerics.arrays import Array
 
 LARGEST: Final = 1e9  # mm; a coordinate beyond it is damage
 
+ROUNDING: Final = 1e-6  # of a direction's length
+LARGEST_TURN: Final = 100.0  # rad
+STEEPEST: Final = 1.57  # rad; of a cone, a flat one by nearly 1/1000
+
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Size = Annotated[float, Field(ge=0.0, le=LARGEST)]
+Area = Annotated[float, Field(ge=0.0, le=LARGEST * LARGEST)]
+Angle = Annotated[float, Field(ge=-LARGEST_TURN, le=LARGEST_TURN)]
 Place = tuple[Number, Number, Number]
+
+
+def _unit(direction: Place) -> Place:
+    if abs(math.hypot(*direction) - 1.0) > ROUNDING:
+        raise ValueError("Input should be a direction of length 1")
+    return direction
+
+
+Unit = Annotated[Place, AfterValidator(_unit)]
 SurfaceKind = Literal["plane", "cylinder", "cone", "sphere", "torus", "free form"]
 
 READ: Final = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
@@ -42,14 +59,14 @@ class Face(BaseModel):
     id: int
     kind: SurfaceKind
     at: Place = (0.0, 0.0, 0.0)
-    axis: Place = (0.0, 0.0, 1.0)
-    x: Place = (1.0, 0.0, 0.0)
-    y: Place = (0.0, 1.0, 0.0)
-    turn: tuple[float, float] | None = None
-    radius: Number = 0.0
-    half_angle: float = 0.0
-    minor_radius: Number = 0.0
-    area: float
+    axis: Unit = (0.0, 0.0, 1.0)
+    x: Unit = (1.0, 0.0, 0.0)
+    y: Unit = (0.0, 1.0, 0.0)
+    turn: tuple[Number, Number] | None = None
+    radius: Size = 0.0
+    half_angle: Annotated[float, Field(ge=-STEEPEST, le=STEEPEST)] = 0.0
+    minor_radius: Size = 0.0
+    area: Area
     centre: Place
     place: Place
     normal: Place
@@ -81,10 +98,10 @@ class Edge(BaseModel):
     kind: Literal["line", "circle", "ellipse", "curve", "none"]
     points: tuple[Place, ...] = ()
     centre: Place = (0.0, 0.0, 0.0)
-    x: Place = (1.0, 0.0, 0.0)
-    y: Place = (0.0, 1.0, 0.0)
-    radii: tuple[Number, Number] = (0.0, 0.0)
-    ends: tuple[float, float] = (0.0, 0.0)
+    x: Unit = (1.0, 0.0, 0.0)
+    y: Unit = (0.0, 1.0, 0.0)
+    radii: tuple[Size, Size] = (0.0, 0.0)
+    ends: tuple[Angle, Angle] = (0.0, 0.0)
 
     def extremes(self, direction: Array) -> tuple[float, float]:
         """Lowest and highest coordinate along a direction (3,) of unit length [mm]."""
@@ -126,6 +143,15 @@ class Root(BaseModel):
     solid: bool
     faces: tuple[Face, ...]
     edges: tuple[Edge, ...]
+
+    @model_validator(mode="after")
+    def _refuse_loose_ends(self) -> Self:
+        known = range(len(self.edges))
+        if any(number not in known for face in self.faces for number in (*face.edges, *face.outer)):
+            raise ValueError("Input should name edges that are there")
+        if any(not edge.points for edge in self.edges if edge.kind in ("line", "curve")):
+            raise ValueError("Input should have points on every edge")
+        return self
 
 
 class Faces(BaseModel):

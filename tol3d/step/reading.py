@@ -25,7 +25,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from tol3d.errors import InputError
-from tol3d.files import FileContent
+from tol3d.files import FileContent, UnreadableFileError, read_contained
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
 from tol3d.scene.nearest import hint
@@ -407,18 +407,21 @@ def _limit(variable: str, usual: float, words: str) -> float:
 def _answer(path: Path) -> Any:
     """What it answered; None where that is none."""
     try:
-        if path.stat().st_size > LARGEST_ANSWER:
-            return None
-        return json.loads(path.read_bytes())
-    except (OSError, ValueError, RecursionError):
+        return json.loads(read_contained(path, path.parent, LARGEST_ANSWER))
+    except (UnreadableFileError, ValueError, RecursionError):
         return None
 
 
 def _arrays(path: Path) -> Arrays:
+    """Arrays that it wrote; none where they are none, or would take too much when they are unpacked."""
     try:
-        with np.load(path, allow_pickle=False) as entries:
+        stream = io.BytesIO(read_contained(path, path.parent, LARGEST_ANSWER))
+        with zipfile.ZipFile(stream) as archive:
+            if sum(own.file_size for own in archive.infolist()) > LARGEST_ANSWER:
+                return {}
+        with np.load(stream, allow_pickle=False) as entries:
             return {name: entries[name] for name in entries.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+    except (UnreadableFileError, OSError, ValueError, EOFError, zipfile.BadZipFile):
         return {}
 
 
