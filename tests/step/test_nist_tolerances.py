@@ -2,6 +2,7 @@
 
 import re
 from itertools import chain
+from typing import Any
 
 import pytest
 from nist import FILES, bodies, starting, step_text
@@ -19,13 +20,21 @@ MARKS = {"MAXIMUM_MATERIAL_REQUIREMENT": "â“‚", "LEAST_MATERIAL_REQUIREMENT": "â
 MODELS = tuple(FILES)
 
 
+def targets_of(model: str, letter: str) -> Any:
+    """Of a datum of that letter, which there is."""
+    datum = step_text(model).datum(letter)
+    assert datum is not None
+    return datum.targets
+
+
 def references(body: str) -> list[int]:
     return [int(each) for each in re.findall(r"#(\d+)", body)]
 
 
 def crude_number(model: str, identifier: int) -> str:
     """The number of a measure as written, without its point at the end."""
-    return f"{float(re.search(r'MEASURE[(]([^()]+)[)]', bodies(model)[identifier]).group(1)):.9g}"  # type: ignore[union-attr]
+    (found,) = re.findall(r"MEASURE[(]([^()]+)[)]", bodies(model)[identifier])[:1]
+    return f"{float(found):.9g}"
 
 
 def crude_factor(model: str, identifier: int) -> float:
@@ -215,16 +224,16 @@ def test_every_datum_has_its_letter_once_and_its_faces(model: str) -> None:
 
 
 def test_datum_targets_have_their_place_and_size_in_mm() -> None:
-    (target,) = step_text("CTC-05").datum("C").targets  # type: ignore[union-attr]
+    (target,) = targets_of("CTC-05", "C")
     assert (target.number, target.kind) == ("1", "rectangle")
     assert {each.name: str(each) for each in target.sizes} == {"target width": "1.25 in", "target length": "2 in"}
     origin = references(bodies("CTC-05")[3551])[0]  # the placement that is represented for the target
     at = re.findall(r"[-+]?\d+\.\d*(?:E[-+]\d+)?", bodies("CTC-05")[origin])
-    assert [row[3] for row in target.placement[:3]] == pytest.approx([25.4 * float(each) for each in at])  # type: ignore[index]
+    assert [row[3] for row in target.placement[:3]] == pytest.approx([25.4 * float(each) for each in at])
 
 
 def test_areas_of_datum_targets_name_their_faces() -> None:
-    targets = step_text("FTC-10").datum("K").targets  # type: ignore[union-attr]
+    targets = targets_of("FTC-10", "K")
     assert [(each.number, each.kind, each.feature.faces) for each in targets] == [
         ("1", "area", (17450,)),
         ("2", "area", (17481,)),

@@ -22,9 +22,9 @@ def worst_text(simulation: Simulation, measure: Measure, unit: str, found: Worst
     if found is None:
         return ""
     ends = (_end_text(simulation, measure, unit, own) for own in (found.low, found.high))
-    jam = found.unseated if found.unseated is not None and not measure.keeps_overlap else None
+    unbuilt = found.unseated if found.unseated is not None and not measure.keeps_overlap else None
     texts = simulation.system.statuses.texts
-    told = f"; builds within the tolerances do not seat: {texts[jam.code]}" if jam is not None else ""
+    told = f"; builds within the tolerances do not seat: {texts[unbuilt.code]}" if unbuilt is not None else ""
     return f"worst found {' … '.join(ends)}{told}"
 
 
