@@ -273,6 +273,7 @@ def write_report(
     *,
     accepted_ppm: float = ACCEPTED_PPM,
     trials: Sequence[int] = (),
+    in_3d: bool = True,
     force: bool = False,
 ) -> Path:
     """Write a run, or several compared, as one page of HTML, as `tol3d report` does.
@@ -282,6 +283,7 @@ def write_report(
         out: the file.
         accepted_ppm: share of trials that may be out of a measure's limits.
         trials: which the 3D view has besides the nominal build and the worst one.
+        in_3d: whether the parts are shown in 3D, which takes a megabyte.
         force: replace a file that is there.
 
     Raises:
@@ -295,7 +297,9 @@ def write_report(
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
     opened = [opened_run(run) for run in several]
     analyses = kept_pages(opened[0]) if len(opened) == 1 else {}
-    text = report.report_html(opened, analyses=analyses, accepted_ppm=accepted_ppm, trials=trials, made=made)
+    text = report.report_html(
+        opened, analyses=analyses, accepted_ppm=accepted_ppm, trials=trials, in_3d=in_3d, made=made
+    )
     try:
         write_whole(path, text.encode())
     except OSError as error:

@@ -25,7 +25,6 @@ EXCUSED: Final[Mapping[str, tuple[str, str]]] = {
     "report/body.py": ("mesh", TRIANGLES),
     "report/export.py": ("mesh|meshes", TRIANGLES),
     "report/drawn_solids.py": ("mesh", TRIANGLES),
-    "report/step_picture.py": ("mesh", TRIANGLES),
     "report/whole.py": ("mesh", TRIANGLES),
     "report/__init__.py": ("mesh|meshes", TRIANGLES),
     "report/html/view_3d.py": ("mesh|meshes", TRIANGLES),

@@ -140,15 +140,15 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
     path = tmp_path / "hostile.yaml"
     path.write_text(text)
     run = run_scene(path, overrides=Overrides(trials=50, witness=0), out=tmp_path / "run")
-    page = _no_way_out(report_html([run]))
+    page = _no_way_out(report_html([run], in_3d=False))
     assert hostile in "".join(page.inside("h1"))
-    assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 2
+    assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 1
 
 
 def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> None:
     subject = Subject(simulation_again(spur), spur)
     subject.keep("methods", methods(subject.response.of("lost motion")))
-    page = _Read(write_report(spur, tmp_path / "report.html").read_text())
+    page = _Read(write_report(spur, tmp_path / "report.html", in_3d=False).read_text())
     assert "methods side by side" in page.inside("h2")
 
 
@@ -159,7 +159,9 @@ def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run,
         out=tmp_path / "bare",
         execution=Execution(keep_trials=False),
     )
-    assert not [text for text in _no_way_out(report_html([bare])).inside("script") if text.startswith(BARS)]
+    assert not [
+        text for text in _no_way_out(report_html([bare], in_3d=False)).inside("script") if text.startswith(BARS)
+    ]
     together = _no_way_out(report_html([spur, bare]))
     assert {"spur", "bare"} <= set(together.inside("th"))
     other = run_scene("door", overrides=Overrides(trials=50), out=tmp_path / "door")

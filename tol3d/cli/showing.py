@@ -161,6 +161,7 @@ def report(
     trials: Annotated[
         str, typer.Option("--trials", metavar="N,…", help="Trials that its 3D view has besides nominal and worst.")
     ] = "",
+    no_3d: Annotated[bool, typer.Option("--no-3d", help="Leave out the parts in 3D: a tenth of the size.")] = False,
     accept: AcceptOption = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
@@ -171,7 +172,7 @@ def report(
     accepted = ACCEPTED_PPM if accept is None else accept
     chosen = [whole(0)(own.strip()) for own in trials.split(",") if own.strip()]
     with err_console.status("report"):
-        write_report(runs, out, accepted_ppm=accepted, trials=chosen, force=force)
+        write_report(runs, out, accepted_ppm=accepted, trials=chosen, in_3d=not no_3d, force=force)
     tell(str(out))
 
 

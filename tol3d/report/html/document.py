@@ -54,6 +54,7 @@ def report_html(
     accepted_ppm: float = ACCEPTED_PPM,
     analyses: Mapping[str, Page] | None = None,
     trials: Sequence[int] = (),
+    in_3d: bool = True,
     made: str = "",
 ) -> str:
     """One run, or several beside each other, as a page.
@@ -63,6 +64,7 @@ def report_html(
         accepted_ppm: share of trials that may be out of a measure's limits.
         analyses: sections of the first run by their titles.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
+        in_3d: whether the first run's parts are shown in 3D.
         made: when and where, the one element that differs between two reports of the same runs.
 
     Raises:
@@ -73,7 +75,11 @@ def report_html(
     if first is None:
         raise InputError("nothing to report: give the folder of at least one run")
     body = [tag("h1", first.scene), *_head(runs[0])]
-    body += [*_compared(runs)] if len(runs) > 1 else [*_single(runs[0], accepted_ppm, analyses or {}, trials)]
+    body += (
+        [*_compared(runs)]
+        if len(runs) > 1
+        else [*_single(runs[0], accepted_ppm, analyses or {}, trials if in_3d else None)]
+    )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
 
@@ -99,7 +105,9 @@ def _described(run: Run) -> str:
 # one run ------------------------------------------------------------------------------------------
 
 
-def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials: Sequence[int]) -> Iterator[Markup]:
+def _single(
+    run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials: Sequence[int] | None
+) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
     sections: dict[str, Inside] = {"verdict": together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
     sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
@@ -112,7 +120,8 @@ def _single(run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials:
         )
     if pairs := page_blocks(correlation_blocks(found)):
         sections["correlations"] = pairs
-    sections["in 3D"] = view_3d(run, presenter, trials)
+    if trials is not None:
+        sections["in 3D"] = view_3d(run, presenter, trials)
     sections["trials"] = together(*_trials(shown))
     sections["provenance"] = together(*_provenance(run))
     anchors = {name: f"section-{number}" for number, name in enumerate(sections)}

@@ -49,7 +49,7 @@ class _State:
 
 @dataclass(eq=False)
 class _Model:
-    """Meshes by what they hold, each once."""
+    """Triangles by what they hold, each set once."""
 
     surfaces: list[Surface] = field(default_factory=list)
     of_parts: dict[str, list[int]] = field(default_factory=dict)
