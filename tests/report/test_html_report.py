@@ -12,8 +12,9 @@ import pytest
 from places import ROOT
 
 from tol3d import InputError, load_scene, run_scene
+from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
-from tol3d.analyses.subject import Subject
+from tol3d.analyses.subject import SECTIONS, Subject
 from tol3d.notebook import write_report
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
@@ -150,6 +151,7 @@ def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> Non
     subject.keep("methods", methods(subject.response.of("lost motion")))
     page = _Read(write_report(spur, tmp_path / "report.html", in_3d=False).read_text())
     assert "methods side by side" in page.inside("h2")
+    assert set(TITLES) == set(SECTIONS), "every section has a page"
 
 
 def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run, tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Final
 
+from tol3d.analyses.allocate import Allocation
+from tol3d.analyses.allocate_table import allocation_report
 from tol3d.analyses.effects import Effects
 from tol3d.analyses.effects_table import effects_report
 from tol3d.analyses.methods_section import Methods
@@ -25,6 +27,7 @@ TITLES: Final[Mapping[str, str]] = {
     "effects": "effects",
     "rare": "rare events",
     "what-if": "what if",
+    "allocation": "allocation",
 }
 
 
@@ -35,7 +38,7 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
         RunError: one was changed since it was made.
     """
     found = sections_of(run)
-    return {TITLES.get(name, name): _page(run, own) for name, own in found.items()}
+    return {title: _page(run, found[name]) for name, title in TITLES.items() if name in found}
 
 
 def _page(run: Run, own: Section) -> Page:
@@ -51,5 +54,7 @@ def _page(run: Run, own: Section) -> Page:
             return what_if_report(scene, own)
         case Changes():
             return changes_report(scene, own)
+        case Allocation():
+            return allocation_report(scene, own)
         case _:
             raise AssertionError(f"a section without a page: {type(own).__name__}")

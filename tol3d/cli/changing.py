@@ -70,7 +70,7 @@ def changes(
         draw_changes(subject.simulation.system.name, found, picture)
         tell(f"picture: {picture}")
     if (path := subject.keep("changes", found)) is not None:
-        tell(f"kept: {path}")
+        tell(f"kept in the run: {path}")
 
 
 def write_csv(text: str, path: Path) -> None:

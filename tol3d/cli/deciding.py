@@ -59,7 +59,7 @@ def what_if(
         draw_what_if(own.name, found, picture)
         tell(f"picture: {picture}")
     if (kept := own.keep("what-if", found)) is not None:
-        tell(f"section: {kept}")
+        tell(f"kept in the run: {kept}")
 
 
 def allocate(
@@ -134,7 +134,7 @@ def allocate(
         write_scene(scene, out)
         tell(f"scene: {out}")
     if (kept := own.keep("allocation", found)) is not None:
-        tell(f"section: {kept}")
+        tell(f"kept in the run: {kept}")
 
 
 def _written(path: Path | None, text: str) -> None:

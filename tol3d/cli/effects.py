@@ -63,4 +63,4 @@ def effects(
         draw_effects(found, picture)
         tell(f"picture: {picture}")
     if (kept := asked.keep("effects", found)) is not None:
-        tell(f"section: {kept}")
+        tell(f"kept in the run: {kept}")

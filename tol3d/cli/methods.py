@@ -54,6 +54,8 @@ def methods(
         draw_methods(found, picture)
     kept = asked.keep("methods", found)
     out_console.print(report)
-    for file in (csv, picture, kept):
+    for file in (csv, picture):
         if file is not None:
             tell(str(file))
+    if kept is not None:
+        tell(f"kept in the run: {kept}")

@@ -76,7 +76,7 @@ def rare(
     report = rare_report(found)
     out_console.print(report)
     if kept := asked.keep("rare", found):
-        tell(f"kept: {kept}")
+        tell(f"kept in the run: {kept}")
     if csv is not None:
         try:
             write_whole(csv, report.csv().encode())
