@@ -162,7 +162,7 @@ def test_what_no_factor_reaches_is_refused_with_the_nearest() -> None:
         (lambda own: allocation(own, []), "expected a measure with limits, got none"),
         (lambda own: allocation(own, [Target("gap", ("high",), 10.0)]), "gap: expected a measure with a limit"),
         (lambda own: allocation(own, [Target("gap", (), 0.0)]), "expected a ppm above 0 and below 500000, got 0"),
-        (lambda own: allocation(own, [Target("gab", (), 1.0)]), "expected a measure of gap, got 'gab'"),
+        (lambda own: allocation(own, [Target("gab", (), 1.0)]), "expected a measure, got 'gab'"),
         (
             lambda own: allocation(own, [Target("gap", (), 1.0)], Question(frozen=frozenset(("x7",)))),
             "--freeze: expected a contributor, got 'x7'",

@@ -287,5 +287,5 @@ def test_a_mechanism_from_outside_has_all_methods_and_a_run_keeps_them(tmp_path:
 
 
 def test_what_cannot_be_asked_is_refused() -> None:
-    with pytest.raises(InputError, match="expected a measure of normal backlash"):
+    with pytest.raises(InputError, match="expected a measure, got"):
         response_of(simulation_of(load("spur_pair"))).of("backlash of nothing")

@@ -146,7 +146,7 @@ class Response:
                 ends = " or ".join(repr(end) for end, own in self.curves.items() if own.name == name)
                 raise InputError(f"expected a measure of one number a trial, got {name!r}, a curve; ask for {ends}")
             if name not in known:
-                raise InputError(f"expected a measure of {', '.join(known)}, got {name!r}{hint(name, known)}")
+                raise InputError(f"expected a measure, got {name!r}{hint(name, known)}")
         return replace(self, measures=tuple(known[name] for name in names))
 
     @property

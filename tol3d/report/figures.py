@@ -154,7 +154,5 @@ def measure_figures(run: Run, name: str) -> MeasureFigures:
         InputError: the run has no such measure.
     """
     if name not in run.found.measures:
-        raise InputError(
-            f"expected a measure of {', '.join(run.found.measures)}, got {name!r}{hint(name, run.found.measures)}"
-        )
+        raise InputError(f"expected a measure, got {name!r}{hint(name, run.found.measures)}")
     return MeasureFigures(run, name)
