@@ -17,7 +17,7 @@ from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.edit import with_tolerances, write_scene
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.simulate import load, simulation_of
-from tol3d.system.draw import Planar, Scalar
+from tol3d.system.draw import JointDraw, Planar, Scalar
 from tol3d.system.other_laws import naturally_stays, scaled
 
 TRIALS = 40
@@ -97,6 +97,11 @@ def test_a_bonus_follows_the_size_that_gives_it() -> None:
     other = response.with_laws({size: law.within(law.limits[0], sum(law.limits) / 2)})
     most = [float(np.abs(own.drawn(2000)[0][:, own.slices[hole]]).max()) for own in (response, other)]
     assert most[1] < most[0]
+    told, drawn = other.draws[hole], other.drawn(20_000)[0][:, other.slices[hole]]
+    assert isinstance(told, JointDraw)
+    assert np.diagonal(told.covariance)[:2] == pytest.approx(drawn.var(axis=0)[:2], rel=0.05), (
+        "its spread is told so too"
+    )
 
 
 def test_tolerances_that_act_elsewhere_too_are_refused() -> None:
