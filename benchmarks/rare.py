@@ -8,6 +8,7 @@ spread of the results, the largest standard error and the builds; then first ord
 
 import argparse
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -22,12 +23,12 @@ EXACT: Final = 0.0507e-6
 LIMIT: Final = 15.0  # um
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Print it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--level", type=int, default=14_000, help="draws of a level of subset simulation")
-    asked = parser.parse_args()
+    asked = parser.parse_args(arguments)
     console, response = Console(width=120), response_of(simulation_of(load("spur_pair"))).of("normal backlash")
     found = [rare_event(response, "low", LIMIT, seed=seed) for seed in range(asked.seeds)]
     ppm = 1e6 * np.array([own.probability for own in found])
