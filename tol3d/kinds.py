@@ -62,7 +62,12 @@ def register(mechanism: Mechanism) -> None:
 
 def all_kinds() -> Grammar:
     """The kinds of every mechanism: shipped, installed and registered."""
-    return _grammar((*_brought(), *_registered.values()))
+    return _grammar(all_mechanisms())
+
+
+def all_mechanisms() -> tuple[Mechanism, ...]:
+    """Every mechanism: shipped, installed and registered."""
+    return (*_brought(), *_registered.values())
 
 
 class _EveryKind:

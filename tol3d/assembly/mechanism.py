@@ -98,4 +98,5 @@ ASSEMBLY: Final = Mechanism(
     settle="tol3d.assembly.picking:settle",
     summary="tol3d.assembly.summary_types:SUMMARY_KINDS",
     presenter="tol3d.assembly.presenting",
+    starters="tol3d.assembly:starters",
 )

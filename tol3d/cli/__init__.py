@@ -22,6 +22,7 @@ from tol3d.cli import (
     design,
     effects,
     methods,
+    new,
     pmi,
     rare,
     records,
@@ -41,6 +42,7 @@ __all__ = [
     "effects",
     "main",
     "methods",
+    "new",
     "pmi",
     "rare",
     "records",
@@ -51,6 +53,7 @@ __all__ = [
 
 COMMANDS = (
     studies.run,
+    new.new,
     showing.scenes,
     showing.check,
     step.features,

@@ -24,6 +24,7 @@ CYCLOID: Final = Mechanism(
     links="tol3d.cycloid.rv_link:reducers_as_links",
     summary="tol3d.cycloid.summary_types:SUMMARY_KINDS",
     presenter="tol3d.cycloid.presenting",
+    starters="tol3d.cycloid:starters",
     requires=("python-fcl", "cadquery"),
 )
 """RV reducers."""

@@ -46,5 +46,6 @@ GEARING: Final = Mechanism(
     system="tol3d.gearing.system:gear_system",
     summary="tol3d.gearing.summary.types:SUMMARY_KINDS",
     presenter="tol3d.gearing.presenting",
+    starters="tol3d.gearing:starters",
     requires=("python-fcl", "cadquery"),
 )

@@ -27,5 +27,6 @@ MACHINE: Final = Mechanism(
     system="tol3d.machine.from_scene:machine_system",
     summary="tol3d.machine.summary_types:SUMMARY_KINDS",
     presenter="tol3d.machine.presenting",
+    starters="tol3d.machine:starters",
     requires=("python-fcl", "cadquery"),
 )

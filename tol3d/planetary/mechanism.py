@@ -22,5 +22,6 @@ PLANETARY: Final = Mechanism(
     links="tol3d.planetary.set_link:sets_as_links",
     summary="tol3d.planetary.summary_types:SUMMARY_KINDS",
     presenter="tol3d.planetary.presenting",
+    starters="tol3d.planetary:starters",
     requires=("python-fcl", "cadquery"),
 )

@@ -23,6 +23,8 @@ class Mechanism(Vocabulary):
         links: path of the function that makes of a scene what its moves bring into the systems of those; see `brought`.
         summary: path of what its measures and sections are in a run's summary.
         presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
+        starters: `package:folder` of its starter scenes, YAML files that `tol3d new` writes, see
+            `tol3d.system.starter`; "" for none.
         requires: distributions whose versions decide its results beside those that every study needs; they are part
             of a run's fingerprint.
     """
@@ -31,6 +33,7 @@ class Mechanism(Vocabulary):
     links: str = ""
     summary: str = ""
     presenter: str = ""
+    starters: str = ""
     requires: tuple[str, ...] = ()
 
     @property
