@@ -57,10 +57,12 @@ def test_a_starter_is_of_its_mechanism_small_and_without_a_warning(starter: Star
     assert starter.mechanism in {own.name for own in scene.grammar.vocabularies_of(scene)}
     assert not simulation_of(load(here / f"{starter.name}.yaml")).warnings
     lines = starter.text.splitlines()
-    assert len(lines) <= 100 and max(map(len, lines)) <= 128
+    assert len(lines) <= 100
+    assert max(map(len, lines)) <= 128
     comments = sum("# " in line for line in lines)
     assert comments >= 10, "a starter teaches by its comments"
-    assert starter.title.endswith(".") and starter.title in _new()[1]
+    assert starter.title.endswith(".")
+    assert starter.title in _new()[1]
     for page in re.findall(r"docs/\w+\.md", starter.text):
         assert (Path(__file__).parents[2] / page).is_file()
 
@@ -98,7 +100,8 @@ def test_a_mechanism_from_outside_brings_its_own_and_one_without_is_said(tmp_pat
     with known(PARABOLA):
         assert "without a starter scene: parabola" in _new()[1]
         code, said = _new("parabola")
-        assert code == 2 and said.count("\n") == 0
+        assert code == 2
+        assert said.count("\n") == 0
         assert said.startswith("parabola: this mechanism brings no starter scene")
     with known(replace(PARABOLA, starters="toys:parabola")):
         assert starter_named("parabola", all_mechanisms()).name == "spring"
