@@ -53,8 +53,8 @@ __all__ = [
 
 COMMANDS = (
     studies.run,
-    new.new,
     showing.scenes,
+    new.new,
     showing.check,
     step.features,
     pmi.pmi,

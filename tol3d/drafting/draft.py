@@ -1,0 +1,232 @@
+"""A scene from STEP files: parts, their drawings, moves and measures, as a text that a person edits."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tol3d.drafting.drawing import source
+from tol3d.drafting.entry import Entry, Scene
+from tol3d.drafting.fixture import fixture
+from tol3d.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
+from tol3d.drafting.touching import between, moves
+from tol3d.drafting.words import Names, cleaned, comment, scalar
+from tol3d.errors import InputError, SceneError
+from tol3d.files import FileContent
+from tol3d.scene.nearest import hint
+from tol3d.step.found import FoundFeature
+from tol3d.step.refused import StepError, shown
+
+LAW: Final = "{kind: normal}"
+MOST_TRIES: Final = 200
+TRIALS: Final = 10_000
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Which face of a part lies on which of another: `cover.A` on `base.D`."""
+
+    seat: str
+    on: str
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A drafted scene with what it is of.
+
+    Args:
+        files: as they were read.
+        parts: of the scene.
+        entries: in the order in which they are written; the parts are not among them.
+    """
+
+    files: Sequence[ReadText]
+    parts: Sequence[DraftedPart]
+    entries: Sequence[Entry]
+
+    def scene(self) -> tuple[str, dict[int, Entry]]:
+        """The text, and the entry of each line of it."""
+        body = [own.entry() for own in self.parts]
+        return Scene(self.head(), LAW, [*body, *self.entries], [*self.tail()]).written()
+
+    def head(self) -> list[str]:
+        """What the scene is."""
+        files = [shown(own.file.content.path.name) for own in self.files]
+        name = cleaned(" and ".join(own.rpartition(".")[0] or own for own in files), "/\\:") or "from STEP"
+        return [
+            f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
+            "# marked `guess`; what of them is not in the scene is listed at the end. `tol3d check` says what it means.",
+            f"scene: {scalar(name)}",
+        ]
+
+    def tail(self) -> Iterator[str]:
+        """The study, and what of the files is lost or left out, so that counts add up."""
+        yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
+        for own in self.files:
+            yield from self.told(own)
+
+    def told(self, own: ReadText) -> Iterator[str]:
+        """What became of each tolerance and dimension of a file, in comments."""
+        drawings = [each.drawing for each in self.parts if each.drawing and each.file is own.file]
+        reasons = {key: why for each in drawings for key, why in each.reasons.items()}
+        doubled = {key: why for each in drawings for key, why in each.doubled.items()}
+        lost: list[str] = []
+        left: list[str] = []
+        for tolerance, meaning in zip(own.text.tolerances, own.meanings.all, strict=True):
+            made = [each for each in self.entries if each.source == tolerance.id]
+            standing = [each for each in made if each.stands]
+            words = [doubled.get(tolerance.id, ""), *(word for each in standing for word in each.losses)]
+            why = "; ".join(dict.fromkeys(filter(None, words)))
+            if not standing:
+                refused = next((each.refused for each in made if each.refused), "")
+                reason = refused or reasons.get(tolerance.id) or meaning.why or "its part is not in the scene"
+                left.append(f"{source(tolerance)}: {comment(reason)}")
+            elif meaning.why or why:
+                lost.append(f"{source(tolerance)}: {comment('; '.join(filter(None, (meaning.why, why))))}")
+        count = len(own.text.tolerances)
+        said = count - len(lost) - len(left)
+        name = comment(own.file.content.path.name)
+        if count:
+            yield from ("", f"# Of the {count} tolerances in {name} {said} are said, {len(lost)} approximately, "
+                        f"{len(left)} left out.")  # fmt: skip
+        for heading, listed in (("Approximately:", lost), ("Left out:", left)):
+            if listed:
+                yield f"# {heading}"
+                yield from (f"#   {line}" for line in listed)
+        yield from self.dimensions_told(own, reasons)
+        if own.text.remarks:
+            yield f"# {len(own.text.remarks)} remarks on what was not read or is incomplete: tol3d pmi lists them."
+
+    def dimensions_told(self, own: ReadText, reasons: dict[int, str]) -> Iterator[str]:
+        """What became of each dimension of a file."""
+        said = {each.source for each in self.entries if each.source is not None and each.stands}
+        left = []
+        for dimension in own.text.dimensions:
+            if dimension.id in said:
+                continue
+            refused = next((each.refused for each in self.entries if each.source == dimension.id and each.refused), "")
+            why = (
+                refused
+                or reasons.get(dimension.id)
+                or (
+                    "basic: the nominal shape says it"
+                    if dimension.role == "basic"
+                    else "for reference"
+                    if dimension.role == "reference"
+                    else "it states no limits"
+                    if dimension.limits is None
+                    else f"a {comment(dimension.kind)} of what the scene does not use, or uses already"
+                )
+            )
+            left.append(f"#   {comment(str(dimension))}: #{dimension.id}: {comment(why)}")
+        count = len(own.text.dimensions)
+        if count:
+            yield f"# Of its {count} dimensions {count - len(left)} are said, {len(left)} not:"
+            yield from left
+
+
+def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
+    """A scene from STEP files, not yet checked.
+
+    Raises:
+        InputError: a file cannot be read, or a seat is of no part or face.
+    """
+    files = read_files(contents)
+    names = Names()
+    parts = list(drafted_parts(files, names))
+    for part in parts:
+        if part.drawing is not None:
+            part.drawing.read()
+    for own in seats:
+        part, face = found(parts, own.seat, "--seat")
+        other, there = found(parts, own.on, "--on")
+        if part is other:
+            raise InputError(f"--on: expected a face of another part than {shown(own.seat)!r}, got {shown(own.on)!r}")
+        seated(part, face, other, there)
+    said = [entry for part in parts if part.drawing is not None for entry in part.drawing.entries]
+    if len(parts) == 1:
+        return Draft(files, parts, [*said, *fixture(parts[0], names)])
+    placed = list(moves(parts, names))
+    return Draft(files, parts, [*said, *placed, *between(parts, names)])
+
+
+def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[DraftedPart, FoundFeature]:
+    """A face of a part, by the name of the part and a datum's letter, a feature's name, or the number of a face.
+
+    Raises:
+        InputError: there is none.
+    """
+    name, _, feature = words.rpartition(".")
+    part = next((own for own in parts if own.name == name), None)
+    if part is None:
+        known = [own.name for own in parts]
+        listed = ", ".join(map(repr, known[:8]))
+        raise InputError(
+            f"{option}: expected a part and a face of it, such as {known[0]}.A, got {shown(words)!r}"
+            f"{hint(name, known)}; parts: {listed}"
+        )
+    letters = part.features.owner.datums if part.features.owner is not None else {}
+    wanted = letters.get(feature, feature)
+    members = {n: m for group in part.features.groups for n, m in zip(group.names, group.members, strict=True)}
+    number = int(feature[1:]) if feature.startswith("#") and feature[1:].isdecimal() else None
+    own = members.get(wanted)
+    if number is not None:
+        own = next((each for each in part.features.part.features if number in each.faces), None)
+    if own is None or own.kind != "plane":
+        known = [n for n, m in members.items() if m.kind == "plane"]
+        what = "no flat face" if own is not None else "none of its faces"
+        raise InputError(
+            f"{option}: expected a flat face of {name!r}, got {shown(feature)!r}, {what}; write one of "
+            f'{", ".join(map(repr, known[:12])) or "its faces"}, or its number in the file, such as "{name}.#12"'
+        )
+    return part, own
+
+
+def settled(drafted: Draft, check: Callable[[str], None]) -> str:
+    """The text of a drafted scene that a check accepts: what it refuses is written otherwise, or left out.
+
+    Args:
+        drafted: the scene.
+        check: raises SceneError with messages that begin with file and line.
+
+    Raises:
+        SceneError: something else than an entry is refused.
+    """
+    for _ in range(MOST_TRIES):
+        text, by_line = drafted.scene()
+        try:
+            check(text)
+        except SceneError as error:
+            blamed = list(blame(error.problems, by_line))
+            if not blamed:
+                raise
+            for entry, why in blamed:
+                entry.worsen(why)
+            continue
+        return text
+    raise StepError("no scene that can be checked comes of these files")
+
+
+def blame(problems: Sequence[str], by_line: dict[int, Entry]) -> Iterator[tuple[Entry, str]]:
+    """The entries that messages are about, each once; the one that refines another rather than that."""
+    told: set[int] = set()
+    for problem in problems:
+        entry = entry_of(problem, by_line)
+        if entry is None or entry.section == "parts":
+            continue
+        words = problem.partition(": ")[2]
+        refining = problem.partition("of '")[2].partition("', which refines it")
+        if refining[1]:
+            other = next((own for own in by_line.values() if own.name in (refining[0], scalar(refining[0]))), None)
+            entry = other or entry
+        if id(entry) not in told:
+            told.add(id(entry))
+            yield entry, words
+
+
+def entry_of(problem: str, by_line: dict[int, Entry]) -> Entry | None:
+    """The entry on whose line a message says that it is, else the one that it names."""
+    place = problem.split(": ", 1)[0].rpartition(":")[2]
+    if place.isdecimal() and int(place) in by_line:
+        return by_line[int(place)]
+    named = [own for own in dict.fromkeys(by_line.values()) if f"{own.section}.{own.name.strip(chr(34))}" in problem]
+    return named[0] if named else None

@@ -1,0 +1,466 @@
+"""The drawing of a part in its file as a scene's tolerances and measures: what is said, and what is not."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from tol3d.drafting.entry import LAW, Entry, Wording
+from tol3d.drafting.features import Features, Group
+from tol3d.drafting.words import Names, comment, direction, length, scalar
+from tol3d.numerics.arrays import Array
+from tol3d.step.dimension import Dimension
+from tol3d.step.found import FoundFeature, Triple
+from tol3d.step.frame import frame
+from tol3d.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning, Meanings
+from tol3d.step.outline import StepText
+from tol3d.step.refused import StepError
+from tol3d.step.shape import shape_of
+from tol3d.step.tolerance import Tolerance
+
+SMALLEST_ZONE: Final = 1e-6  # mm; a zone of 0 at MMC is written so
+ROUND: Final = frozenset(("cylinder", "sphere"))
+SQUARE: Final = 1e-6
+FORMS: Final = frozenset(("flatness", "straightness"))
+INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
+NOTHING: Final = "left out"
+
+
+@dataclass
+class Drawing:
+    """What the file's drawing says of one part, as entries of a scene.
+
+    Args:
+        text: the file.
+        meanings: of all its tolerances.
+        part: the name of the part in the scene.
+        features: of the part.
+        names: those of the scene.
+        spread: the kind of distribution of sizes and dimensions, as the law of zones.
+        reasons: why tolerances and dimensions are left out, beyond their meaning; grows.
+        entries: tolerances and measures; grows.
+        datums: the feature of each letter; grows.
+        located: the tolerance or dimension that locates each group of features; grows.
+        sizes: the entry of the size of each group; grows.
+        doubled: what is lost of tolerances of a feature that another one locates; grows.
+    """
+
+    text: StepText
+    meanings: Meanings
+    part: str
+    features: Features
+    names: Names
+    spread: str = "normal"
+    reasons: dict[int, str] = field(default_factory=dict)
+    entries: list[Entry] = field(default_factory=list)
+    datums: dict[str, str] = field(default_factory=dict)
+    located: dict[str, int] = field(default_factory=dict)
+    sizes: dict[str, Entry] = field(default_factory=dict)
+    doubled: dict[int, str] = field(default_factory=dict)
+
+    @property
+    def product(self) -> int:
+        """That of the part."""
+        return self.features.part.body.product
+
+    @cached_property
+    def tolerances(self) -> tuple[tuple[Tolerance, Meaning], ...]:
+        """Those of this part, uppers before their lower segments, locations before orientations."""
+        own = [
+            (each, meaning)
+            for each, meaning in zip(self.text.tolerances, self.meanings.all, strict=True)
+            if self.text.product(each.feature) == self.product
+        ]
+        return tuple(sorted(own, key=lambda pair: (pair[0].above is not None, pair[0].kind not in LOCATIONS)))
+
+    @cached_property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """Those of this part."""
+        return tuple(each for each in self.text.dimensions if self.text.product(each.features[0]) == self.product)
+
+    def read(self) -> None:
+        """Make all entries."""
+        self.take_datums()
+        self.take_families()
+        for dimension in self.dimensions:
+            self.take_size(dimension)
+        for tolerance, meaning in self.tolerances:
+            if meaning.how != NOTHING:
+                self.say(tolerance, meaning)
+        for dimension in self.dimensions:
+            self.take_distance(dimension)
+
+    def take_datums(self) -> None:
+        """Select the feature of each datum, under its letter."""
+        for datum in self.text.datums:
+            shape = self.meanings.datum_shapes.get(datum.letter)
+            mine = datum.features and self.text.product(datum.features[0]) == self.product
+            if shape is None or not mine or datum.targets:
+                continue
+            try:
+                found = self.features.of_faces(datum.faces)
+                if shape.kind == "slot" and len(found) == 2:
+                    self.datums[datum.letter] = self.features.slot(found, datum.letter).name
+                elif len(found) == 1:
+                    known = self.features.named(found[0])
+                    name = known[1] if known else self.features.add(found, datum.letter, datum.letter).name
+                    self.datums[datum.letter] = name
+            except StepError:
+                continue  # what refers to it is left out, and says so
+
+    def members(self, tolerance: Tolerance) -> list[FoundFeature]:
+        """The features that a tolerance is of; of a slot both walls.
+
+        Raises:
+            StepError: a scene can do nothing with them.
+        """
+        return self.features.of_faces(tolerance.feature.faces)
+
+    def is_slot(self, tolerance: Tolerance, kind: str) -> bool:
+        """Whether a tolerance is of the middle of two walls; a profile is of each wall."""
+        shape = shape_of(tolerance.feature, self.meanings.surfaces, self.text.structure)
+        return shape.kind == "slot" and kind not in ("profile", "flatness")
+
+    def take_families(self) -> None:
+        """Select what the drawing names alike, such as six holes, in one line."""
+        signed: dict[tuple[int, ...], tuple[FoundFeature, list[int]]] = {}
+        by_name: dict[int, str] = {}
+        for tolerance, meaning in self.tolerances:
+            if meaning.how == NOTHING:
+                continue
+            try:
+                found = self.members(tolerance)
+            except StepError as error:
+                self.reasons[tolerance.id] = str(error)
+                continue
+            if self.is_slot(tolerance, meaning.kind):
+                continue
+            by_name[tolerance.id] = tolerance.name
+            for own in found:
+                signed.setdefault(own.faces, (own, []))[1].append(tolerance.id)
+        for dimension in self.dimensions:
+            for own in self.sized(dimension):
+                if own.faces in signed:
+                    signed[own.faces][1].append(dimension.id)
+                    by_name[dimension.id] = dimension.name
+        families: dict[tuple[object, ...], list[FoundFeature]] = {}
+        for own, ids in signed.values():
+            if self.features.named(own) is None:
+                key = (tuple(ids), own.kind, round(own.radius, 6))
+                families.setdefault(key, []).append(own)
+        for (ids, *_), family in families.items():
+            assert isinstance(ids, tuple)
+            self.take_family(family, [by_name[each] for each in ids])
+
+    def take_family(self, family: Sequence[FoundFeature], pmi: Sequence[str]) -> None:
+        """Select features that the drawing names alike: in one line, if one means them, else each by itself."""
+        outward = [self.outward(own) for own in family]
+        if any(outward):
+            for own, along in zip(family, outward, strict=True):
+                self.features.projected(own, along or own.direction, self.features.kind_name(own.kind))
+            return
+        if len(family) > 1 and family[0].kind != "plane":
+            try:
+                self.features.add(family, pmi=pmi)
+                return
+            except StepError:
+                pass  # each by itself
+        for own in family:
+            self.features.add([own], pmi=pmi)
+
+    def outward(self, member: FoundFeature) -> Triple | None:
+        """Where a projected zone leads out of a hole, if that is against its axis; else None."""
+        for tolerance, meaning in self.tolerances:
+            shown = tolerance.projected
+            if shown is None or meaning.how == NOTHING or not {*member.faces} & {*tolerance.feature.faces}:
+                continue
+            axis = np.array(member.direction)
+            for end in shown.ends:
+                for face in end.faces:
+                    own = self.features.part.shell.faces.get(face)
+                    if own is None or own.kind != "plane" or abs(np.dot(own.axis, axis)) < 1.0 - SQUARE:
+                        continue
+                    above = float(np.dot(np.subtract(own.at, member.at), axis))
+                    return None if above > 0.0 else (-float(axis[0]), -float(axis[1]), -float(axis[2]))
+        return None
+
+    def sized(self, dimension: Dimension) -> list[FoundFeature]:
+        """The round features of which a dimension is the size; none where it is of others."""
+        if not dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
+            return []
+        try:
+            found = self.features.of_faces(dimension.features[0].faces)
+        except StepError:
+            return []
+        wanted = ("hole", "pin", "ball", "socket")
+        return [own for own in found if own.kind in wanted] if "angle" not in dimension.kind else []
+
+    def take_size(self, dimension: Dimension) -> None:
+        """A size with limits of what the scene uses."""
+        if dimension.limits is None or dimension.role != "toleranced" or "angle" in dimension.kind:
+            return
+        per = 2.0 if "radius" in dimension.kind else 1.0
+        round_ones = self.sized(dimension)
+        known = [own for own in map(self.features.named, round_ones) if own is not None]
+        groups = list({id(group): group for group, _ in known}.values())
+        if not round_ones and (slot := self.slot_of(dimension)) is not None:
+            groups = [slot]
+        for group in groups:
+            if group.size is None or group.name in self.sizes:
+                continue
+            least, most = (per * own for own in dimension.limits)
+            self.sizes[group.name] = self.size_entry(dimension, group, least - group.size, most - group.size)
+        if round_ones and not groups:
+            self.reasons[dimension.id] = "the size of what no tolerance of this scene is of"
+
+    def slot_of(self, dimension: Dimension) -> Group | None:
+        """The slot or tab whose width a dimension is."""
+        faces = {face for each in dimension.features for face in each.faces}
+        for group in self.features.groups:
+            walls = [set(own.faces) for own in group.slot]
+            if len(walls) == 2 and all(faces & own for own in walls) and faces <= walls[0] | walls[1]:
+                return group
+        return None
+
+    def size_entry(self, dimension: Dimension, group: Group, lower: float, upper: float) -> Entry:
+        """A size as an entry."""
+        named = comment(dimension.name)
+        remark = f"{comment(str(dimension))}{unit_of(dimension)}: {named + ', ' if named else ''}#{dimension.id}"
+        line = (
+            f"{{kind: size, of: {self.of(group.name)}, distribution: {{kind: {self.spread}, "
+            f"lower: {length(lower)}, upper: {length(upper)}}}}}"
+        )
+        name = self.names.new(f"{group.name} size", "size", len(group.members))
+        made = Entry("tolerances", scalar(name), [Wording((line,), remark)], dimension.id, str(dimension))
+        self.entries.append(made)
+        return made
+
+    def of(self, feature: str) -> str:
+        """A feature with its part, as YAML."""
+        return scalar(f"{self.part}.{feature}")
+
+    def say(self, tolerance: Tolerance, meaning: Meaning) -> None:
+        """A tolerance as entries: one of each group of features, and measures that inspect it."""
+        try:
+            found = self.members(tolerance)
+            if self.is_slot(tolerance, meaning.kind):
+                if len(found) != 2:
+                    raise StepError(f"a slot or tab of {len(found)} faces")
+                groups = [self.features.slot(found)]
+            else:
+                known = [self.features.named(own) for own in found]
+                groups = list({id(own[0]): own[0] for own in known if own is not None}.values())
+            datums = self.datum_wordings(tolerance)
+            for group in groups:
+                self.say_of(tolerance, meaning, group, datums)
+        except StepError as error:
+            self.reasons[tolerance.id] = str(error)
+
+    def datum_wordings(self, tolerance: Tolerance) -> tuple[tuple[str, str], ...]:
+        """The datums as a tolerance has them, and as a measure does; the second pair is regardless of size.
+
+        Raises:
+            StepError: the scene has no feature for one.
+        """
+        said, plain, read = [], [], []
+        for each in tolerance.datums:
+            letters = [own.letter for own in each.references]
+            if missing := [own for own in letters if own not in self.datums]:
+                raise StepError(f"datum {', '.join(missing)} is no feature of this scene")
+            name = "-".join(self.datums[own] for own in letters)
+            plain.append(scalar(name))
+            boundary = any(set(own.modifiers) & MATERIAL for own in each.references) and len(letters) == 1
+            said.append(f"{{feature: {scalar(name)}, mmb: random}}" if boundary else scalar(name))
+            read.append(f"{{feature: {scalar(name)}, mmb: least}}" if boundary else scalar(name))
+        pairs = [(", ".join(said), ", ".join(read))]
+        if said != plain:
+            pairs.append((", ".join(plain), ", ".join(plain)))
+        return tuple(pairs)
+
+    def say_of(self, tolerance: Tolerance, meaning: Meaning, group: Group, datums: tuple[tuple[str, str], ...]) -> None:
+        """A tolerance of one group of features."""
+        kind = self.kind_of(tolerance, meaning, group)
+        remark = source(tolerance)
+        name = self.names.new(tolerance.name or kind.replace("_", " "), kind, len(group.members))
+        locates = tolerance.kind in LOCATIONS and kind not in ORIENTATIONS and kind not in FORMS
+        if locates and kind not in INSPECTED and group.name in self.located:
+            self.doubled[tolerance.id] = f"#{self.located[group.name]} locates the feature: this one is inspected"
+            kind = "inspected_position"
+        if kind in INSPECTED:
+            self.inspect(tolerance, kind, group, datums, remark)
+            return
+        has_law = locates or group.name not in self.located
+        wordings = list(self.wordings(tolerance, kind, group, datums, has_law=has_law))
+        if not has_law or kind in FORMS:  # a form has a law only where a contact reads it
+            wordings += self.wordings(tolerance, kind, group, datums, has_law=not has_law)
+        entry = Entry(
+            "tolerances", scalar(name), [Wording((line,), remark, lost) for line, lost in wordings],
+            tolerance.id, remark,
+        )  # fmt: skip
+        self.entries.append(entry)
+        if locates:
+            self.located.setdefault(group.name, tolerance.id)
+        if kind in FORMS or tolerance.unequal is not None:
+            return
+        self.inspect(tolerance, kind, group, datums, remark, entry)
+
+    def kind_of(self, tolerance: Tolerance, meaning: Meaning, group: Group) -> str:
+        """The kind of an entry: of an orientation of several faces that of this one."""
+        if meaning.kind not in ORIENTATIONS or tolerance.kind in ORIENTATIONS or not tolerance.datums:
+            return meaning.kind
+        first = self.meanings.datum_shapes.get(tolerance.datums[0].letters)
+        if first is None or not first.surfaces:
+            return meaning.kind
+        cosine = abs(float(np.dot(group.members[0].direction, first.surfaces[0].direction)))
+        if first.surfaces[0].kind != "plane":
+            cosine = 1.0 - cosine if cosine in (0.0, 1.0) else cosine
+        return "parallelism" if cosine > 1.0 - SQUARE else "perpendicularity" if cosine < SQUARE else "angularity"
+
+    def zone(self, tolerance: Tolerance, kind: str, group: Group) -> str:
+        """The zone of a tolerance as YAML.
+
+        Raises:
+            StepError: the file does not say in which direction it limits.
+        """
+        assert tolerance.magnitude is not None
+        size = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
+        projected = ""
+        if tolerance.projected is not None and group.kind == "cylinder" and kind == "position":
+            projected = f", projected: {length(tolerance.projected.length.value)}"
+        if group.kind in ("plane", "slot") or kind in ("circular_run_out", "total_run_out", *FORMS):
+            outward = f", outward: {length(tolerance.unequal.value)}" if tolerance.unequal and kind == "profile" else ""
+            return f"{{width: {size}{outward}}}"
+        if tolerance.zone != "width" or kind == "coaxiality" or group.kind == "sphere":
+            return f"{{diameter: {size}{projected}}}"
+        return f"{{width: {size}, along: {direction(self.limited(tolerance, group))}{projected}}}"
+
+    def limited(self, tolerance: Tolerance, group: Group) -> Array:
+        """The one direction in which a width limits an axis: across the last flat datum that lies along it.
+
+        Raises:
+            StepError: no datum says it.
+        """
+        axis = np.array(group.members[0].direction)
+        for each in reversed(tolerance.datums):
+            shape = self.meanings.datum_shapes.get(each.letters)
+            if shape is not None and shape.kind in ("plane", "slot"):
+                normal = np.array(shape.surfaces[0].direction)
+                if abs(float(normal @ axis)) < SQUARE:
+                    return normal
+        raise StepError("a width of an axis, in a direction that the file does not say")
+
+    def wordings(
+        self, tolerance: Tolerance, kind: str, group: Group, datums: tuple[tuple[str, str], ...], *, has_law: bool
+    ) -> Iterator[tuple[str, str]]:
+        """Ways to write a tolerance, the best first, with what is lost."""
+        zone = self.zone(tolerance, kind, group)
+        law = f", law: {LAW}" if has_law else ""
+        modifier = modifier_of(tolerance) if group.name in self.sizes and kind not in FORMS else ""
+        for k, (said, _) in enumerate(datums):
+            for bonus in dict.fromkeys((modifier, "")):
+                lost = ["datums at their boundary are taken regardless of size"] if k else []
+                lost += ["the bonus is lost"] if bonus != modifier else []
+                frame_words = f", datums: [{said}]" if said and kind not in FORMS else ""
+                extra = f", modifier: {bonus}" if bonus else ""
+                head = f"{{kind: {kind}, of: {self.of(group.name)}, zone: {zone}"
+                yield f"{head}{law}{frame_words}{extra}}}", "; ".join(lost)
+
+    def inspect(
+        self,
+        tolerance: Tolerance,
+        kind: str,
+        group: Group,
+        datums: tuple[tuple[str, str], ...],
+        remark: str,
+        entry: Entry | None = None,
+    ) -> None:
+        """Measures of a tolerance's own limit, one of each feature."""
+        assert tolerance.magnitude is not None
+        turned = kind in ORIENTATIONS or kind == "inspected_orientation"
+        measured = "inspected_orientation" if turned else "inspected_position"
+        modifier = modifier_of(tolerance) if group.name in self.sizes and not turned else ""
+        projected = ""
+        if tolerance.projected is not None and group.kind == "cylinder" and not turned:
+            projected = f", projected: {length(tolerance.projected.length.value)}"
+        limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
+        label = tolerance.name or kind.replace("_", " ")
+        needs = (entry,) if entry is not None else ()
+        for feature in group.names:
+            words = []
+            for _, read in datums:
+                for bonus in dict.fromkeys((modifier, "")):
+                    frame_words = f", datums: [{read}]" if read else ""
+                    extra = f", modifier: {bonus}" if bonus else ""
+                    head = f"{{kind: {measured}, of: {self.of(feature)}{frame_words}{extra}{projected}"
+                    lost = "" if bonus == modifier else "inspected without the bonus"
+                    words.append(Wording((f"{head}, upper_limit: {limit}}}",), "" if entry else remark, lost))
+            number = f" {feature.removeprefix(group.name).strip()}" if len(group.names) > 1 else ""
+            name = self.names.new(f"inspected {label}{number}", measured)
+            source_id = None if entry is not None else tolerance.id
+            self.entries.append(Entry("measures", scalar(name), words, source_id, remark, needs))
+
+    def take_distance(self, dimension: Dimension) -> None:
+        """A distance of two parallel faces with limits, of the one that nothing else locates."""
+        if dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
+            return
+        if "distance" not in dimension.kind or self.slot_of(dimension) is not None:
+            return
+        try:
+            sides = [self.features.of_faces(each.faces) for each in dimension.features]
+            if [len(own) for own in sides] != [1, 1] or {own[0].kind for own in sides} != {"plane"}:
+                raise StepError("a distance of other features than two faces")
+            first, second = sides[0][0], sides[1][0]
+            if abs(abs(float(np.dot(first.direction, second.direction))) - 1.0) > SQUARE:
+                raise StepError("a distance of faces that are not parallel")
+            self.distance_entry(dimension, first, second)
+        except StepError as error:
+            self.reasons[dimension.id] = str(error)
+
+    def distance_entry(self, dimension: Dimension, first: FoundFeature, second: FoundFeature) -> None:
+        """A distance as an entry: it starts at the face that is a datum.
+
+        Raises:
+            StepError: both faces are located already.
+        """
+        letters = {name: letter for letter, name in self.datums.items()}
+        known = [self.features.named(own) for own in (first, second)]
+        names = [own[1] if own else "" for own in known]
+        start, end = (second, first) if names[1] in letters and names[0] not in letters else (first, second)
+        if (own := self.features.named(end)) is not None and (own[1] in self.located or own[1] in letters):
+            raise StepError(f"{own[1]} is located by a tolerance already")
+        begin, there = self.features.name(start), self.features.name(end)
+        self.located[there] = dimension.id
+        distance = abs(float(np.dot(np.subtract(end.at, start.at), start.direction)))
+        assert dimension.limits is not None
+        least, most = dimension.limits
+        took = f"from datum {letters[begin]}" if begin in letters else f"from {begin}  # guess"
+        remark = f"{comment(str(dimension))}{unit_of(dimension)}: #{dimension.id}, {took}"
+        line = (
+            f"{{kind: plus_minus, of: {self.of(there)}, datums: [{scalar(begin)}], distribution: "
+            f"{{kind: {self.spread}, lower: {length(least - distance)}, upper: {length(most - distance)}}}}}"
+        )
+        name = scalar(self.names.new(dimension.name or f"distance {there}", "distance"))
+        self.entries.append(Entry("tolerances", name, [Wording((line,), remark)], dimension.id, str(dimension)))
+
+
+def modifier_of(tolerance: Tolerance) -> str:
+    """The material modifier of a tolerance as a scene has it; "" where it has none."""
+    words = [own for own in tolerance.modifiers if own in MATERIAL]
+    return "" if not words else "lmc" if "least" in words[0] else "mmc"
+
+
+def unit_of(dimension: Dimension) -> str:
+    """The unit in which the file has a dimension, where that is not mm."""
+    measures = (dimension.nominal, dimension.least, dimension.most)
+    unit = next((own.unit.name for own in measures if own is not None), "mm")
+    return "" if unit == "mm" else f" {comment(unit)}"
+
+
+def source(tolerance: Tolerance) -> str:
+    """The frame of a tolerance and its place in the file, for a comment."""
+    unit = tolerance.magnitude.unit.name if tolerance.magnitude is not None else "mm"
+    words = comment(frame(tolerance)) + ("" if unit == "mm" else f" [{comment(unit)}]")
+    name = comment(tolerance.name)
+    return f"{words}: {name + ', ' if name else ''}#{tolerance.id}"
