@@ -31,8 +31,7 @@ def new(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
 ) -> None:
-    """Write a scene to start your own from, which runs as it is: of a kind of system, or of STEP files with their own
-    tolerances; without either list the kinds."""
+    """Write a scene to start your own from, which runs: of a kind of system, or of STEP files; alone list the kinds."""
     from tol3d.errors import InputError
     from tol3d.kinds import all_mechanisms
     from tol3d.system.starter import starter_lines, starter_named

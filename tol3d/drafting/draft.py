@@ -54,7 +54,7 @@ class Draft:
         name = cleaned(" and ".join(own.rpartition(".")[0] or own for own in files), "/\\:") or "from STEP"
         return [
             f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
-            "# marked `guess`; what of them is not in the scene is listed at the end. `tol3d check` says what it means.",
+            "# marked `guess`; what of them the scene lacks is listed at its end. `tol3d check` says what it means.",
             f"scene: {scalar(name)}",
         ]
 

@@ -145,14 +145,12 @@ class Drawing:
                 if own.faces in signed:
                     signed[own.faces][1].append(dimension.id)
                     by_name[dimension.id] = dimension.name
-        families: dict[tuple[object, ...], list[FoundFeature]] = {}
+        families: dict[tuple[tuple[int, ...], str, float], list[FoundFeature]] = {}
         for own, ids in signed.values():
             if self.features.named(own) is None:
-                key = (tuple(ids), own.kind, round(own.radius, 6))
-                families.setdefault(key, []).append(own)
-        for (ids, *_), family in families.items():
-            assert isinstance(ids, tuple)
-            self.take_family(family, [by_name[each] for each in ids])
+                families.setdefault((tuple(ids), own.kind, round(own.radius, 6)), []).append(own)
+        for (named_by, *_), family in families.items():
+            self.take_family(family, [by_name[each] for each in named_by])
 
     def take_family(self, family: Sequence[FoundFeature], pmi: Sequence[str]) -> None:
         """Select features that the drawing names alike: in one line, if one means them, else each by itself."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from tol3d.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, number, place, scalar
+from tol3d.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
 from tol3d.step.found import FoundFeature, Triple
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError
@@ -191,20 +191,19 @@ class Features:
             if own and len(own) <= SHORTEST_NAMES and own.isprintable():
                 tries.append((f"{{pmi: {scalar(own)}{counted}}}", Selector(pmi=own, count=count)))
         first = members[0]
+        round_one = first.kind in ("hole", "pin", "ball", "socket")
+        size = round(2 * first.radius, 6)
         if count:
-            size = 2 * first.radius
-            words = f"{{kind: {first.kind}, diameter: {number(size)} mm{counted}}}"
-            tries.append((words, Selector(kind=first.kind, diameter=size, count=count)))  # type: ignore[arg-type]
+            words = f"{{kind: {first.kind}, diameter: {length(size)}{counted}}}"
+            tries.append((words, Selector(kind=first.kind, diameter=size, count=count)))
         else:
-            round_one = first.kind in ("hole", "pin", "ball", "socket")
             at = first.at if round_one else first.on
             near = (round(at[0], 4) + 0.0, round(at[1], 4) + 0.0, round(at[2], 4) + 0.0)
-            size = round(2 * first.radius, 6) if round_one else None
-            tries.append((line_of(first), Selector(kind=first.kind, diameter=size, near=near)))
+            tries.append((line_of(first), Selector(kind=first.kind, diameter=size if round_one else None, near=near)))
         wanted = [own.faces for own in members]
-        for line, own in tries:
+        for line, selector in tries:
             try:
-                if [each.faces for each in selected(self.part, own)] == wanted:
+                if [each.faces for each in selected(self.part, selector)] == wanted:
                     return line
             except StepError:
                 continue

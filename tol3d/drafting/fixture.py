@@ -10,6 +10,7 @@ from tol3d.drafting.entry import Entry, Wording
 from tol3d.drafting.features import Group
 from tol3d.drafting.parts import DraftedPart
 from tol3d.drafting.words import Names, direction, length, place, scalar
+from tol3d.numerics.arrays import Array
 from tol3d.step.found import FoundFeature
 
 PADS: Final = {3: ((-0.4, -0.4), (0.4, -0.4), (0.0, 0.4)), 2: ((-0.4, 0.0), (0.4, 0.0)), 1: ((0.0, 0.0),)}
@@ -73,7 +74,7 @@ def three_two_one(part: DraftedPart, frame: Sequence[Group], name: str, move: st
     return [body, fixed, Entry("moves", scalar(move), [Wording(lines, f"guess: by its datums {letters}"), still])]
 
 
-def part_at(part: DraftedPart, at: Sequence[float]) -> Sequence[float]:
+def part_at(part: DraftedPart, at: Sequence[float] | Array) -> Sequence[float]:
     """A point of a part in the world [mm]."""
     return [float(own) for own in part.pose[:3, :3] @ np.asarray(at) + part.pose[:3, 3]]
 

@@ -184,8 +184,8 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     ways = []
     if square and relations and (pairs := [playing(own) for own in square]) and all(pairs):
         made = [own for own in pairs if own is not None]
-        for entry in (each for own in square for each in unsized(own, names)):
-            yield entry
+        for pair in square:
+            yield from unsized(pair, names)
         lines = ("kind: pattern", f"part: {scalar(part.name)}", "float: {kind: random}",
                  "relations:", *relations[:1], "pairs:", *made)  # fmt: skip
         ways.append(Wording(lines, "guess: faces that touch, with pins and bolts in their play"))

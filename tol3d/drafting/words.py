@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+from tol3d.numerics.arrays import Array
 from tol3d.step.refused import shown
 
 PLAIN: Final = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.()+ -]*[A-Za-z0-9_)])?")
@@ -50,17 +51,17 @@ def length(value: float) -> str:
     return f"{number(value)} mm"
 
 
-def place(at: Sequence[float]) -> str:
+def place(at: Sequence[float] | Array) -> str:
     """A point [mm]."""
     return "[" + ", ".join(length(own) for own in at) + "]"
 
 
-def direction(along: Sequence[float]) -> str:
+def direction(along: Sequence[float] | Array) -> str:
     """A direction, with the digits that keep right angles right."""
     return "[" + ", ".join(f"{own + 0.0:.13g}" if abs(own) > 1e-13 else "0" for own in along) + "]"
 
 
-def across(normal: Sequence[float]) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+def across(normal: Sequence[float] | Array) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Two directions that are square to one and to each other: near the part's x (or y), and the third."""
     start = (1.0, 0.0, 0.0) if abs(normal[0]) < 0.9 else (0.0, 1.0, 0.0)
     along = sum(a * b for a, b in zip(start, normal, strict=True))
