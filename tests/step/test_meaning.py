@@ -33,7 +33,7 @@ def test_every_tolerance_has_the_frame_and_the_class_of_the_table(model: str) ->
 
 
 def test_the_classes_add_up_to_the_files() -> None:
-    assert Counter(row["class"] for row in ROWS) == {"said": 64, "approximately": 29, "left out": 37}
+    assert Counter(row["class"] for row in ROWS) == {"said": 63, "approximately": 30, "left out": 37}
     found = [each for model in FILES for each in meanings(step_text(model))]
     assert len(found) == 130
     assert all(bool(each.why) == (each.how != "said") for each in found)
@@ -57,7 +57,7 @@ def feature(model: str, identifier: int) -> NamedFeature:
 
 def test_modifiers_without_a_word_are_dropped_aloud() -> None:
     assert changed("FTC-10", 19674, modifiers=("free state",)).why == "the free state is dropped"
-    tangent = changed("FTC-10", 18842, modifiers=("tangent plane",))
+    tangent = changed("CTC-01", 56, modifiers=("tangent plane",))
     assert (tangent.how, tangent.why) == ("approximately", "the tangent plane is taken as the face itself")
     assert "separate requirement is dropped" in changed("FTC-10", 19674, modifiers=("separate requirement",)).why
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.drafting.drawing import source
-from tol3d.drafting.entry import Entry, Scene
+from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import fixture
 from tol3d.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
 from tol3d.drafting.touching import between, moves
@@ -143,10 +143,27 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
             raise InputError(f"--on: expected a face of another part than {shown(own.seat)!r}, got {shown(own.on)!r}")
         seated(part, face, other, there)
     said = [entry for part in parts if part.drawing is not None for entry in part.drawing.entries]
-    if len(parts) == 1:
-        return Draft(files, parts, [*said, *fixture(parts[0], names)])
-    placed = list(moves(parts, names))
-    return Draft(files, parts, [*said, *placed, *between(parts, names)])
+    placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
+    return Draft(files, parts, [*said, *placed, *something(parts, [*said, *placed], names)])
+
+
+def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Names) -> Iterator[Entry]:
+    """A measure where there is none yet, and a feature of each part that has none: a scene has both.
+
+    Raises:
+        StepError: a part has no face that a scene can use.
+    """
+    for part in parts:
+        if not part.features.groups:
+            part.features.name(part.features.largest()[0])
+    if any(own.section == "measures" for own in entries):
+        return
+    first, last = parts[0], parts[-1]
+    faces = first.features.largest()
+    start = first.features.name(faces[0])
+    end = last.features.name(faces[-1] if first is last else last.features.largest()[0])
+    words = f"{{kind: distance, from: {first.of(start)}, to: {last.of(end)}}}"
+    yield Entry("measures", scalar(names.new("distance", "distance")), [Wording((words,), "guess: name what counts")])
 
 
 def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[DraftedPart, FoundFeature]:

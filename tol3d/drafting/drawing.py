@@ -44,6 +44,7 @@ class Drawing:
         datums: the feature of each letter; grows.
         located: the tolerance or dimension that locates each group of features; grows.
         sizes: the entry of the size of each group; grows.
+        frames: the datums of that, as they are written, and how many there are; grows.
         doubled: what is lost of tolerances of a feature that another one locates; grows.
     """
 
@@ -59,6 +60,7 @@ class Drawing:
     located: dict[str, int] = field(default_factory=dict)
     sizes: dict[str, Entry] = field(default_factory=dict)
     doubled: dict[int, str] = field(default_factory=dict)
+    frames: dict[str, tuple[tuple[tuple[str, str], ...], int]] = field(default_factory=dict)
 
     @property
     def product(self) -> int:
@@ -300,9 +302,20 @@ class Drawing:
         self.entries.append(entry)
         if locates:
             self.located.setdefault(group.name, tolerance.id)
+            self.frames.setdefault(group.name, (datums, len(tolerance.datums)))
         if kind in FORMS or tolerance.unequal is not None:
             return
-        self.inspect(tolerance, kind, group, datums, remark, entry)
+        inspected, count = self.frames.get(group.name, (datums, 0))
+        if locates or len(tolerance.datums) != 1 or count < 2 or not self.turns(tolerance, group):
+            inspected = datums  # else to one datum alone the turn about it would count, which its zone leaves free
+        self.inspect(tolerance, kind, group, inspected, remark, entry)
+
+    def turns(self, tolerance: Tolerance, group: Group) -> bool:
+        """Whether a feature may turn about the one datum of its orientation."""
+        datum = self.meanings.datum_shapes.get(tolerance.datums[0].letters)
+        if datum is None or not datum.surfaces:
+            return False
+        return abs(float(np.dot(group.members[0].direction, datum.surfaces[0].direction))) < 1.0 - SQUARE
 
     def kind_of(self, tolerance: Tolerance, meaning: Meaning, group: Group) -> str:
         """The kind of an entry: of an orientation of several faces that of this one."""

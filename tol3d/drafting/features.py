@@ -9,7 +9,7 @@ import numpy as np
 from tol3d.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
 from tol3d.step.found import FoundFeature, Triple
 from tol3d.step.reading import StepPart
-from tol3d.step.refused import StepError
+from tol3d.step.refused import StepError, shown
 from tol3d.step.selecting import Selector, line_of, selected
 
 if TYPE_CHECKING:
@@ -105,6 +105,17 @@ class Features:
         for group in self.groups:
             if group.kind == "plane":
                 yield from group.members
+
+    def largest(self) -> list[FoundFeature]:
+        """The two features of most area, or the one that there is.
+
+        Raises:
+            StepError: there is none.
+        """
+        usable = [own for own in self.part.features if own.kind in USABLE and not own.loose]
+        if not usable:
+            raise StepError(f"{shown(self.part.name)}: expected a flat or round face, found free forms alone")
+        return sorted(usable, key=lambda own: -own.area)[:2]
 
     def named(self, member: FoundFeature) -> tuple[Group, str] | None:
         """The group that has a feature, and its name; None where none has."""

@@ -124,6 +124,7 @@ class Meanings:
             told = self.refining_loss(tolerance, self.by_id[before])
             if told:
                 return Meaning(tolerance.id, "approximately", "inspected_orientation", shape.words, told)
+            lost = lost or self.turn_loss(tolerance, shape, self.by_id[before])
         lost = lost or self.modifier_loss(tolerance)
         return Meaning(tolerance.id, "approximately" if lost else "said", kind, shape.words, lost)
 
@@ -218,6 +219,17 @@ class Meanings:
         if tolerance.zone != location.zone:
             return f"its zone has another form than that of #{location.id}: it only limits what is inspected"
         return ""
+
+    def turn_loss(self, tolerance: Tolerance, shape: Shape, location: Tolerance) -> str:
+        """What is lost of an orientation to one datum whose feature may turn about it, within a zone that stops it."""
+        datum = self.datum_shapes.get(tolerance.datums[0].letters) if len(tolerance.datums) == 1 else None
+        if datum is None or len(location.datums) < 2 or not shape.surfaces or not datum.surfaces:
+            return ""
+        if all(aligned(each.direction, datum.surfaces[0].direction) != 0 for each in shape.surfaces):
+            return ""
+        letter = tolerance.datums[0].letters
+        zone = f"here its zone is that of #{location.id}, which limits the turn"
+        return f"to {letter} alone it may turn about {letter}: {zone}"
 
     def modifier_loss(self, tolerance: Tolerance) -> str:
         """What is lost of the modifiers of a tolerance."""

@@ -1,0 +1,205 @@
+"""Drafted scenes: what a file says is data, parts lie on what they touch, and the command says what it wants."""
+
+import math
+import re
+from pathlib import Path
+
+import cadquery as cq
+import numpy as np
+import pytest
+import yaml
+from fixtures import Command
+from foreign_parts import nist_file, solid, step_file
+
+from tol3d.drafting import scene_from
+from tol3d.drafting.words import Names, comment, scalar
+from tol3d.files import FileContent, read_file
+from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.step.reading import read_step
+from tol3d.system.stated import nominal_build
+
+HOSTILE = (
+    "*zones",
+    "a: b",
+    "# no comment",
+    "on",
+    "'\"{}[]",
+    "law: &zones {kind: uniform}",
+    "back\\slash",
+    "two\nlines",
+    "\r\x85\u2028\u2029\x00\x07",
+    "𝄞 ⌖",
+    "x" * 10_000,
+    " ",
+    ".x",
+    "[1, 2",
+    "- item",
+    "? key",
+    "!!python/object",
+    "%TAG",
+    "1e3",
+    "~",
+)
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_any_text_is_one_scalar_and_ends_no_comment(text: str) -> None:
+    """Oracle: PyYAML."""
+    read = yaml.safe_load(f"a: {scalar(text)}  # {comment(text)}\nb: 2\n")
+    assert read == {"a": text, "b": 2}
+    assert len(comment(text)) <= 80
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_names_differ_and_hold_what_names_may(text: str) -> None:
+    names = Names()
+    given = [names.new(text, "part") for _ in range(3)]
+    assert len(set(given)) == 3
+    for own in given:
+        assert 0 < len(own) <= 80
+        assert own == own.strip()
+        assert own.isprintable()
+        assert not set(own) & set("/\\:")
+
+
+def test_members_of_a_pattern_never_have_a_name_that_is_taken() -> None:
+    names = Names()
+    assert [names.new("hole 1", ""), names.new("hole", "", 2), names.new("hole 2", "")] == [
+        "hole 1", "hole (2) of", "hole 2",
+    ]  # fmt: skip
+    assert names.new("hole (2) of 1", "") == "hole (2) of 1 (2)"
+
+
+def test_hostile_names_of_a_file_change_no_line_of_the_scene(tmp_path: Path) -> None:
+    """Part 21 writes control characters as \\X2\\000A\\X0\\."""
+    content = nist_file("ctc_01")
+    evil = "\\X2\\000A\\X0\\}: [law, #1 *zones " + "y" * 10_000
+    text = content.content
+    for name in ("Position.1", "Position surfacic profile.2", "Perpendicularity.1", "NIST Complex Test Case 1"):
+        assert f"'{name}'".encode() in text
+        text = text.replace(f"'{name}'".encode(), f"'{evil}'".encode())
+    plain, _ = scene_from([content])
+    written, drafted = scene_from([FileContent(content.path, text)])
+    assert written.count("\n") == plain.count("\n")
+    read, wanted = yaml.safe_load(written), yaml.safe_load(plain)
+    assert read.keys() == wanted.keys()
+    assert [len(read[own]) for own in ("parts", "tolerances", "moves", "measures")] == [
+        len(wanted[own]) for own in ("parts", "tolerances", "moves", "measures")
+    ]
+    assert [own["kind"] for own in read["tolerances"].values()] == [
+        own["kind"] for own in wanted["tolerances"].values()
+    ]
+    assert max(map(len, written.splitlines())) < 600
+    assert len(drafted.parts[0].name) <= 80
+
+
+PLATE = solid(cq.Workplane().box(80, 60, 10).faces(">Z").workplane().rarray(50, 1, 2, 1).hole(8))
+LID = solid(cq.Workplane().box(80, 60, 4).faces(">Z").workplane().rarray(50, 1, 2, 1).hole(9))
+BLOCK = solid(cq.Workplane().box(20, 20, 20))
+
+
+def drafted(folder: Path, shapes: dict[str, cq.Shape]) -> str:
+    """The scene of parts that stand where they are modelled, in one assembly."""
+    return scene_from([step_file(shapes, folder / "all.step")])[0]
+
+
+def test_holes_in_line_are_bolted_and_faces_that_touch_are_laid_on_each_other(tmp_path: Path) -> None:
+    text = drafted(tmp_path, {"plate": PLATE, "lid": LID.translate(cq.Vector(0, 0, 7))})
+    read = yaml.safe_load(text)
+    (move,) = (own for own in read["moves"].values() if own["kind"] != "fix")
+    assert move["kind"] == "pattern"
+    assert [own["kind"] for own in move["relations"]] == ["coincident"]
+    assert len(move["pairs"]) == 2
+    assert {own["bolt"]["diameter"] for own in move["pairs"]} == {
+        "7.2 mm"
+    }  # 8 mm less a tenth, for no position says it
+    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
+    simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+
+
+def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) -> None:
+    """A block 20 mm wide whose underside stands 3 mm over the plate's top at z = 5."""
+    text = drafted(tmp_path, {"plate": PLATE, "block": BLOCK.translate(cq.Vector(0, 0, 18))})
+    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
+    simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    system = simulation.system
+    road = system.road("exact", system.materials("exact"))
+    values = road.answers(nominal_build(system), system.measures).values
+    (gap,) = (float(own[0, 0]) for name, own in values.items() if name.startswith("gap"))
+    assert gap == pytest.approx(3.0, abs=1e-9)
+
+
+def test_a_product_that_is_used_four_times_is_four_parts_with_the_first_ones_features(tmp_path: Path) -> None:
+    made = cq.Assembly(name="all")
+    made.add(PLATE, name="plate")
+    for k in range(4):
+        made.add(BLOCK, name=f"block {k}", loc=cq.Location(cq.Vector(15 * math.cos(k), 90 * k + 90, 0)))
+    made.export(str(tmp_path / "all.step"), exportType="STEP")
+    path = tmp_path / "all.step"
+    text, _ = scene_from([FileContent(path, path.read_bytes())])
+    parts = yaml.safe_load(text)["parts"]
+    assert len(parts) == 5
+    likes = [own["like"] for own in parts.values() if "like" in own]
+    assert len(likes) in (0, 3)
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> tuple[Path, Path]:
+    """Files of two parts, in folders of their own."""
+    for name, shape in (("base", PLATE), ("top", BLOCK)):
+        (tmp_path / name).mkdir()
+        step_file({name: shape}, tmp_path / name / f"{name}.step")
+    return tmp_path / "base" / "base.step", tmp_path / "top" / "top.step"
+
+
+def test_the_command_seats_a_part_and_copies_files_beside_the_scene(
+    two: tuple[Path, Path], tmp_path: Path, tol3d: Command
+) -> None:
+    out = tmp_path / "made" / "scene.yaml"
+    first = tol3d("new", "--from", *map(str, two), "--seat", "top.A", "--on", "base.A", "--out", str(out))
+    assert first[0] == 2
+    assert "--seat: expected a flat face of 'top'" in first[2]
+    faces = [find_plane(two[1], (0, 0, -10)), find_plane(two[0], (0, 0, 5))]
+    code, _, err = tol3d(
+        "new", "--from", *map(str, two), "--seat", f"top.#{faces[0]}", "--on", f"base.#{faces[1]}", "--out", str(out)
+    )
+    assert code == 0, err
+    assert {own.name for own in out.parent.iterdir()} == {"base.step", "top.step", "scene.yaml"}
+    read = yaml.safe_load(out.read_text(encoding="utf-8"))
+    assert read["parts"]["top"]["placed"]["at"] == ["0 mm", "0 mm", "15 mm"]
+    assert tol3d("check", str(out))[0] == 0
+    code, _, err = tol3d("new", "--from", *map(str, two), "--out", str(out))
+    assert code == 2
+    assert "is there already" in err
+
+
+def find_plane(path: Path, at: tuple[float, float, float]) -> int:
+    """The number of the face of a file whose middle lies there."""
+    for part in read_step(read_file(path)).parts:
+        for own in part.features:
+            if own.kind == "plane" and np.allclose(own.at, at, atol=1e-9):
+                return own.faces[0]
+    raise AssertionError(at)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("spur_pair", "--from", "a.step"), "got both"),
+        (("--from", "a.step", "--seat", "a.A"), "--seat: expected an --on for each, got 1 and 0"),
+        (("--seat", "a.A", "--on", "b.B"), "--seat: expected --from"),
+        (("spur_pair", "train"), "expected one kind of system, got 2"),
+        (("--from", "none.step"), "none.step"),
+    ],
+)
+def test_wrong_words_are_told(words: tuple[str, ...], said: str, tol3d: Command) -> None:
+    code, _, err = tol3d("new", *words)
+    assert code == 2
+    assert said in re.sub(r"\s+", " ", err)
+
+
+def test_a_part_without_a_drawing_runs_too(two: tuple[Path, Path], tmp_path: Path, tol3d: Command) -> None:
+    out = tmp_path / "base" / "scene.yaml"
+    assert tol3d("new", "--from", str(two[0]), "--out", str(out))[0] == 0
+    code, _, err = tol3d("run", str(out), "--trials", "16", "--out", str(tmp_path / "run"), "--no-picture")
+    assert code == 0, err
