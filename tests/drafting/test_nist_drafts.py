@@ -36,7 +36,7 @@ SIGMAS = 0.005
 
 
 FORM = {10068: 10128, 10426: 10369}
-"""Profiles of STC-06 beside a flatness of half their width on the same face, which takes that from where the face lies."""
+"""Profiles of STC-06 beside a flatness of half their width on the same face, which takes that from its place."""
 
 
 @dataclass(frozen=True)

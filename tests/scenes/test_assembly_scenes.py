@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,6 +16,7 @@ SCENES = (*shipped("assembly"), *shipped("machine"))
 LONG = (
     "gearbox_in_housing",
     "bolted_cover",
+    "bracket_in_box",
     "every_assembly_field",
     "hole_and_slot",
     "housed_gears",
@@ -67,3 +69,31 @@ def test_the_cover_s_numbers_follow_by_hand(tmp_path: Any) -> None:
             own = found["measures"][name][road]
             assert own["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(count))
             assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+
+
+def test_a_part_on_seat_and_pins_lies_as_its_datum_frame_does(tmp_path: Path) -> None:
+    """A mate by plane, hole and hole is the frame A | B | C, so the fixture sees the slot's own position.
+
+    Its middle is a normal of 3 sigma = 0.375 mm, cut off there; twice its offset is within what is inspected.
+    """
+    count = 20_000
+    found = run_scene(FOLDER / "part_in_fixture.yaml", overrides=Overrides(trials=count), out=tmp_path / "run")
+    shape = 1 - 6 * math.exp(-4.5) / math.sqrt(2 * math.pi) / math.erf(3 / math.sqrt(2))
+    sigma = 375 / 3 * math.sqrt(shape)
+    own = found.summary["measures"]["slot 2 over pin B"]["geometric"]
+    assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+    assert own["mean"] == pytest.approx(175_000, abs=4 * sigma / math.sqrt(count))
+    trials = found.columns("geometric:slot 2 over pin B", "geometric:inspected Position.2")
+    height, inspected = trials.values()
+    assert (2 * abs(height - 175_000.0) <= inspected + 1e-3).all()  # um
+
+
+@pytest.mark.slow
+def test_the_bracket_s_bores_are_nominally_on_the_axes_of_the_box_s_holes(run_of: Callable[[str], Run]) -> None:
+    """By its drawing and the place where it stands; its foot is 3.03784 mm over the floor, -101.10216 + 104.14 mm."""
+    measures = run_of("bracket_in_box").summary["measures"]
+    for name, own in measures.items():
+        if name.endswith((" across", " up")):
+            assert max(map(abs, own["nominal"].values())) < 2e-3  # um; files have 7 digits
+    assert measures["foot over floor"]["nominal"]["geometric"] == pytest.approx(3037.84, abs=1e-5)
+    assert measures["left shaft 1"]["nominal"]["geometric"] == pytest.approx(10_000, abs=1e-2)
