@@ -139,8 +139,8 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     assert isinstance(system, AssemblySystem)
     road = system.road("exact", system.materials("exact"))
     said = {int(row["id"]): row["kind"] for row in ROWS if row["class"] == "said" and row["model"] == named(model)}
-    inspected = {own.name: own.needs[0].source for own in draft.entries if own.section == "measures" and own.needs}
-    inspected = {name: number for name, number in inspected.items() if number in said}
+    sources = {own.name: own.needs[0].source or 0 for own in draft.entries if own.section == "measures" and own.needs}
+    inspected = {name: number for name, number in sources.items() if number in said}
     assert {*inspected.values()} == {number for number, kind in said.items() if kind != "flatness"}
     reached = dict.fromkeys(inspected, 0.0)
     for first in range(0, MANY, BLOCK):
