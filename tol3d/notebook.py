@@ -27,14 +27,16 @@ from tol3d.analyses.sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.sweep import sweep as swept
 from tol3d.analyses.sweep_table import sweep_report, whole_table
 from tol3d.analyses.variants import variable
-from tol3d.errors import InputError, unwritable
+from tol3d.errors import InputError, RunError, unwritable
 from tol3d.gearing.model import Model
 from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array
 from tol3d.report.page import Page, page
 from tol3d.report.presenter import Display, Which, presenter_at
+from tol3d.report.report_sections import report_sections
 from tol3d.report.sheet import as_text
+from tol3d.report.table_files import ReportFormat, require_room_for_tables, write_tables
 from tol3d.report.verdict import ACCEPTED_PPM
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.run import Run, open_run
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
     from tol3d.report.export import Exported
 
 
+REPORT: Final = "report.html"  # in a run's folder
 TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
 
 
@@ -274,29 +277,36 @@ def write_report(
     accepted_ppm: float = ACCEPTED_PPM,
     trials: Sequence[int] = (),
     in_3d: bool = True,
+    format: ReportFormat = "html",
     force: bool = False,
 ) -> Path:
-    """Write a run, or several compared, as one page of HTML, as `tol3d report` does.
+    """Write a run, or several compared, as one page of HTML or as tables, as `tol3d report` does.
 
     Args:
         runs: finished runs, or their folders.
-        out: the file.
+        out: the file; of "csv" a folder, which gets a file for each table.
         accepted_ppm: share of trials that may be out of a measure's limits.
         trials: which the 3D view has besides the nominal build and the worst one.
         in_3d: whether the parts are shown in 3D, which takes a megabyte.
-        force: replace a file that is there.
+        format: "html" the page; "xlsx", "csv" and "json" its tables, numbers with all their digits.
+        force: replace what is there.
 
     Raises:
         RunError: one is no run, or changed since. InputError: the file is there, or cannot be written.
     """
     path = Path(out)
-    if path.exists() and not force:
+    opened = [opened_run(run) for run in ([runs] if isinstance(runs, Run | Path | str) else runs)]
+    if format == "csv":
+        require_room_for_tables(path, force=force)
+    elif path.is_dir():
+        raise InputError(f"{path}: expected the name of a file, this is a folder")
+    elif path.exists() and not force:
         raise InputError(f"{path}: expected the name of a new file, there is one already; --force replaces it")
-    several = [runs] if isinstance(runs, Run | Path | str) else runs
+    analyses = kept_pages(opened[0]) if len(opened) == 1 else {}
+    if format != "html":
+        return write_tables(report_sections(opened, accepted_ppm, analyses), path, format, _about(opened))
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
-    opened = [opened_run(run) for run in several]
-    analyses = kept_pages(opened[0]) if len(opened) == 1 else {}
     text = report.report_html(
         opened, analyses=analyses, accepted_ppm=accepted_ppm, trials=trials, in_3d=in_3d, made=made
     )
@@ -305,6 +315,31 @@ def write_report(
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
     return path
+
+
+def keep_report(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> Path:
+    """Write a run's report into its own folder, in place of an older one, as `tol3d run --report` does.
+
+    Raises:
+        RunError: a file of that name is none of the run's own, or the folder cannot be written.
+    """
+    path, manifest = run.path / REPORT, run.manifest
+    if path.exists() and REPORT not in manifest.sums:
+        raise RunError(f"{path}: expected no such file, for it is none of the run's own; move it elsewhere")
+    write_report(run, path, accepted_ppm=accepted_ppm, force=True)
+    manifest.adding(REPORT).write()
+    return path
+
+
+def _about(runs: Sequence[Run]) -> Mapping[str, object]:
+    """What stands beside the tables of a report."""
+    return {
+        "runs": [
+            {"run": run.path.name, "scene": run.found.scene, "trials": run.trials, "seed": run.found.seed}
+            for run in runs
+        ],
+        "tol3d": version("tol3d"),
+    }
 
 
 def export_trial(

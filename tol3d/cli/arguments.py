@@ -130,6 +130,7 @@ NoTrials = Annotated[bool, typer.Option("--no-trials", help="Keep statistics onl
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Go on with an interrupted run, or mend a damaged one; never start anew.")
 ]
+ReportOption = Annotated[bool, typer.Option("--report", help="Write its report too, report.html in its folder.")]
 NoPicture = Annotated[bool, typer.Option("--no-picture", help="Draw nothing.")]
 PicturesOption = Annotated[
     PicturesWord | None,

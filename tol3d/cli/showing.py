@@ -155,25 +155,55 @@ def compare(
     tell(f"picture: {out}")
 
 
+class ReportFormatWord(StrEnum):
+    """Files that a report may be."""
+
+    HTML = "html"
+    XLSX = "xlsx"
+    CSV = "csv"
+    JSON = "json"
+
+
 def report(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
-    out: Annotated[Path, typer.Option(help="The page to write.")] = Path("report.html"),
+    out: Annotated[
+        Path | None,
+        typer.Option(help="The file to write; by default report.html, .xlsx or .json, of csv the folder report-csv."),
+    ] = None,
+    format: Annotated[
+        ReportFormatWord,
+        typer.Option(
+            help="html: the page; its tables as xlsx: a workbook, csv: a file each in a folder, json: one file."
+        ),
+    ] = ReportFormatWord.HTML,
     trials: Annotated[
         str, typer.Option("--trials", metavar="N,…", help="Trials that its 3D view has besides nominal and worst.")
     ] = "",
     no_3d: Annotated[bool, typer.Option("--no-3d", help="Leave out the parts in 3D: a tenth of the size.")] = False,
     accept: AcceptOption = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace a file that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace what is there.")] = False,
 ) -> None:
-    """Write a run, or several compared, as one page that opens anywhere: verdict, tables, charts, provenance."""
+    """Write a run, or several compared, as one page that opens anywhere, or as its tables."""
+    from tol3d.errors import InputError
     from tol3d.notebook import write_report
     from tol3d.report.verdict import ACCEPTED_PPM
 
+    if format is not ReportFormatWord.HTML and (trials or no_3d):
+        raise InputError(f"{'--trials' if trials else '--no-3d'}: is of the page; leave it out with --format {format}")
     accepted = ACCEPTED_PPM if accept is None else accept
     chosen = [whole(0)(own.strip()) for own in trials.split(",") if own.strip()]
+    path = out or Path("report-csv" if format is ReportFormatWord.CSV else f"report.{format}")
     with err_console.status("report"):
-        write_report(runs, out, accepted_ppm=accepted, trials=chosen, in_3d=not no_3d, force=force)
-    tell(str(out))
+        write_report(
+            runs,
+            path,
+            accepted_ppm=accepted,
+            trials=chosen,
+            in_3d=not no_3d,
+            format=format.value,
+            force=force,
+        )
+    tell(str(path))
 
 
 TrialOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="This trial.")]

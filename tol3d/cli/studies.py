@@ -22,6 +22,7 @@ from tol3d.cli.arguments import (
     OutOption,
     PicturesOption,
     QuietOption,
+    ReportOption,
     ResumeOption,
     RunBuilders,
     SamplerOption,
@@ -68,6 +69,7 @@ def run(
     fail_on_limits: FailOnLimits = False,
     quiet: QuietOption = False,
     verbose: VerboseOption = False,
+    report: ReportOption = False,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
@@ -120,6 +122,8 @@ def run(
         tell(f"run: {finished.path}{_pictures_text(finished)}")
         if words := pictured(finished, wanted):
             tell(words)
+    if report:
+        _write_report(finished, accepted)
     failed = _out_of_limits(finished) if accept is None else not all_ok(finished.found, accept)
     if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
@@ -150,6 +154,15 @@ def _watched(simulation: "Simulation", folder: Path, draw: "Finisher") -> Iterat
     except KeyboardInterrupt:
         err_console.print(_how_to_resume(folder))
         raise typer.Exit(INTERRUPTED) from None
+
+
+def _write_report(run: "Run", accepted_ppm: float) -> None:
+    """The report of a run, in its folder."""
+    from tol3d.notebook import keep_report
+
+    with err_console.status("report"):
+        path = keep_report(run, accepted_ppm)
+    tell(f"report: {path}")
 
 
 def _pictures_text(run: "Run") -> str:

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 MOST_TEXTS = 20  # warnings below each other
 
+TITLE = "bold cyan"  # style of titles
+
 Style = str
 """Of a terminal: "bold", "dim", "red" ..., "" for none."""
 
@@ -30,12 +32,16 @@ class Shown(str):
 
 @dataclass(frozen=True)
 class Heading:
-    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks."""
+    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks.
+
+    Numbers below a plain one have no unit, whatever their rows have.
+    """
 
     text: str
     style: Style = ""
     words: bool = False
     optional: bool = False
+    plain: bool = False
 
 
 @dataclass(frozen=True)
@@ -115,6 +121,11 @@ class Line:
     def __str__(self) -> str:
         return "".join(text for text, _ in self.pieces)
 
+    @property
+    def title(self) -> str:
+        """Its words as a title of a section, without those beside it; "" where it is none."""
+        return "".join(text for text, style in self.pieces if style == TITLE).strip()
+
     def __rich__(self) -> "RenderableType":
         return _rendered(self)
 
@@ -158,14 +169,15 @@ class Page:
 
     def _titled(self) -> Iterator[tuple[str, Table]]:
         title = ""
-        for block in self._whole_blocks():
+        for block in self.whole_blocks():
             if isinstance(block, Table):
                 yield title, block
                 title = ""
             elif isinstance(block, Line) and any("bold" in style for _, style in block.pieces):
                 title = str(block).strip()
 
-    def _whole_blocks(self) -> "Iterator[PageItem]":
+    def whole_blocks(self) -> "Iterator[PageItem]":
+        """Its blocks, and those that are left out where it is shown."""
         for block in self.blocks:
             yield block
             if isinstance(block, Line) and block.stands_for is not None:
@@ -190,7 +202,7 @@ BLANK = line("")
 
 def title(text: str, more: str = "") -> Line:
     """The title of a section, and words beside it; a blank line stands above it."""
-    return Line((("\n", ""), (text, "bold cyan"), (more, "dim")) if more else (("\n", ""), (text, "bold cyan")))
+    return Line((("\n", ""), (text, TITLE), (more, "dim")) if more else (("\n", ""), (text, TITLE)))
 
 
 def note(text: str) -> Line:

@@ -10,7 +10,7 @@ from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, given_text, limit_text, share_text, short_text, unsigned_zero
-from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
+from tol3d.report.page import BLANK, Heading, PageItem, Row, Shown, Table, line, note, title
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
@@ -98,7 +98,7 @@ def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame:
     """A row a measure, of many the worst, by the 3D simulation where there is one."""
     shown = {name: run.measures[name] for name in shown_measures(run.measures)}
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
-    headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk")]
+    headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk", plain=True)]
     limited = any(measure.has_limits for measure in run.measures.values())
     headings += [Heading("Ppk by", words=True)] if limited else []
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
@@ -114,7 +114,7 @@ def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool
     cells += [NOTHING if judged.verdict == "no limits" else _out(judged), _ppk(measure)]
     cells += [_ppk_by(measure)] if limited else []
     cells += [_mostly(measure)] if blame else []
-    return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""))
+    return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""), measure.unit)
 
 
 def ends_of(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:
@@ -142,8 +142,8 @@ def _by_quantiles(measure: MeasureSummary) -> bool:
     return measure.take != "curve" and is_bounded(measure)
 
 
-def _short(value: float | None, unit: str) -> str:
-    return NOTHING if value is None else short_text(value, unit)
+def _short(value: float | None, unit: str) -> Shown:
+    return Shown(NOTHING if value is None else short_text(value, unit), value)
 
 
 def _limits(measure: MeasureSummary) -> str:
@@ -164,9 +164,9 @@ def _out(judged: JudgedMeasure) -> str:
     return f"{share_text(judged.out_ppm)} ({low} to {high})"
 
 
-def _ppk(measure: MeasureSummary) -> str:
+def _ppk(measure: MeasureSummary) -> Shown:
     value = measure.shares.ppk
-    return NOTHING if value is None else unsigned_zero(f"{value:.2f}")
+    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.2f}"), value)
 
 
 def _ppk_by(measure: MeasureSummary) -> str:

@@ -3,9 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from tol3d.report.html.tags import Inside, Markup, lines, tag, together
-from tol3d.report.page import Branch, Heading, Line, Page, PageItem, Row, Shown, Table
-
-SECTION = "bold cyan"  # style of titles
+from tol3d.report.page import TITLE, Branch, Heading, Line, Page, PageItem, Row, Shown, Table
 
 
 def page_html(page: Page) -> str:
@@ -37,8 +35,8 @@ def _branch(branch: Branch) -> Markup:
 
 def _line(block: Line, level: int) -> Markup:
     pieces = [(text, style) for text, style in block.pieces if text.strip("\n") or text.strip()]
-    if any(style == SECTION for _, style in pieces):
-        return tag(f"h{level}", *_pieces([(text, "" if style == SECTION else style) for text, style in pieces]))
+    if any(style == TITLE for _, style in pieces):
+        return tag(f"h{level}", *_pieces([(text, "" if style == TITLE else style) for text, style in pieces]))
     kind = "note" if block.note else "warning" if any("yellow" in style for _, style in pieces) else None
     return tag("p", *_pieces(pieces), class_=kind)
 

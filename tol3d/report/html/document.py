@@ -12,10 +12,10 @@ import numpy as np
 
 from tol3d.errors import InputError, RunError, SceneError
 from tol3d.report.bars import Bars
-from tol3d.report.compare import comparison_report, difference_of, labelled, measures_of
+from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.distribution import samples_of
-from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
-from tol3d.report.html.blocks import page_blocks, table
+from tol3d.report.heading import WORST_FIRST, shown_measures
+from tol3d.report.html.blocks import page_blocks
 from tol3d.report.html.curve_chart import curve_chart
 from tol3d.report.html.difference_chart import difference_chart
 from tol3d.report.html.histogram_chart import histogram_chart
@@ -24,12 +24,25 @@ from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.html.view_3d import view_3d
 from tol3d.report.joint import correlation_blocks
-from tol3d.report.number import number_text, share_text
-from tol3d.report.page import Heading, Page, PageItem, Row, Table, note, warning
+from tol3d.report.number import share_text
+from tol3d.report.page import Page, Table, note, warning
 from tol3d.report.presenter import Presenter, presenter_of
-from tol3d.report.published import published_blocks
+from tol3d.report.report_sections import (
+    CORRELATIONS,
+    MEASURES,
+    MORE,
+    PROVENANCE,
+    RUNS,
+    TRIALS,
+    VERDICT,
+    compared_blocks,
+    more_blocks,
+    provenance_blocks,
+    runs_blocks,
+    trials_blocks,
+)
 from tol3d.report.shown_unit import shown_run
-from tol3d.report.table import meanings, measure_blocks, status_line
+from tol3d.report.table import meanings, measure_blocks
 from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, verdict_report
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
@@ -109,21 +122,21 @@ def _single(
     run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials: Sequence[int] | None
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
-    sections: dict[str, Inside] = {"verdict": together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
+    sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
     sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
-    sections["measures"] = together(*_measures(run, shown, presenter))
-    if own := page_blocks([*presenter.sections(found), *published_blocks(found)]):
-        sections["more"] = own
+    sections[MEASURES] = together(*_measures(run, shown, presenter))
+    if own := page_blocks(more_blocks(found, presenter)):
+        sections[MORE] = own
     if matrix := matrix_chart(shown):
         sections["which tolerance matters where"] = tag(
             "figure", matrix, tag("figcaption", "share of the variance [%]")
         )
     if pairs := page_blocks(correlation_blocks(found)):
-        sections["correlations"] = pairs
+        sections[CORRELATIONS] = pairs
     if trials is not None:
         sections["in 3D"] = view_3d(run, presenter, trials)
-    sections["trials"] = together(*_trials(shown))
-    sections["provenance"] = together(*_provenance(run))
+    sections[TRIALS] = together(*_trials(shown))
+    sections[PROVENANCE] = page_blocks(provenance_blocks(run))
     anchors = {name: f"section-{number}" for number, name in enumerate(sections)}
     yield tag("nav", tag("ul", *(tag("li", tag("a", name, href=f"#{own}")) for name, own in anchors.items())))
     for name, inside in sections.items():
@@ -225,30 +238,10 @@ def _first_trials(run: Run, column: str, bars: Bars, factor: float) -> Mapping[s
 
 def _trials(run: RunSummary) -> Iterator[Markup]:
     """How many trials ended how, and why."""
-    yield page_blocks([status_line(run)])
-    reasons = {
-        (name, reason): count for name, own in run.measures.items() for reason, count in (own.reasons or {}).items()
-    }
-    if reasons:
-        rows = [Row(name, (reason, str(count))) for (name, reason), count in list(reasons.items())[:MOST_MEASURES]]
-        yield table(Table("measure", [Heading("why builds failed", words=True), Heading("trials")], rows))
+    yield page_blocks(trials_blocks(run))
     if run.witness:
         words = f"witness: {run.witness.engine.upper()} measured {run.witness.trials} of these trials again"
         yield tag("p", f"{words}; what it found stands with each measure", class_="note")
-
-
-def _provenance(run: Run) -> Iterator[Markup]:
-    found = run.found
-    chords = number_text(found.chord_error_um)
-    rows = [
-        Row("seed", (str(found.seed),)),
-        Row("sampler", (found.study.sampler.replace("_", " "),)),
-        Row("engine", (found.engine,)),
-        Row("chord error [µm]", (chords,)),
-        *(Row(f"SHA-256 of {name}", (own,)) for name, own in found.files.items()),
-        *(Row(name, (version,)) for name, version in found.versions.items()),
-    ]
-    yield table(Table("made from", [Heading("", words=True)], rows))
 
 
 # several runs -------------------------------------------------------------------------------------
@@ -256,18 +249,9 @@ def _provenance(run: Run) -> Iterator[Markup]:
 
 def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
     """Runs of one scene, or of scenes that share measures, beside each other."""
-    named = [set(run.found.measures) for run in runs]
-    if not set.intersection(*named):
-        labels = ", ".join(label for label, _ in labelled(runs))
-        raise InputError(f"{labels}: expected runs that share a measure, got none; report each by itself")
-    blocks: list[PageItem] = [*comparison_report(runs).blocks]
-    rows = [
-        Row(label, (run.found.scene, str(run.trials), str(run.found.seed), run.found.engine))
-        for label, run in labelled(runs)
-    ]
-    heads = [Heading("scene", words=True), Heading("trials"), Heading("seed"), Heading("engine", words=True)]
-    yield tag("section", tag("h2", "runs"), table(Table("run", heads, rows)), id="section-0")
-    yield tag("section", tag("h2", "measures"), page_blocks(blocks), id="section-1")
+    blocks = compared_blocks(runs)
+    yield tag("section", tag("h2", RUNS), page_blocks(runs_blocks(runs)), id="section-0")
+    yield tag("section", tag("h2", MEASURES), page_blocks(blocks), id="section-1")
     for measure in measures_of(runs):
         for label, run in measure.found_in(runs):
             own = shown_run(run.found).measures[measure.name]

@@ -1,0 +1,147 @@
+"""What a report says, section by section: a page shows it between its charts, its tables go into files too."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import count
+
+from tol3d.errors import InputError
+from tol3d.report.compare import comparison_report, labelled
+from tol3d.report.heading import MOST_MEASURES, shown_measures
+from tol3d.report.joint import correlation_blocks
+from tol3d.report.number import number_cell
+from tol3d.report.page import Heading, Line, Page, PageItem, Row, Shown, Table
+from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.published import published_blocks
+from tol3d.report.shown_unit import shown_run
+from tol3d.report.table import measure_blocks, status_line
+from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
+from tol3d.runs.run import Run
+from tol3d.runs.summary.run import RunSummary
+
+VERDICT, MORE, CORRELATIONS, TRIALS, PROVENANCE = "verdict", "more", "correlations", "trials", "provenance"
+RUNS, MEASURES = "runs", "measures"
+WIDE = frozenset((MORE, CORRELATIONS, MEASURES))
+"""Sections whose titles say less than those in them."""
+
+
+@dataclass(frozen=True)
+class ReportSection:
+    """Lines and tables below a title."""
+
+    title: str
+    blocks: tuple[PageItem, ...]
+
+
+def report_sections(
+    runs: Sequence[Run], accepted_ppm: float = ACCEPTED_PPM, analyses: Mapping[str, Page] | None = None
+) -> list[ReportSection]:
+    """The sections of one run, or of several beside each other.
+
+    Args:
+        runs: finished ones.
+        accepted_ppm: share of trials that may be out of a measure's limits.
+        analyses: sections of the one run by their titles.
+
+    Raises:
+        InputError: no run, or runs that share no measure.
+    """
+    if not runs:
+        raise InputError("nothing to report: give the folder of at least one run")
+    if len(runs) > 1:
+        return [ReportSection(RUNS, tuple(runs_blocks(runs))), ReportSection(MEASURES, tuple(compared_blocks(runs)))]
+    (run,) = runs
+    shown, presenter = shown_run(run.found), presenter_of(run.found)
+    found = [(VERDICT, verdict_report(shown, accepted_ppm, blame=True))]
+    found += [(title, [*page.blocks]) for title, page in (analyses or {}).items()]
+    for name in shown_measures(shown.measures):
+        found.append((name, measure_blocks(name, shown.measures[name], shown, presenter)))
+    found += [
+        (MORE, more_blocks(run.found, presenter)),
+        (CORRELATIONS, correlation_blocks(run.found)),
+        (TRIALS, trials_blocks(shown)),
+        (PROVENANCE, provenance_blocks(run)),
+    ]
+    return [ReportSection(title, tuple(blocks)) for title, blocks in found if blocks]
+
+
+def more_blocks(run: RunSummary, presenter: Presenter) -> list[PageItem]:
+    """What its system shows besides, and what others have published."""
+    return [*presenter.sections(run), *published_blocks(run)]
+
+
+def trials_blocks(run: RunSummary) -> list[PageItem]:
+    """How many trials ended how, and why."""
+    found: list[PageItem] = [status_line(run)]
+    reasons = [
+        Row(name, (reason, Shown(str(count), count)))
+        for name, own in run.measures.items()
+        for reason, count in (own.reasons or {}).items()
+    ]
+    if reasons:
+        heads = [Heading("why builds failed", words=True), Heading("trials")]
+        found.append(Table("measure", heads, reasons[:MOST_MEASURES]))
+    return found
+
+
+def provenance_blocks(run: Run) -> list[PageItem]:
+    """What a run was made from: seed, engine, checksums, versions."""
+    found = run.found
+    rows = [
+        Row("seed", (str(found.seed),)),
+        Row("sampler", (found.study.sampler.replace("_", " "),)),
+        Row("engine", (found.engine,)),
+        Row("chord error [µm]", (number_cell(found.chord_error_um),)),
+        *(Row(f"SHA-256 of {name}", (own,)) for name, own in found.files.items()),
+        *(Row(name, (version,)) for name, version in found.versions.items()),
+    ]
+    return [Table("made from", [Heading("", words=True)], rows)]
+
+
+def runs_blocks(runs: Sequence[Run]) -> list[PageItem]:
+    """Which runs are beside each other."""
+    rows = [
+        Row(label, (run.found.scene, Shown(str(run.trials), run.trials), str(run.found.seed), run.found.engine))
+        for label, run in labelled(runs)
+    ]
+    heads = [Heading("scene", words=True), Heading("trials"), Heading("seed"), Heading("engine", words=True)]
+    return [Table("run", heads, rows)]
+
+
+def compared_blocks(runs: Sequence[Run]) -> list[PageItem]:
+    """The measures that runs share, beside each other.
+
+    Raises:
+        InputError: they share none.
+    """
+    if not set.intersection(*(set(run.found.measures) for run in runs)):
+        labels = ", ".join(label for label, _ in labelled(runs))
+        raise InputError(f"{labels}: expected runs that share a measure, got none; report each by itself")
+    return [*comparison_report(runs).blocks]
+
+
+def section_tables(sections: Sequence[ReportSection]) -> Iterator[tuple[str, Table]]:
+    """Every table with a name of its own: its section, the title above it, and what sets it apart from others."""
+    names = set[str]()
+    for section in sections:
+        for title, table in _titled(section):
+            name = title if not title or section.title in WIDE else f"{section.title} · {title}"
+            name = name if title and title != section.title else section.title
+            if name in names:
+                name = f"{name} · {table.corner}"
+            first = name
+            for number in count(2):
+                if name not in names:
+                    break
+                name = f"{first} {number}"
+            names.add(name)
+            yield name, table
+
+
+def _titled(section: ReportSection) -> Iterator[tuple[str, Table]]:
+    """Its tables with the last title above each, "" for none."""
+    title = ""
+    for block in Page(section.blocks).whole_blocks():
+        if isinstance(block, Table):
+            yield title, block
+        elif isinstance(block, Line) and block.title:
+            title = block.title
