@@ -52,12 +52,12 @@ def report_sections(
     (run,) = runs
     shown, presenter = shown_run(run.found), presenter_of(run.found)
     found = [(VERDICT, verdict_report(shown, accepted_ppm, blame=True))]
-    found += [(title, [*page.blocks]) for title, page in (analyses or {}).items()]
     for name in shown_measures(shown.measures):
         found.append((name, measure_blocks(name, shown.measures[name], shown, presenter)))
     found += [
         (MORE, more_blocks(run.found, presenter)),
         (CORRELATIONS, correlation_blocks(run.found)),
+        *((title, [*page.blocks]) for title, page in (analyses or {}).items()),
         (TRIALS, trials_blocks(shown)),
         (PROVENANCE, provenance_blocks(run)),
     ]

@@ -5,6 +5,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from tol3d.report.html.tags import Inside, Markup, lines, tag, together
 from tol3d.report.page import TITLE, Branch, Heading, Line, Page, PageItem, Row, Shown, Table
 
+SHORT, LONG = 16, 40
+"""Signs of a cell that is not broken, and of a word that is broken."""
+
 
 def page_html(page: Page) -> str:
     """A page by itself, as notebooks show it."""
@@ -64,7 +67,18 @@ def _row(row: Row, headings: Sequence[Heading]) -> Markup:
     return tag("tr", tag("th", row.label, scope="row"), *cells, class_=row.style or None)
 
 
+def _class_of(text: str) -> str:
+    """How words may break: short ones stay whole, one without a blank breaks anywhere."""
+    if len(text) <= SHORT:
+        return "words short"
+    return "words long" if max(map(len, text.split()), default=0) > LONG else "words"
+
+
 def _cell(cell: str, heading: Heading, row: Row) -> Markup:
     value = cell.value if isinstance(cell, Shown) else None
-    words = "words" if heading.words else "number"
-    return tag("td", cell, class_=words, data_value=None if value is None else repr(float(value)))
+    return tag(
+        "td",
+        cell,
+        class_=_class_of(cell) if heading.words else "number",
+        data_value=None if value is None else repr(float(value)),
+    )

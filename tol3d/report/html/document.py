@@ -128,7 +128,6 @@ def _single(
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
     sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
-    sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
@@ -138,6 +137,7 @@ def _single(
         )
     if pairs := page_blocks(correlation_blocks(found)):
         sections[CORRELATIONS] = pairs
+    sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
     if trials is not None:
         sections["in 3D"] = view_3d(run, presenter, trials)
     sections[TRIALS] = together(*_trials(shown))
