@@ -5,6 +5,7 @@ picture lies. Libraries that draw are loaded by who asks for a drawing.
 """
 
 import operator
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -39,6 +40,7 @@ from tol3d.report.sheet import as_text
 from tol3d.report.table_files import ReportFormat, require_room_for_tables, write_tables
 from tol3d.report.verdict import ACCEPTED_PPM
 from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.bare import MissingMechanismWarning, open_even_bare
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Scene
 from tol3d.scene.edit import tolerance_lines
@@ -295,20 +297,30 @@ def write_report(
         RunError: one is no run, or changed since. InputError: the file is there, or cannot be written.
     """
     path = Path(out)
-    opened = [opened_run(run) for run in ([runs] if isinstance(runs, Run | Path | str) else runs)]
+    several = [runs] if isinstance(runs, Run | Path | str) else runs
+    found = [(run, "") if isinstance(run, Run) else open_even_bare(run) for run in several]
+    opened, missing = [run for run, _ in found], tuple(dict.fromkeys(words for _, words in found if words))
+    for words in missing:
+        warnings.warn(words, MissingMechanismWarning, stacklevel=2)
     if format == "csv":
         require_room_for_tables(path, force=force)
     elif path.is_dir():
         raise InputError(f"{path}: expected the name of a file, this is a folder")
     elif path.exists() and not force:
         raise InputError(f"{path}: expected the name of a new file, there is one already; --force replaces it")
-    analyses = kept_pages(opened[0]) if len(opened) == 1 else {}
+    analyses = kept_pages(opened[0]) if len(opened) == 1 and not missing else {}
     if format != "html":
         return write_tables(report_sections(opened, accepted_ppm, analyses), path, format, _about(opened))
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
     text = report.report_html(
-        opened, analyses=analyses, accepted_ppm=accepted_ppm, trials=trials, in_3d=in_3d, made=made
+        opened,
+        analyses=analyses,
+        accepted_ppm=accepted_ppm,
+        trials=trials,
+        in_3d=in_3d and not missing,
+        missing=missing,
+        made=made,
     )
     try:
         write_whole(path, text.encode())

@@ -8,17 +8,26 @@ from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
+import trimesh
 from places import ROOT
+from toys.parabola import PARABOLA
+from toys.pins import PINS
+from toys.registered import TOYS, known
 
 from tol3d import InputError, load_scene, run_scene
 from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
 from tol3d.analyses.subject import SECTIONS, Subject
 from tol3d.notebook import write_report
+from tol3d.report.convergence import running
+from tol3d.report.html import view_3d
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
+from tol3d.runs.bare import MissingMechanismWarning
 from tol3d.runs.run import Run
+from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import Execution, Overrides, simulation_again
 
 PACKED = "H4sI"
@@ -187,3 +196,158 @@ def test_the_3d_view_is_the_one_that_was_bundled() -> None:
     assert b"</script" not in bundle
     licence = (ROOT / "tol3d" / "report" / "html" / "LICENSE.three").read_text()
     assert licence.startswith("The MIT License")
+
+
+# runs of every sort -------------------------------------------------------------------------------
+
+
+def _run_of(tmp_path: Path, name: str, trials: int = 60, **replaced: str) -> Run:
+    """A run of a bundled scene, without what others published, in whose text `old => new` is replaced."""
+    text = load_scene(name).source.read_text("utf-8").partition("\npublished:")[0]
+    for words in replaced.values():
+        old, _, new = words.partition(" => ")
+        assert old in text
+        text = text.replace(old, new)
+    path = tmp_path / f"{name}.yaml"
+    path.write_text(text)
+    return run_scene(path, overrides=Overrides(trials=trials, witness=0), out=tmp_path / "run")
+
+
+def test_a_run_with_failed_trials_says_how_many_and_why(tmp_path: Path) -> None:
+    run = _run_of(tmp_path, "spur_pair", 400, closer="centre_distance: 172.5 mm => centre_distance: 172.445 mm")
+    failed = run.trials - run.found.measures["normal backlash"].seated
+    assert 0 < failed < run.trials
+    page = _no_way_out(report_html([run], in_3d=False))
+    assert f"trials: {run.trials - failed} seated, {failed} " in "".join(text for _, text in page.texts)
+    counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
+    assert sum(counted) <= 2 * sum(own.seated for own in run.found.measures.values()), "none of them is in a bar"
+
+
+def test_a_run_without_limits_has_no_verdict_and_no_line_for_one(tmp_path: Path) -> None:
+    run = _run_of(tmp_path, "spur_pair", limit="lower_limit: 15 um => # no limit")
+    text = report_html([run], in_3d=False)
+    assert "no limits to judge" in [*_no_way_out(text).inside("p")]
+    assert 'class="limit"' not in text
+
+
+def test_curves_stand_over_their_positions(tmp_path: Path) -> None:
+    run = run_scene("two_sided_te", overrides=Overrides(trials=40, witness=0), out=tmp_path / "run")
+    page = _no_way_out(report_html([run], in_3d=False))
+    curves = [name for name, own in run.found.measures.items() if own.take == "curve"]
+    assert curves
+    assert {f"{name} over its positions" for name in curves} <= set(page.inside("title"))
+
+
+def test_an_analytic_run_has_one_road_and_no_difference(tmp_path: Path) -> None:
+    run = run_scene("door", overrides=Overrides(trials=60, engine="analytic"), out=tmp_path / "run")
+    page = _no_way_out(report_html([run], in_3d=False))
+    assert "difference of both roads" not in page.inside("title")
+    assert "3D simulation" not in "".join(page.inside("figcaption"))
+
+
+def test_a_mechanism_without_a_presenter_has_tables_and_says_why_nothing_is_in_3d(tmp_path: Path) -> None:
+    with known(PINS):
+        run = run_scene(TOYS / "pins" / "pins.yaml", overrides=Overrides(trials=60), out=tmp_path / "run")
+        page = _no_way_out(report_html([run]))
+    assert sum(own == "svg" for own, _ in page.elements) >= len(run.found.measures)
+    assert [text for text in page.inside("p") if text.startswith("no 3D view: ")]
+
+
+@pytest.mark.parametrize("toy", ["pins", "parabola"])
+def test_a_mechanism_that_is_not_installed_is_named_and_its_run_has_tables(toy: str, tmp_path: Path) -> None:
+    scene, own = {"pins": ("pins/pins.yaml", PINS), "parabola": ("parabola/spring.yaml", PARABOLA)}[toy]
+    with known(own):
+        run = run_scene(TOYS / scene, overrides=Overrides(trials=60), out=tmp_path / "run")
+    with pytest.warns(MissingMechanismWarning, match=f"^the mechanism '{toy}'"):
+        written = write_report(run.path, tmp_path / "report.html")
+    page = _no_way_out(written.read_text())
+    told = [text for text in page.inside("p") if text.startswith(f"the mechanism '{toy}' (Python module 'toys.{toy}.")]
+    assert len(told) == 1
+    values = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
+    for measure in run.summary["measures"].values():
+        assert measure["take"] == "curve" or measure["analytic"]["mean"] in values
+    with pytest.warns(MissingMechanismWarning):
+        files = write_report(run.path, tmp_path / "tables", format="csv")
+    assert (files / "01-verdict.csv").is_file()
+
+
+def test_a_page_does_not_grow_with_the_trials(tmp_path: Path) -> None:
+    """No raw rows: of a hundred times as many only bars, digits of their counts and trials of rarer bars are more."""
+    sizes = []
+    for trials in (2000, 200_000):
+        run = run_scene("door", overrides=Overrides(trials=trials), out=tmp_path / str(trials))
+        sizes.append(len(report_html([run], in_3d=False)))
+    assert sizes[1] < 1.5 * sizes[0]
+
+
+@pytest.mark.parametrize("name", ["<script>alert(1)<img onerror=x>", "\"'>", "&lt;b&gt; <!--", "=1+1 `${x}`"])
+def test_hostile_names_of_parts_and_contributors_are_shown_as_they_are(name: str, tmp_path: Path) -> None:
+    quoted = json.dumps(name)
+    own = f"of: wheel => of: {quoted}", f"  wheel: => \n  {quoted}:", f"driven: wheel => driven: {quoted}"
+    run = _run_of(
+        tmp_path,
+        "spur_pair",
+        of=own[0],
+        part=own[1],
+        driven=own[2],
+        gear=f"gear: wheel => gear: {quoted}",
+        contributor=f"centre distance: => {json.dumps(name + ' moves')}:",
+    )
+    page = _no_way_out(report_html([run]))
+    assert f"{name} moves" in [*page.inside("th")]
+    assert [text for text in page.inside("label") if text.strip() == name], "a part in the 3D view"
+    assert sum(own == "script" and "type" not in said for own, said in page.elements) == 2
+
+
+def test_parts_that_make_a_page_large_have_coarser_facets_and_it_says_which(
+    spur: Run, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(view_3d, "MOST", 60_000)
+    coarse = report_html([spur])
+    assert "coarser facets, for the size of this page: pinion, wheel" in [*_no_way_out(coarse).inside("p")]
+    models = [next(own for own in _Read(each).inside("script") if own.startswith(PACKED)) for each in (text, coarse)]
+    assert len(models[1]) < 60_000 * 4 / 3 + 4 < len(models[0])
+
+
+def test_a_coarser_surface_keeps_its_box_and_its_volume() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=10.0)
+    vertices, triangles = view_3d.fewer_facets(ball.vertices, ball.faces, 0.2)
+    assert 0.1 < len(triangles) / len(ball.faces) < 0.25
+    assert trimesh.Trimesh(vertices, triangles).volume == pytest.approx(ball.volume, rel=0.02)
+    assert np.ptp(vertices, axis=0) == pytest.approx([20.0, 20.0, 20.0], rel=0.02)
+
+
+@pytest.mark.parametrize("pieces", [(300,), (1, 299), (128, 128, 44)])
+def test_means_and_sigmas_of_the_first_trials_are_those_of_numpy_however_they_are_read(pieces: tuple[int, ...]) -> None:
+    values = 1e6 + np.random.default_rng(3).normal(size=300)
+    parts = np.split(values, np.cumsum(pieces)[:-1])
+    found = running(parts, np.array([10, 50, 128, 129, 300]))
+    assert [*found.counts] == [10, 50, 128, 129, 300]
+    expected = [(values[:n].mean(), values[:n].std(ddof=1)) for n in (10, 50, 128, 129, 300)]
+    assert np.column_stack([found.mean, found.sigma]) == pytest.approx(np.array(expected), rel=1e-8)
+    assert running(parts, np.array([10, 400])).counts.tolist() == [10, 300], "as many as there are"
+
+
+def test_several_runs_say_why_they_have_no_3d(spur: Run, tmp_path: Path) -> None:
+    other = run_scene("spur_pair", overrides=Overrides(trials=100, seed=2, witness=0), out=tmp_path / "other")
+    assert [text for text in _no_way_out(report_html([spur, other])).inside("p") if text.startswith("no 3D view of")]
+
+
+def test_a_run_shows_itself_in_notebooks(spur: Run) -> None:
+    page = _Read(spur._repr_html_())
+    told = " ".join(text for _, text in page.texts)
+    assert "spur pair at the drive end" in told
+    assert "trials: 300 seated, none failed" in told
+    values = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
+    sample = spur.found.measures["normal backlash"].geometric
+    assert sample is not None
+    assert sample.mean in values
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", bundled_scenes())
+def test_every_bundled_scene_has_a_page(name: str, tmp_path: Path) -> None:
+    run = run_scene(name, overrides=Overrides(trials=24, witness=0), out=tmp_path / name)
+    page = _no_way_out(report_html([run], in_3d=False))
+    assert sum(own == "svg" for own, _ in page.elements) >= min(len(run.found.measures), 20)
+    assert "provenance" in page.inside("h2")

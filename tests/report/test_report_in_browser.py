@@ -1,5 +1,6 @@
 """Reports as a reader sees them, in Chromium: the picture is judged, not that there is one."""
 
+import json
 import re
 import zlib
 from collections.abc import Iterator
@@ -100,6 +101,22 @@ def test_a_page_says_nothing_asks_nothing_and_fits(page: Page, written: Path) ->
     assert page.told == []
     assert {own.partition(":")[0] for own in page.asked} <= {"file", "data"}
     assert all(own == written.resolve().as_uri() for own in page.asked if own.startswith("file"))
+
+
+def test_numbers_in_the_page_are_those_of_the_summary_to_the_digits_shown(page: Page, spur: Run, written: Path) -> None:
+    page.open(written)
+    cells = page.ask(
+        "[...document.querySelectorAll('td[data-value]')].map(own => [own.dataset.value, own.textContent])"
+    )
+    summary = json.loads((spur.path / "summary.json").read_text("utf-8"))
+    own = summary["measures"]["normal backlash"]
+    for road in ("analytic", "geometric"):
+        for key in ("mean", "sigma", "low_3sigma", "high_3sigma", "p50", "sample_min", "sample_max"):
+            assert f"{own[road][key]:.3f}" in {text for value, text in cells if float(value) == own[road][key]}, key
+    plain = [(float(value), text) for value, text in cells if re.fullmatch(r"-?\d+\.\d+", text)]
+    assert len(plain) > 40
+    for value, text in plain:
+        assert abs(value - float(text)) <= 0.5001 * 10.0 ** -len(text.partition(".")[2])
 
 
 def test_a_bar_lists_its_trials_with_the_commands_that_show_them(page: Page, spur: Run, written: Path) -> None:

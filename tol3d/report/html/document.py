@@ -73,6 +73,7 @@ def report_html(
     analyses: Mapping[str, Page] | None = None,
     trials: Sequence[int] = (),
     in_3d: bool = True,
+    missing: Sequence[str] = (),
     made: str = "",
 ) -> str:
     """One run, or several beside each other, as a page.
@@ -83,6 +84,7 @@ def report_html(
         analyses: sections of the first run by their titles.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
         in_3d: whether the first run's parts are shown in 3D.
+        missing: what is left out, and why.
         made: when and where, the one element that differs between two reports of the same runs.
 
     Raises:
@@ -92,7 +94,7 @@ def report_html(
     first = runs[0].found if runs else None
     if first is None:
         raise InputError("nothing to report: give the folder of at least one run")
-    body = [tag("h1", first.scene), *_head(runs[0])]
+    body = [tag("h1", first.scene), *_head(runs[0]), *(tag("p", own, class_="warning") for own in missing)]
     body += (
         [*_compared(runs)]
         if len(runs) > 1
