@@ -17,6 +17,7 @@ from toys.pins import PINS
 from toys.registered import TOYS, known
 
 from tol3d import InputError, load_scene, run_scene
+from tol3d.analyses.effects import effects
 from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
 from tol3d.analyses.subject import SECTIONS, Subject
@@ -158,8 +159,15 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
 def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> None:
     subject = Subject(simulation_again(spur), spur)
     subject.keep("methods", methods(subject.response.of("lost motion")))
+    found = effects(subject.response.of("normal backlash", "lost motion"), base=128)
+    subject.keep("effects", found)
     page = _Read(write_report(spur, tmp_path / "report.html", in_3d=False).read_text())
-    assert "methods side by side" in page.inside("h2")
+    assert {"methods side by side", "effects"} <= set(page.inside("h2"))
+    own = found.measures["lost motion"].contributors["centre distance"]
+    assert own.total is not None
+    assert f"centre distance, lost motion: {100 * own.total.share:.1f} %" in page.inside("title")
+    values = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
+    assert 100 * own.total.share in values, "the column says per cent"
     assert set(TITLES) == set(SECTIONS), "every section has a page"
 
 

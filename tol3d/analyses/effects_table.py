@@ -94,7 +94,7 @@ def _share(own: Index | None) -> Shown:
         return Shown(NOTHING, None)
     reach = (own.high - own.low) / 2
     text = f"{100 * own.share:.1f}".replace("-0.0", "0.0")
-    return Shown(f"{text} ±{100 * reach:.1f}" if reach > 0.0 else text, own.share)
+    return Shown(f"{text} ±{100 * reach:.1f}" if reach > 0.0 else text, 100 * own.share)
 
 
 def _number(value: float | None) -> Shown:

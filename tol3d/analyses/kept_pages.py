@@ -5,7 +5,7 @@ from typing import Final
 
 from tol3d.analyses.allocate import Allocation
 from tol3d.analyses.allocate_table import allocation_report
-from tol3d.analyses.effects import Effects
+from tol3d.analyses.effects import Effects, MeasureEffects
 from tol3d.analyses.effects_table import effects_report
 from tol3d.analyses.methods_section import Methods
 from tol3d.analyses.methods_table import methods_report
@@ -39,6 +39,24 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
     """
     found = sections_of(run)
     return {title: _page(run, found[name]) for name, title in TITLES.items() if name in found}
+
+
+def kept_shares(run: Run) -> Mapping[str, Mapping[str, Mapping[str, float]]]:
+    """Shares of contributors [%] by measure, of the sections that have them, by the sections' titles.
+
+    Raises:
+        RunError: one was changed since it was made.
+    """
+    effects = sections_of(run).get("effects")
+    if not isinstance(effects, Effects):
+        return {}
+    return {TITLES["effects"]: {name: _totals(own) for name, own in effects.measures.items()}}
+
+
+def _totals(own: MeasureEffects) -> Mapping[str, float]:
+    """Total Sobol' indices [%], Shapley effects where there are some."""
+    shown = {name: each.shapley or each.total for name, each in own.contributors.items()}
+    return {name: 100 * max(index.share, 0.0) for name, index in shown.items() if index is not None}
 
 
 def _page(run: Run, own: Section) -> Page:

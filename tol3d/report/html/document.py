@@ -21,7 +21,7 @@ from tol3d.report.html.convergence_chart import POINTS, convergence_chart
 from tol3d.report.html.curve_chart import curve_chart
 from tol3d.report.html.difference_chart import difference_chart
 from tol3d.report.html.histogram_chart import histogram_chart
-from tol3d.report.html.matrix_chart import matrix_chart
+from tol3d.report.html.matrix_chart import FEWEST, Shares, matrix, matrix_chart
 from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.html.view_3d import view_3d
@@ -71,6 +71,7 @@ def report_html(
     *,
     accepted_ppm: float = ACCEPTED_PPM,
     analyses: Mapping[str, Page] | None = None,
+    shares: Mapping[str, Shares] | None = None,
     trials: Sequence[int] = (),
     in_3d: bool = True,
     missing: Sequence[str] = (),
@@ -82,6 +83,7 @@ def report_html(
         runs: finished ones.
         accepted_ppm: share of trials that may be out of a measure's limits.
         analyses: sections of the first run by their titles.
+        shares: of contributors [%] by measure, of sections that have them.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
         in_3d: whether the first run's parts are shown in 3D.
         missing: what is left out, and why.
@@ -98,7 +100,7 @@ def report_html(
     body += (
         [*_compared(runs)]
         if len(runs) > 1
-        else [*_single(runs[0], accepted_ppm, analyses or {}, trials if in_3d else None)]
+        else [*_single(runs[0], accepted_ppm, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
     )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
@@ -126,20 +128,18 @@ def _described(run: Run) -> str:
 
 
 def _single(
-    run: Run, accepted_ppm: float, analyses: Mapping[str, Page], trials: Sequence[int] | None
+    run: Run, accepted_ppm: float, kept: Mapping[str, Markup], trials: Sequence[int] | None
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
     sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
-    if matrix := matrix_chart(shown):
-        sections["which tolerance matters where"] = tag(
-            "figure", matrix, tag("figcaption", "share of the variance [%]")
-        )
+    if chart := matrix_chart(shown):
+        sections["which tolerance matters where"] = _matrix(chart)
     if pairs := page_blocks(correlation_blocks(found)):
         sections[CORRELATIONS] = pairs
-    sections |= {name: page_blocks(page.blocks) for name, page in analyses.items()}
+    sections |= kept
     if trials is not None:
         sections["in 3D"] = view_3d(run, presenter, trials)
     sections[TRIALS] = together(*_trials(shown))
@@ -148,6 +148,16 @@ def _single(
     yield tag("nav", tag("ul", *(tag("li", tag("a", name, href=f"#{own}")) for name, own in anchors.items())))
     for name, inside in sections.items():
         yield tag("section", tag("h2", name), inside, id=anchors[name])
+
+
+def _kept(analyses: Mapping[str, Page], shares: Mapping[str, Shares]) -> Mapping[str, Markup]:
+    """Sections of analyses, with the matrix of contributors and measures where they have one."""
+    matrices = {title: [_matrix(matrix(own))] for title, own in shares.items() if len(own) >= FEWEST}
+    return {title: together(page_blocks(page.blocks), *matrices.get(title, [])) for title, page in analyses.items()}
+
+
+def _matrix(chart: Markup) -> Markup:
+    return tag("figure", chart, tag("figcaption", "share of the variance [%]"))
 
 
 def _presenter(run: RunSummary) -> Presenter:

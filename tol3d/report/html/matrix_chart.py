@@ -1,5 +1,6 @@
 """The matrix of contributors and measures: which tolerance matters where."""
 
+from collections.abc import Mapping
 from typing import Final
 
 from tol3d.report.heading import largest, shown_measures
@@ -8,6 +9,9 @@ from tol3d.report.html.axis import WIDTH, chart
 from tol3d.report.html.tags import Markup, tag
 from tol3d.report.label import legible
 from tol3d.runs.summary.run import RunSummary
+
+Shares = Mapping[str, Mapping[str, float]]
+"""Of contributors [%], by measure."""
 
 MOST_COLUMNS, MOST_ROWS = 24, 40
 NAMES, CELL = 230.0, 18.0
@@ -23,11 +27,15 @@ def matrix_chart(run: RunSummary) -> Markup | None:
     every = of_scalars(run)
     if len(every) < FEWEST:
         return None
-    names = shown_measures(every, MOST_COLUMNS)
-    shares = {name: percents_of(every[name]) for name in names}
+    return matrix({name: percents_of(every[name]) for name in shown_measures(every, MOST_COLUMNS)})
+
+
+def matrix(shares: Shares) -> Markup:
+    """Shares [%] by measure and contributor, the largest contributors in the first measures."""
+    names = [*shares][:MOST_COLUMNS]
     sums: dict[str, float] = {}
-    for own in shares.values():
-        for contributor, share in own.items():
+    for name in names:
+        for contributor, share in shares[name].items():
             sums[contributor] = sums.get(contributor, 0.0) + share
     rows = largest(sorted(sums, key=lambda each: -sums[each]), sums, MOST_ROWS)
     wide = min(CELL * 2, (WIDTH - NAMES - 10) / len(names))
