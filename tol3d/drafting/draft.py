@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.drafting.drawing import source
+from tol3d.drafting.entry import LAW as LAW_HERE
 from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import fixture
 from tol3d.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
 from tol3d.drafting.touching import between, moves
-from tol3d.drafting.words import Names, cleaned, comment, scalar
+from tol3d.drafting.words import Names, cleaned, comment, length, scalar
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
 from tol3d.scene.nearest import hint
@@ -17,8 +18,10 @@ from tol3d.step.found import FoundFeature
 from tol3d.step.refused import StepError, shown
 
 LAW: Final = "{kind: normal}"
+GUESS: Final = 0.1  # mm; zones where no file states any
 MOST_TRIES: Final = 200
 TRIALS: Final = 10_000
+LONGEST: Final = 240  # characters of a reason
 
 
 @dataclass(frozen=True)
@@ -79,9 +82,9 @@ class Draft:
             if not standing:
                 refused = next((each.refused for each in made if each.refused), "")
                 reason = refused or reasons.get(tolerance.id) or meaning.why or "its part is not in the scene"
-                left.append(f"{source(tolerance)}: {comment(reason)}")
+                left.append(f"{source(tolerance)}: {comment(reason, LONGEST)}")
             elif meaning.why or why:
-                lost.append(f"{source(tolerance)}: {comment('; '.join(filter(None, (meaning.why, why))))}")
+                lost.append(f"{source(tolerance)}: {comment('; '.join(filter(None, (meaning.why, why))), LONGEST)}")
         count = len(own.text.tolerances)
         said = count - len(lost) - len(left)
         name = comment(own.file.content.path.name)
@@ -114,10 +117,10 @@ class Draft:
                     if dimension.role == "reference"
                     else "it states no limits"
                     if dimension.limits is None
-                    else f"a {comment(dimension.kind)} of what the scene does not use, or uses already"
+                    else f"{comment(dimension.kind)} of what the scene does not use, or uses already"
                 )
             )
-            left.append(f"#   {comment(str(dimension))}: #{dimension.id}: {comment(why)}")
+            left.append(f"#   {comment(str(dimension))}: #{dimension.id}: {comment(why, LONGEST)}")
         count = len(own.text.dimensions)
         if count:
             yield f"# Of its {count} dimensions {count - len(left)} are said, {len(left)} not:"
@@ -144,7 +147,20 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
         seated(part, face, other, there)
     said = [entry for part in parts if part.drawing is not None for entry in part.drawing.entries]
     placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
-    return Draft(files, parts, [*said, *placed, *something(parts, [*said, *placed], names)])
+    made = [*said, *placed, *something(parts, [*said, *placed], names)]
+    return Draft(files, parts, [*made, *(() if said else guessed(parts, names))])
+
+
+def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
+    """Zones of all that the scene names, where no file states a tolerance: a list of contributors to begin with."""
+    for part in parts:
+        for group in () if part.like else part.features.groups:
+            flat = group.kind == "plane"
+            zone = f"{{width: {length(GUESS)}}}" if flat else f"{{diameter: {length(GUESS)}}}"
+            kind = "profile" if flat else "position"
+            words = f"{{kind: {kind}, of: {part.of(group.name)}, zone: {zone}, law: {LAW_HERE}}}"
+            name = names.new(f"{part.name} {group.name}", kind, len(group.members))
+            yield Entry("tolerances", scalar(name), [Wording((words,), "guess: the files state no tolerance")])
 
 
 def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Names) -> Iterator[Entry]:

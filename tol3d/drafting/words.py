@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from tol3d.numerics.arrays import Array
-from tol3d.step.refused import shown
+from tol3d.step.refused import LONGEST_SHOWN
 
 PLAIN: Final = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.()+ -]*[A-Za-z0-9_)])?")
 """Texts that YAML reads as they stand, but for its own words."""
@@ -36,9 +36,10 @@ def _escaped(sign: str) -> str:
     return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
 
 
-def comment(text: str) -> str:
+def comment(text: str, longest: int = LONGEST_SHOWN) -> str:
     """What a file says, as it may stand in a comment: on one line, printable, cut where it is long."""
-    return " ".join(shown(text).split())
+    words = "".join(sign if sign.isprintable() else "·" for sign in text[: longest + 1])
+    return " ".join((words if len(words) <= longest else words[: longest - 1] + "…").split())
 
 
 def number(value: float) -> str:

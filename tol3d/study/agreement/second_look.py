@@ -90,7 +90,8 @@ def second_look(simulation: Simulation, road: Road, count: int, others: Sequence
     }
     rows, columns = dict[str, Array](), drawn_columns(system, trials)
     for own in regressor_sets(system):
-        rows |= dict.fromkeys((measure.name for measure in own.measures), own.rows(system, columns))
+        made = own.rows(system, columns) if columns else np.empty((0, count + len(others)))
+        rows |= dict.fromkeys((measure.name for measure in own.measures), made)
     return SecondLook(trials, whole, nominal, second_order, rows)
 
 
