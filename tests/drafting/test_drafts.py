@@ -14,7 +14,7 @@ from foreign_parts import nist_file, solid, step_file
 from tol3d.drafting import scene_from
 from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
-from tol3d.simulate import Overrides, load, simulation_of
+from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.step.reading import read_step
 from tol3d.system.stated import nominal_build
 
@@ -129,18 +129,50 @@ def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) ->
     assert gap == pytest.approx(3.0, abs=1e-9)
 
 
-def test_a_product_that_is_used_four_times_is_four_parts_with_the_first_ones_features(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def four(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    """The scene of four blocks of one product on a plate, 20 mm apart, and its folder."""
+    folder = tmp_path_factory.mktemp("four")
     made = cq.Assembly(name="all")
     made.add(PLATE, name="plate")
     for k in range(4):
-        made.add(BLOCK, name=f"block {k}", loc=cq.Location(cq.Vector(15 * math.cos(k), 90 * k + 90, 0)))
-    made.export(str(tmp_path / "all.step"), exportType="STEP")
-    path = tmp_path / "all.step"
-    text, _ = scene_from([FileContent(path, path.read_bytes())])
+        place = cq.Location(cq.Vector(21 * k - 31, 1.0 * k, 15), cq.Vector(0, 0, 1), 90 * k)
+        made.add(BLOCK, name=f"block {k}", loc=place)
+    path = folder / "all.step"
+    made.export(str(path), exportType="STEP")
+    return scene_from([read_file(path)])[0], folder
+
+
+def columns(text: str, folder: Path) -> dict[str, np.ndarray]:
+    """Of 64 trials of a scene."""
+    (folder / "scene.yaml").write_text(text, encoding="utf-8")
+    out = folder / f"run {len(list(folder.iterdir()))}"
+    return run_scene(folder / "scene.yaml", overrides=Overrides(trials=64), out=out).columns()
+
+
+def test_a_product_that_is_used_four_times_is_four_parts_with_draws_of_their_own(four: tuple[str, Path]) -> None:
+    text, folder = four
     parts = yaml.safe_load(text)["parts"]
-    assert len(parts) == 5
-    likes = [own["like"] for own in parts.values() if "like" in own]
-    assert len(likes) in (0, 3)
+    assert [own.get("like") for own in parts.values()] == [None, None, "block 0", "block 0", "block 0"]
+    found = columns(text, folder)
+    tilts = [values for name, values in found.items() if re.match(r"block 0 plane 1\b.*rise x", name)]
+    assert len(tilts) == 4
+    assert np.max(np.abs(np.corrcoef(tilts) - np.eye(4))) < 4 / math.sqrt(64)
+
+
+def test_a_drafted_assembly_has_the_columns_of_its_parts_placed_by_hand_bit_by_bit(four: tuple[str, Path]) -> None:
+    text, folder = four
+    scene = yaml.safe_load(text)
+    file = read_step(read_file(folder / "all.step"))
+    for own in scene["parts"].values():
+        use = file.use(own.pop("use"))
+        own["product"] = file.part(None, use.path).name
+        (x, y, z), axis, across = use.frame
+        own["placed"] = {"at": [f"{x!r} mm", f"{y!r} mm", f"{z!r} mm"], "z": list(axis), "x": list(across)}
+    typed, found = columns(yaml.safe_dump(scene, sort_keys=False), folder), columns(text, folder)
+    assert typed.keys() == found.keys()
+    for name, values in found.items():
+        assert np.array_equal(values, typed[name]), name
 
 
 @pytest.fixture
