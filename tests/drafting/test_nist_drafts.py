@@ -15,6 +15,7 @@ from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.system import AssemblySystem
 from tol3d.drafting import Draft, scene_from
 from tol3d.drafting.drawing import SMALLEST_ZONE
+from tol3d.files import FileContent
 from tol3d.numerics.arrays import Array
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
@@ -155,3 +156,22 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
 def named(model: str) -> str:
     """A model as expected.csv names it."""
     return model.upper().replace("_", "-")
+
+
+@pytest.mark.slow
+def test_parts_of_one_file_have_datums_of_their_own_letters() -> None:
+    """Two models in one file, their numbers shifted: both have datums A, B and C, which are others."""
+    first, second = nist_file("ctc_01"), nist_file("ctc_05")
+    shifted = re.sub(rb"#(\d+)", lambda found: b"#%d" % (int(found[1]) + 1_000_000), second.content)
+    data = shifted[shifted.index(b"DATA;") + 5 : shifted.rindex(b"ENDSEC;")]
+    end = first.content.rindex(b"ENDSEC;")
+    merged = first.content[:end] + data + first.content[end:]
+    text, draft = scene_from([FileContent(first.path, merged)])
+    apart = [scene_from([own])[1] for own in (first, second)]
+    assert len(draft.parts) == 2
+
+    def kept(of: Draft) -> list[int]:
+        return sorted({own.source % 1_000_000 for own in of.entries if own.source and own.stands})
+
+    assert kept(draft) == sorted(number for own in apart for number in kept(own))
+    assert text.count("kind: step") == 2

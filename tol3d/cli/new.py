@@ -79,7 +79,7 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
     for path, content in copies:
         if path.exists() and path.read_bytes() != content:
             raise InputError(f"{path}: another file of that name lies beside the scene; --out names another folder")
-    text, _ = scene_from(contents, [Seat(*own) for own in zip(seats, faces, strict=True)])
+    text, drafted = scene_from(contents, [Seat(*own) for own in zip(seats, faces, strict=True)])
     for path, content in copies:
         if path.exists():
             continue
@@ -90,6 +90,8 @@ def _draft(words: Sequence[str], seats: Sequence[str], faces: Sequence[str], out
             raise unwritable(path, error, "choose another folder with --out") from None
         tell(str(path))
     _write(target, text, force)
+    for note in drafted.notes():
+        err_console.print(note, markup=False, highlight=False)
 
 
 def _refuse_there(path: Path, force: bool) -> None:

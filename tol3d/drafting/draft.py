@@ -9,7 +9,7 @@ from tol3d.drafting.entry import LAW as LAW_HERE
 from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import fixture
 from tol3d.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
-from tol3d.drafting.touching import between, moves
+from tol3d.drafting.touching import ALONE, between, moves
 from tol3d.drafting.words import Names, cleaned, comment, length, scalar
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
@@ -66,6 +66,16 @@ class Draft:
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
         for own in self.files:
             yield from self.told(own)
+
+    def notes(self) -> Iterator[str]:
+        """What a person should know of the scene before reading it: counts, and parts that nothing places."""
+        for line in self.tail():
+            if line.startswith("# Of the "):
+                yield line.removeprefix("# ")
+        for own in self.entries:
+            if own.section == "moves" and own.stands and ALONE in own.wording.comment:
+                part = own.wording.lines[0].partition("part: ")[2].removesuffix("}")
+                yield f"{part}: {ALONE}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
 
     def told(self, own: ReadText) -> Iterator[str]:
         """What became of each tolerance and dimension of a file, in comments."""
@@ -148,7 +158,13 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
     said = [entry for part in parts if part.drawing is not None for entry in part.drawing.entries]
     placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
     made = [*said, *placed, *something(parts, [*said, *placed], names)]
-    return Draft(files, parts, [*made, *(() if said else guessed(parts, names))])
+    made += () if said else guessed(parts, names)
+    return Draft(files, parts, sorted(made, key=is_inspection))
+
+
+def is_inspection(entry: Entry) -> bool:
+    """Whether an entry is the measure of a frame's own limit: those come last, there are many of them."""
+    return entry.section == "measures" and "kind: inspected" in entry.wording.lines[0]
 
 
 def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:

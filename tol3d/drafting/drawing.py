@@ -97,7 +97,7 @@ class Drawing:
     def take_datums(self) -> None:
         """Select the feature of each datum, under its letter."""
         for datum in self.text.datums:
-            shape = self.meanings.datum_shapes.get(datum.letter)
+            shape = self.meanings.datum_shapes.get(datum.id)
             mine = datum.features and self.text.product(datum.features[0]) == self.product
             if shape is None or not mine or datum.targets:
                 continue
@@ -312,7 +312,7 @@ class Drawing:
 
     def turns(self, tolerance: Tolerance, group: Group) -> bool:
         """Whether a feature may turn about the one datum of its orientation."""
-        datum = self.meanings.datum_shapes.get(tolerance.datums[0].letters)
+        datum = self.meanings.datum_shape(tolerance.datums[0])
         if datum is None or not datum.surfaces:
             return False
         return abs(float(np.dot(group.members[0].direction, datum.surfaces[0].direction))) < 1.0 - SQUARE
@@ -321,7 +321,7 @@ class Drawing:
         """The kind of an entry: of an orientation of several faces that of this one."""
         if meaning.kind not in ORIENTATIONS or tolerance.kind in ORIENTATIONS or not tolerance.datums:
             return meaning.kind
-        first = self.meanings.datum_shapes.get(tolerance.datums[0].letters)
+        first = self.meanings.datum_shape(tolerance.datums[0])
         if first is None or not first.surfaces:
             return meaning.kind
         cosine = abs(float(np.dot(group.members[0].direction, first.surfaces[0].direction)))
@@ -355,7 +355,7 @@ class Drawing:
         """
         axis = np.array(group.members[0].direction)
         for each in reversed(tolerance.datums):
-            shape = self.meanings.datum_shapes.get(each.letters)
+            shape = self.meanings.datum_shape(each)
             if shape is not None and shape.kind in ("plane", "slot"):
                 normal = np.array(shape.surfaces[0].direction)
                 if abs(float(normal @ axis)) < SQUARE:

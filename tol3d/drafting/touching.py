@@ -17,6 +17,7 @@ PARALLEL: Final = 1e-6  # sine, cosine
 MOST_GAPS: Final = 4  # of two parts
 MOST_OFFSETS: Final = 4  # pairs of coaxial holes of two parts
 THINNEST_BOLT: Final = 0.5  # of the hole; a thinner guess is none
+ALONE: Final = "it touches no other part as it stands"
 BOLT_LESS: Final = 0.1  # of the hole, where no position says how much
 
 
@@ -174,7 +175,7 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     square = [own for own in axes if not normals or abs(float(own.axis @ normals[0])) > 1.0 - PARALLEL]
     name = scalar(names.new(f"{part.name} placed", "placed"))
     if not relations and not square:
-        yield Entry("moves", name, [fixed(part)])
+        yield Entry("moves", name, [Wording(fixed(part).lines, f"guess: {ALONE}")])
         return
     mated = [
         f"  - {{kind: coaxial, from: {feature(part, own.own)}, to: {feature(own.other, own.there)}}}"

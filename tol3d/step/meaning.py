@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, Literal
 
-from tol3d.step.datum import Compartment
+from tol3d.step.datum import Compartment, Datum, DatumReference
 from tol3d.step.outline import StepText
 from tol3d.step.shape import Shape, shape_of
 from tol3d.step.surfaces import Surface, aligned, dot, product_unit, surface_of
@@ -93,13 +93,23 @@ class Meanings:
         return {each.id: each for each in self.text.tolerances}
 
     @cached_property
-    def datum_shapes(self) -> dict[str, Shape]:
-        """The shape of each datum that is taken from one feature, by its letter."""
+    def datum_shapes(self) -> dict[int, Shape]:
+        """The shape of each datum that is taken from one feature, by where the datum stands."""
         return {
-            each.letter: shape_of(each.features[0], self.surfaces, self.text.structure)
+            each.id: shape_of(each.features[0], self.surfaces, self.text.structure)
             for each in self.text.datums
             if len(each.features) == 1
         }
+
+    def datum(self, reference: DatumReference) -> Datum | None:
+        """The datum that a frame refers to; in a file of several parts their letters may be the same."""
+        own = next((each for each in self.text.datums if each.id == reference.datum), None)
+        return own if own is not None and own.letter == reference.letter else self.text.datum(reference.letter)
+
+    def datum_shape(self, compartment: Compartment) -> Shape | None:
+        """The shape of the one datum of a compartment; None of several, or of what is no single feature."""
+        own = self.datum(compartment.references[0]) if len(compartment.references) == 1 else None
+        return None if own is None else self.datum_shapes.get(own.id)
 
     def of(self, tolerance: Tolerance, located: Mapping[int, int], found: Mapping[int, Meaning]) -> Meaning:
         """The meaning of one tolerance.
@@ -160,12 +170,12 @@ class Meanings:
         if len(compartment.references) > 2:
             return f"the common datum {compartment.letters} of {len(compartment.references)} features"
         for each in compartment.references:
-            datum = self.text.datum(each.letter)
+            datum = self.datum(each)
             if datum is None:
                 return f"datum {each.letter}, which the file does not have"
             if datum.targets:
                 return f"datum {each.letter} at its targets"
-            shape = self.datum_shapes.get(each.letter)
+            shape = self.datum_shapes.get(datum.id)
             if shape is None or shape.kind not in DATUM_SHAPES:
                 return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
             if len(compartment.references) == 2 and shape.kind != "cylinder":
@@ -200,7 +210,7 @@ class Meanings:
         """The meaning of a lower segment: an orientation of the planes of a profile, else none."""
         if upper is None or upper.how == "left out":
             return Meaning(tolerance.id, "left out", "", shape.words, "the lower segment of a frame that is left out")
-        datum = self.datum_shapes.get(tolerance.datums[0].letters) if tolerance.datums else None
+        datum = self.datum_shape(tolerance.datums[0]) if tolerance.datums else None
         if tolerance.kind != "surface profile" or shape.kind not in ("plane", "planes") or datum is None:
             why = f"the lower segment of a composite {tolerance.kind}: how the features lie to each other"
             return Meaning(tolerance.id, "left out", "", shape.words, why)
@@ -222,7 +232,7 @@ class Meanings:
 
     def turn_loss(self, tolerance: Tolerance, shape: Shape, location: Tolerance) -> str:
         """What is lost of an orientation to one datum whose feature may turn about it, within a zone that stops it."""
-        datum = self.datum_shapes.get(tolerance.datums[0].letters) if len(tolerance.datums) == 1 else None
+        datum = self.datum_shape(tolerance.datums[0]) if len(tolerance.datums) == 1 else None
         if datum is None or len(location.datums) < 2 or not shape.surfaces or not datum.surfaces:
             return ""
         if all(aligned(each.direction, datum.surfaces[0].direction) != 0 for each in shape.surfaces):
