@@ -95,6 +95,15 @@ def test_one_unit_of_all_rows_stands_in_the_heading_and_several_in_a_column() ->
     assert several.rows[1] == ("a", "arcmin", 1.23456, "so", 1.01)
 
 
+def test_rows_of_several_runs_each_have_their_run_and_numbers_not_known_are_empty(run: Run, tmp_path: Path) -> None:
+    other = run_scene("spur_pair", overrides=Overrides(trials=100, witness=0), out=tmp_path / "other")
+    files = _csv(write_report([run, other], tmp_path / "tables", format="csv"))
+    rows = next(own for name, own in files.items() if "lost-motion" in name)
+    assert _column(rows, "run") == ["spur", "spur", "other", "other"]
+    assert _column(rows, "road") == ["analytic", "3D"] * 2
+    assert not any("–" in row for row in rows)
+
+
 @pytest.mark.parametrize("name", FORMULAS)
 def test_a_name_that_begins_like_a_formula_is_text(name: str) -> None:
     grid = Grid.of("t", Table(name, [Heading(name)], [Row(name, (name,))]))

@@ -6,11 +6,13 @@ import json
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 from typing import Final, Literal
 
 from tol3d.errors import InputError, unwritable
-from tol3d.report.page import Heading, Row, Shown, Table
+from tol3d.report.number import NOTHING
+from tol3d.report.page import Heading, Shown, Table
 from tol3d.report.report_sections import ReportSection, section_tables
 from tol3d.report.workbook import Cell, Sheet, workbook
 from tol3d.runs.atomic_write import write_whole
@@ -33,7 +35,8 @@ class Grid:
     Args:
         name: of the table.
         headings: of the columns, with the unit of their numbers where it is one for all rows.
-        rows: of cells, one for each heading; the first is the row's label.
+        rows: of cells, one for each heading; the first is the row's label, where that is left out the one
+            above.
     """
 
     name: str
@@ -48,7 +51,11 @@ class Grid:
         common = units[0] if len(units) == 1 else ""
         column = [UNIT] if len(units) > 1 else []
         headings = [_headed(own, common, [row.cells[k] for row in rows]) for k, own in enumerate(table.headings)]
-        cells = (_cells(row, [row.unit] if column else []) for row in rows)
+        labels = accumulate((row.label.strip() for row in rows), lambda last, own: own or last)
+        cells = (
+            (label, *([row.unit] if column else []), *map(_value, row.cells, table.headings))
+            for label, row in zip(labels, rows, strict=True)
+        )
         corner = table.corner.partition("[")[0].strip() or "row"
         return cls(name, (corner, *column, *headings), tuple(cells))
 
@@ -144,8 +151,11 @@ def _headed(heading: Heading, unit: str, cells: Sequence[str]) -> str:
     return f"{text} [{unit}]" if unit and numbers and not heading.plain and "[" not in text else text
 
 
-def _cells(row: Row, unit: Sequence[str]) -> tuple[Cell, ...]:
-    return (row.label.strip(), *unit, *(own.value if isinstance(own, Shown) else own.strip() for own in row.cells))
+def _value(cell: str, heading: Heading) -> Cell:
+    if isinstance(cell, Shown):
+        return cell.value
+    text = cell.strip()
+    return None if text == NOTHING and not heading.words else text
 
 
 def _unformulated(own: Cell) -> Cell:
