@@ -193,7 +193,7 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
         yield page_blocks(blocks[first:], 4)
         if pareto := pareto_chart(measure) if measure.take != "curve" else None:
-            yield _figure(pareto, None)
+            yield tag("figure", pareto, tag("figcaption", *_marks(measure, of_values=False)))
         if (
             run.keeps_trials
             and (difference := difference_of(run, name))
@@ -231,12 +231,13 @@ def _id_of(data: Markup) -> str:
     return data.partition('id="')[2].partition('"')[0]
 
 
-def _marks(measure: MeasureSummary) -> Sequence[Markup]:
-    """The legend of a histogram or a curve."""
+def _marks(measure: MeasureSummary, *, of_values: bool = True) -> Sequence[Markup]:
+    """The legend of a histogram or a curve; of shares it has the roads alone."""
     known = {"geometric": "3D simulation", "analytic": "analytic", "closed": "closed form", "limit": "out of limits"}
     there = {"analytic"} | ({"geometric"} if measure.best_road == "geometric" else set())
     there |= {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
     there |= {"limit"} if measure.has_limits else set()
+    there &= set(known) if of_values else {"geometric", "analytic"}
     return [tag("span", tag("i", class_=key), words) for key, words in known.items() if key in there]
 
 
