@@ -4,9 +4,8 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import accumulate
 from pathlib import Path
 from typing import Final, Literal
 
@@ -51,7 +50,7 @@ class Grid:
         common = units[0] if len(units) == 1 else ""
         column = [UNIT] if len(units) > 1 else []
         headings = [_headed(own, common, [row.cells[k] for row in rows]) for k, own in enumerate(table.headings)]
-        labels = accumulate((row.label.strip() for row in rows), lambda last, own: own or last)
+        labels = _carried([row.label.strip() for row in rows])
         cells = (
             (label, *([row.unit] if column else []), *map(_value, row.cells, table.headings))
             for label, row in zip(labels, rows, strict=True)
@@ -149,6 +148,14 @@ def _headed(heading: Heading, unit: str, cells: Sequence[str]) -> str:
     text = heading.text.strip() or "value"
     numbers = any(isinstance(own, Shown) for own in cells)
     return f"{text} [{unit}]" if unit and numbers and not heading.plain and "[" not in text else text
+
+
+def _carried(labels: Iterable[str]) -> Iterator[str]:
+    """Labels, where one is left out the one above."""
+    last = ""
+    for own in labels:
+        last = own or last
+        yield last
 
 
 def _value(cell: str, heading: Heading) -> Cell:

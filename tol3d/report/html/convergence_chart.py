@@ -50,9 +50,8 @@ def _panel(
     y = Axis(low - margin, high + margin, start=bottom, end=top, unit=measure.unit)
     for value, _ in _decades(float(counts[0]), float(counts[-1])):
         yield tag("path", d=f"M{x(value):.1f} {top:.1f}V{bottom:.1f}", class_="grid")
-    yield from beside(
-        y, LEFT, WIDTH - RIGHT, word if measure.unit == "arcmin" else values_label(word, measure.unit, 20)
-    )
+    label = word if measure.unit == "arcmin" else values_label(word, measure.unit, 20)  # of angles ticks have the unit
+    yield from beside(y, LEFT, WIDTH - RIGHT, label)
     places = [x(math.log10(own)) for own in counts]
     there = _points(places, values + reach, y)
     back = _points(places[::-1], (values - reach)[::-1], y)

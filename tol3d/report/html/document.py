@@ -3,7 +3,7 @@
 import base64
 import hashlib
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache
 from importlib import resources
 from typing import Final
@@ -63,6 +63,12 @@ POLICY: Final = (
 NOT_TOGETHER: Final = (
     "no 3D view of several runs, whose parts would stand in each other: tol3d report RUN shows those of one"
 )
+LEGEND: Final = {
+    "geometric": "3D simulation",
+    "analytic": "analytic",
+    "closed": "closed form",
+    "limit": "out of limits",
+}
 VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to say", "none": "no limits to judge"}
 
 
@@ -193,7 +199,7 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
         yield page_blocks(blocks[first:], 4)
         if pareto := pareto_chart(measure) if measure.take != "curve" else None:
-            yield tag("figure", pareto, tag("figcaption", *_marks(measure, of_values=False)))
+            yield tag("figure", pareto, tag("figcaption", *_legend(_roads(measure))))
         if (
             run.keeps_trials
             and (difference := difference_of(run, name))
@@ -231,14 +237,18 @@ def _id_of(data: Markup) -> str:
     return data.partition('id="')[2].partition('"')[0]
 
 
-def _marks(measure: MeasureSummary, *, of_values: bool = True) -> Sequence[Markup]:
-    """The legend of a histogram or a curve; of shares it has the roads alone."""
-    known = {"geometric": "3D simulation", "analytic": "analytic", "closed": "closed form", "limit": "out of limits"}
-    there = {"analytic"} | ({"geometric"} if measure.best_road == "geometric" else set())
-    there |= {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
-    there |= {"limit"} if measure.has_limits else set()
-    there &= set(known) if of_values else {"geometric", "analytic"}
-    return [tag("span", tag("i", class_=key), words) for key, words in known.items() if key in there]
+def _roads(measure: MeasureSummary) -> frozenset[str]:
+    return frozenset(("analytic", measure.best_road))
+
+
+def _marks(measure: MeasureSummary) -> Sequence[Markup]:
+    """The legend of a histogram or a curve."""
+    closed = {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
+    return _legend(_roads(measure) | closed | ({"limit"} if measure.has_limits else set()))
+
+
+def _legend(keys: Set[str]) -> Sequence[Markup]:
+    return [tag("span", tag("i", class_=key), words) for key, words in LEGEND.items() if key in keys]
 
 
 def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> Iterator[Markup]:
