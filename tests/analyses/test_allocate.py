@@ -16,11 +16,12 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.allocate import Question, Target, allocation, ppm_of_ppk
+from tol3d.analyses.allocate import allocation, ppm_of_ppk
 from tol3d.analyses.asked_allocation import bounds_of, stays_of, targets_of
 from tol3d.analyses.costs import Costs, Exponential, Grades, Reciprocal, costs_from
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
+from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
 from tol3d.runs.run import open_run

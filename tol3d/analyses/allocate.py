@@ -1,37 +1,40 @@
 """Tolerances at least cost for a share out of limits: by gradients of the first order, corrected until trials confirm.
 
 How often limits are left is told by design points (FORM), with its change with each factor, and the least cost under
-that is found by sequential quadratic programming in the logarithms of the factors. First order may be off by a factor:
-importance sampling says by how much at what was found, the target is moved by that, and so on until it confirms the
-result. What it says last, with another seed, is the result.
+that is found by sequential quadratic programming in the logarithms of the factors, with tangents in place of the
+mechanism. At what was found design points and tangents are taken again. First order may be off by a factor: importance
+sampling says by how much, the target is moved by that, and so on until it confirms the result. What it says last, with
+another seed, is the result.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
-from scipy.optimize import minimize
 from scipy.special import ndtr
 
+from tol3d.analyses.allocation_section import Allocated, Allocation, CostAt, TargetFound
 from tol3d.analyses.changes import told
-from tol3d.analyses.costs import Costs, Discrete
-from tol3d.analyses.form import Points, concerned, points_of
-from tol3d.analyses.limit_state import Side
+from tol3d.analyses.least_cost import equal_factors, is_graded, least_cost
 from tol3d.analyses.rare import rare_event
 from tol3d.analyses.response import Response
+from tol3d.analyses.tolerance_search import MOST_PPM, TINY, Question, Search, Target, begun, with_sides
 from tol3d.analyses.what_if import limits_of
-from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import Count, Known, Label, NotNegative, Number, Ppm, PpmRange, Section, Sentence, made
-from tol3d.scene.nearest import hint
+from tol3d.runs.summary.values import made
 
-BOUNDS: Final = (0.5, 3.0)
 ROUNDS: Final = 8
+TRIMS: Final = 4
+MIDDLE: Final = 0.993
+"""Of the target: what trims aim at."""
+LONGEST: Final = 0.3
+"""A trim, in logarithms of factors."""
+LESS: Final = 2e-3
+"""Share of the cost by which another round has to be cheaper."""
 AIM: Final = 0.995
 """Of the target: what is aimed at, so that what is found is rather below."""
 NEAR: Final = 0.97
@@ -40,173 +43,18 @@ DAMPING: Final = 0.8
 DRAWS: Final = 12_000
 DIGITS: Final = 4
 """Of factors, which are rounded down."""
-BISECTIONS: Final = 40
-ACCURACY: Final = 1e-6
-ITERATIONS: Final = 60
+AT_BOUND: Final = 1e-6
 CURVE: Final = (0.1, 0.3, 3.0, 10.0)
 """Of the target: where else the cost is told."""
+PASSES: Final = 2
+"""Over tangents, for each point of the curve."""
 LOOKS: Final = 3
 """Last looks; after each that is not content the search goes on below."""
 SURE: Final = 1.03
 """Of the target: what the last look may say at most."""
-BRACKET: Final = 0.2
-HALVINGS: Final = 10
 FAR: Final = 0.02
 """Of a target: what first order has below that is within reach, however far it is off."""
-TINY: Final = 1e-300
-MOST_PPM: Final = 500_000.0
 STRAIGHT: Final = 1e-3
-
-
-@dataclass(frozen=True)
-class Target:
-    """A measure, which of its limits count, and what share of the builds may leave them.
-
-    Args:
-        measure: its name.
-        sides: those of its limits; all if empty.
-        ppm: of builds beyond them together.
-    """
-
-    measure: str
-    sides: tuple[Side, ...]
-    ppm: float
-
-
-@dataclass(frozen=True)
-class Question:
-    """What is asked besides targets.
-
-    Args:
-        costs: of tolerances.
-        bounds: of factors.
-        own_bounds: of some contributors' factors.
-        frozen: contributors that stay as they are.
-        stays: of some contributors, which limit does.
-        groups: contributors that have one factor together, by the name of their tolerance; each its own if not given.
-        beyond_least: whether deviations may be drawn below what is physical, as normal laws do anyway.
-    """
-
-    costs: Costs = field(default_factory=Costs)
-    bounds: tuple[float, float] = BOUNDS
-    own_bounds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    frozen: frozenset[str] = frozenset()
-    stays: Mapping[str, Stays] = field(default_factory=dict)
-    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    beyond_least: bool = False
-
-
-class Allocated(Section):
-    """A tolerance: its factor, what it costs, and why it is not another one."""
-
-    factor: NotNegative
-    cost: Number
-    before: Label
-    after: Label
-    held: Sentence = Field(description='"", or what holds it: a bound, what is physical, frozen, cannot be scaled')
-
-
-class TargetFound(Section):
-    """How often limits are left [ppm], as it was asked for and as it was found."""
-
-    measure: Label
-    sides: list[Label]
-    wanted: Ppm
-    scene: Ppm
-    first_order: Ppm
-    ppm: Ppm
-    interval: PpmRange
-
-
-class CostAt(Section):
-    """The least cost for a share out of limits [ppm], by first order as corrected; None where no factors reach it."""
-
-    ppm: Ppm
-    cost: Known
-
-
-class Allocation(Section):
-    """Factors of least cost, and what simulation says of them."""
-
-    targets: list[TargetFound]
-    tolerances: dict[Label, Allocated]
-    cost: Number
-    scene_cost: Number
-    equal_factor: Known
-    equal_cost: Known
-    trade_off: list[CostAt]
-    rounds: Count
-    draws: Count
-    evaluations: Count
-
-    @property
-    def factors(self) -> dict[str, float]:
-        """By tolerance."""
-        return {name: own.factor for name, own in self.tolerances.items()}
-
-
-@dataclass(eq=False)
-class _Search:
-    """What is looked for, and design points on the way."""
-
-    response: Response
-    targets: Sequence[Target]
-    question: Question
-    groups: Mapping[str, tuple[str, ...]]
-    low: Array
-    high: Array
-    points: dict[tuple[str, Side], Points]
-
-    @property
-    def names(self) -> list[str]:
-        """Of what has a factor."""
-        return list(self.groups)
-
-    def factors(self, x: Array) -> dict[str, float]:
-        """Of their logarithms."""
-        return dict(zip(self.names, np.exp(np.clip(x, self.low, self.high)).tolist(), strict=True))
-
-    def cost(self, x: Array) -> float:
-        """Of all of them."""
-        return math.fsum(self.question.costs.of(name).of(own) for name, own in self.factors(x).items())
-
-    def cost_slopes(self, x: Array) -> Array:
-        """Change with the logarithms."""
-        return np.array([self.question.costs.of(name).slope(own) for name, own in self.factors(x).items()])
-
-    def scaled(self, x: Array) -> Response:
-        """With their tolerances."""
-        each = {own: factor for name, factor in self.factors(x).items() for own in self.groups[name]}
-        return self.response.scaled(each, self.question.stays, physical=False)
-
-    def probabilities(self, x: Array, *, slopes: bool = True) -> tuple[Array, Array]:
-        """Logarithms of what is beyond each target's limits (targets,), and their slopes (targets, factors)."""
-        other, asked = self.scaled(x), slopes
-        logs, rates = [], []
-        for target in self.targets:
-            own = [key for key in self.points if key[0] == target.measure and key[1] in target.sides]
-            total, slope = 0.0, np.zeros(len(x))
-            for key in own:
-                followed = self.points[key].followed(other.of(target.measure))
-                part = float(followed.each.sum())
-                total += part
-                slope += part * self._slopes(followed, x) if asked else 0.0
-            logs.append(math.log(max(total, TINY)))
-            rates.append(slope / max(total, TINY))
-        return np.array(logs), np.array(rates)
-
-    def move_to(self, x: Array) -> None:
-        """Follow the design points to other factors, from where they are followed next."""
-        other = self.scaled(x)
-        self.points = {key: own.followed(other.of(key[0])) for key, own in self.points.items()}
-
-    def _slopes(self, points: Points, x: Array) -> Array:
-        def at(logarithms: Array) -> Response:
-            each = np.exp(logarithms)
-            factors = {n: float(f) for name, f in zip(self.names, each, strict=True) for n in self.groups[name]}
-            return self.response.scaled(factors, self.question.stays, physical=False).of(*points.state.response.names)
-
-        return points.slopes(np.clip(x, self.low, self.high), at)
 
 
 def allocation(
@@ -232,13 +80,13 @@ def allocation(
         InputError: no target, a measure without such limits, nothing to scale, or a target that no factors reach.
     """
     asked, before = question or Question(), response.evaluations
-    targets = [_with_sides(response, own) for own in targets]
+    targets = [with_sides(response, own) for own in targets]
     if not targets:
         raise InputError("expected a measure with limits, got none")
     if response.rough:
         words = "expected contributors with a smooth map from normals, from which slopes of the ppm are known"
         raise InputError(f"{words}, got {', '.join(response.rough)}; ask tol3d what-if of single changes")
-    search, held = _begun(response, targets, asked)
+    search, held = begun(response, targets, asked)
     wanted = np.log([1e-6 * own.ppm for own in targets])
     activity("the tightest tolerances")
     _refuse_out_of_reach(search, draws, seed)
@@ -246,18 +94,19 @@ def allocation(
     scene = _sampled(search, zero, draws, seed)
     rounds = _Rounds(search, draws, seed, activity, np.zeros(len(targets)))
     activity("equal factors")
-    equal = rounds.solved(_equal, zero, wanted)
+    equal = rounds.solved(equal_factors, zero, wanted, 2)
     x, last = equal, []
     goal = wanted
     for _ in range(LOOKS):
-        x = _rounded(search, rounds.solved(_least, x, goal))
+        x = _rounded(search, rounds.solved(least_cost, x, goal))
         activity("confirmation")
         last = _looked(search, x, 2 * draws, seed + 1)
         off = np.log([max(own.probability, TINY) for own in last]) - wanted
         if float(off.max()) <= math.log(SURE):
             break
         goal = goal - np.maximum(off, 0.0)
-    first = np.exp(search.probabilities(x)[0])
+    search.move_to(x)
+    first = np.exp(search.probabilities(x, slopes=False)[0])
     curve = _trade_off(search, rounds.shift, x)
     return made(
         Allocation,
@@ -286,105 +135,14 @@ def allocation(
     )
 
 
-def _rounded(search: _Search, x: Array) -> Array:
+def _rounded(search: Search, x: Array) -> Array:
     """Factors of a few digits, rounded down; grades stay."""
     down = np.log(np.floor(10**DIGITS * np.exp(x) + STRAIGHT) / 10**DIGITS)
-    return np.where(_is_graded(search), x, np.maximum(down, search.low))
+    return np.where(is_graded(search), x, np.maximum(down, search.low))
 
 
 def _ppm(probability: float) -> float:
     return min(max(1e6 * probability, 0.0), 1e6)
-
-
-def _with_sides(response: Response, target: Target) -> Target:
-    (measure,) = response.of(target.measure).measures
-    known = limits_of(measure)
-    sides = target.sides or tuple(known)
-    if not known or not set(sides) <= set(known):
-        which = " and ".join(sides) or "lower or upper"
-        raise InputError(
-            f"{target.measure}: expected a measure with a limit ({which}), got "
-            f"{' and '.join(known) or 'none'}; state lower_limit or upper_limit in the scene"
-        )
-    if not 0.0 < target.ppm < MOST_PPM:
-        raise InputError(f"{target.measure}: expected a ppm above 0 and below {MOST_PPM:g}, got {target.ppm:g}")
-    return Target(target.measure, sides, target.ppm)
-
-
-def _begun(
-    response: Response, targets: Sequence[Target], question: Question
-) -> tuple[_Search, dict[str, tuple[str, str]]]:
-    """The search, and by name of what is not searched the contributor whose tolerance it tells, and why."""
-    asked = {name for own in targets for name in concerned(response, response.of(own.measure).measures[0])}
-    grouped = {own: name for name, each in question.groups.items() for own in each}
-    groups: dict[str, tuple[str, ...]] = {}
-    for own in response.contributors:
-        if own.name in asked:
-            name = grouped.get(own.name, own.name)
-            groups[name] = question.groups.get(name, (own.name,))
-    for names, words in ((question.frozen, "--freeze"), (question.own_bounds, "--bound"), (question.stays, "--stays")):
-        _refuse_strangers(names, response, question, words)
-    free: dict[str, tuple[str, ...]] = {}
-    held: dict[str, tuple[str, str]] = {}
-    low, high = [], []
-    for name, each in groups.items():
-        if name in question.frozen or any(own in question.frozen for own in each):
-            held[name] = (each[0], "frozen")
-            continue
-        try:
-            for one in each:
-                response.scaled({one: 1.0 + STRAIGHT / 10}, question.stays, physical=False)
-        except InputError as error:
-            held[name] = (each[0], str(error).partition("; ")[0].partition(": ")[2])
-            continue
-        bounds = question.own_bounds.get(name, question.bounds)
-        graded = question.costs.of(name)
-        if isinstance(graded, Discrete):
-            bounds = (graded.factors[0], graded.factors[-1])
-        free[name] = each
-        low.append(math.log(_reached(response, question, each, bounds[0])))
-        high.append(math.log(_reached(response, question, each, bounds[1])))
-    if not free:
-        why = "; ".join(f"{name}: {words}" for name, (_, words) in held.items())
-        raise InputError(f"expected contributors whose tolerances can be scaled, got none ({why or 'none acts'})")
-    search = _Search(response, targets, question, free, np.array(low), np.array(high), {})
-    for target in targets:
-        for side in target.sides:
-            limit = limits_of(response.of(target.measure).measures[0])[side]
-            for x in (np.zeros(len(low)), search.high, (search.low + search.high) / 2):
-                at = search.scaled(np.clip(x, search.low, search.high)).of(target.measure)
-                if (found := points_of(at, side, limit)) is not None:
-                    search.points[target.measure, side] = found
-                    break
-    return search, held
-
-
-def _refuse_strangers(
-    names: Mapping[str, object] | frozenset[str], response: Response, question: Question, option: str
-) -> None:
-    known = {own.name for own in response.contributors} | set(question.groups)
-    for name in names:
-        if name not in known:
-            raise InputError(f"{option}: expected a contributor, got {name!r}{hint(name, sorted(known))}")
-
-
-def _reached(response: Response, question: Question, each: Sequence[str], bound: float) -> float:
-    """A bound, or how far from 1 towards it deviations are physical and zones hold what refines them."""
-
-    def fits(factor: float) -> bool:
-        try:
-            response.scaled(dict.fromkeys(each, factor), question.stays, physical=not question.beyond_least)
-        except InputError:
-            return False
-        return True
-
-    if fits(bound):
-        return bound
-    inside, outside = 1.0, bound
-    for _ in range(BISECTIONS):
-        middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if fits(middle) else (inside, middle)
-    return inside
 
 
 @dataclass(frozen=True)
@@ -393,18 +151,14 @@ class _Seen:
     interval: tuple[float, float]
 
 
-def _sampled(search: _Search, x: Array, draws: int, seed: int) -> Array:
+def _sampled(search: Search, x: Array, draws: int, seed: int) -> Array:
     """How often limits are left (targets,) by importance sampling about the design points, always from a seed."""
-    other = search.scaled(x)
-    found = np.zeros(len(search.targets))
-    for k, target in enumerate(search.targets):
-        for key, points in search.points.items():
-            if key[0] == target.measure and key[1] in target.sides:
-                found[k] += points.followed(other.of(target.measure)).sampled(draws, seed)[0]
-    return found
+    search.move_to(x)
+    each = {key: own.sampled(draws, seed)[0] for key, own in search.points.items()}
+    return np.array([math.fsum(each[key] for key in search.keys(own)) for own in search.targets])
 
 
-def _looked(search: _Search, x: Array, draws: int, seed: int) -> list[_Seen]:
+def _looked(search: Search, x: Array, draws: int, seed: int) -> list[_Seen]:
     """The same of each target by itself, whatever is known of it; of both limits the sum."""
     other = search.scaled(x)
     found = []
@@ -418,8 +172,10 @@ def _looked(search: _Search, x: Array, draws: int, seed: int) -> list[_Seen]:
     return found
 
 
-def _refuse_out_of_reach(search: _Search, draws: int, seed: int) -> None:
-    formed = np.exp(search.probabilities(search.low)[0])
+def _refuse_out_of_reach(search: Search, draws: int, seed: int) -> None:
+    search.move_to(search.low)
+    formed = np.exp(search.probabilities(search.low, slopes=False)[0])
+    search.move_to(np.zeros(len(search.low)))
     if all(own < FAR * 1e-6 * target.ppm for own, target in zip(formed, search.targets, strict=True)):
         return
     for target, found in zip(search.targets, _looked(search, search.low, draws, seed), strict=True):
@@ -432,7 +188,7 @@ def _refuse_out_of_reach(search: _Search, draws: int, seed: int) -> None:
             )
 
 
-Solve = Callable[[_Search, Array, Array], Array]
+Solve = Callable[[Search, Array, Array], Array]
 
 
 @dataclass(eq=False)
@@ -447,143 +203,64 @@ class _Rounds:
         count: of rounds.
     """
 
-    search: _Search
+    search: Search
     draws: int
     seed: int
     tell: Callable[[str], None]
     shift: Array
     count: int = 0
 
-    def solved(self, solve: Solve, x: Array, wanted: Array) -> Array:
-        """Factors of which sampling says that they reach what is wanted (targets,), in logarithms."""
+    def solved(self, solve: Solve, x: Array, wanted: Array, most: int = ROUNDS) -> Array:
+        """Factors of which sampling says that they reach what is wanted (targets,), in logarithms.
+
+        It ends where another look from what was found costs no less.
+        """
         best: tuple[float, Array] | None = None
-        for _ in range(ROUNDS):
-            self.count += 1
+        for _ in range(most):
             x = solve(self.search, wanted + math.log(AIM) - self.shift, x)
-            self.search.move_to(x)
-            seen = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
-            off, cost = float((seen - wanted).max()), self.search.cost(x)
-            self.tell(f"round {self.count}: cost {cost:.4g}, {math.exp(off):.3g} of the ppm")
-            if off <= STRAIGHT and (best is None or cost < best[0]):
+            x, seen = self._trimmed(x, wanted)
+            cost = self.search.cost(x)
+            if float((seen - wanted).max()) <= STRAIGHT:
+                if best is not None and cost > best[0] - LESS * abs(best[0]):
+                    break
                 best = cost, x
-            if off <= STRAIGHT and (off >= math.log(NEAR) or bool((x >= self.search.high - ACCURACY).all())):
-                break
-            formed = self.search.probabilities(x)[0]
+            formed = self.search.probabilities(x, slopes=False)[0]
             self.shift = self.shift + DAMPING * (seen - formed - self.shift)
         return x if best is None else best[1]
 
+    def _trimmed(self, x: Array, wanted: Array) -> tuple[Array, Array]:
+        """Factors a little tighter or looser, all alike that are at no bound, and what sampling says last."""
+        graded = bool(is_graded(self.search).any())
+        step, last = 0.0, 0.0
+        for k in range(TRIMS):
+            self.count += 1
+            seen = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
+            off = float((seen - wanted).max())
+            self.tell(f"round {self.count}: cost {self.search.cost(x):.4g}, {math.exp(off):.3g} of the ppm")
+            loosest = off <= 0.0 and bool((x >= self.search.high - AT_BOUND).all())
+            if graded or loosest or math.log(NEAR) <= off <= STRAIGHT or k == TRIMS - 1:
+                break
+            free = self._free(x, off)
+            rate = (last - off) / step if step else self._rate(x, seen - wanted, free)
+            if rate <= 0.0:
+                break
+            step, last = float(np.clip((off - math.log(MIDDLE)) / rate, -LONGEST, LONGEST)), off
+            x = np.clip(np.where(free, x - step, x), self.search.low, self.search.high)
+        return x, seen
 
-def _equal(search: _Search, wanted: Array, begun: Array) -> Array:
-    """One factor of all, each as far as its bounds let it."""
+    def _free(self, x: Array, off: float) -> NDArray[np.bool_]:
+        """Factors at no bound; where all are at one, those that can move."""
+        below, above = x > self.search.low + AT_BOUND, x < self.search.high - AT_BOUND
+        between = below & above
+        return between if between.any() else above if off < 0.0 else below
 
-    def at(value: float) -> Array:
-        return np.asarray(np.clip(np.full(len(search.low), value), search.low, search.high))
-
-    def beyond(value: float) -> float:
-        return float((search.probabilities(at(value), slopes=False)[0] - wanted).max())
-
-    low, high = float(search.low.min()), float(search.high.max())
-    inside = outside = float(np.clip(begun.max(), low, high))
-    sign = -1.0 if beyond(inside) > 0.0 else 1.0
-    while low < outside < high or outside == inside:
-        inside, outside = outside, min(max(outside + sign * BRACKET, low), high)
-        if outside == inside:
-            return at(outside)
-        if (beyond(outside) > 0.0) == (sign > 0.0):
-            break
-    else:
-        return at(outside)
-    for _ in range(HALVINGS):
-        middle = (inside + outside) / 2
-        inside, outside = (inside, middle) if (beyond(middle) > 0.0) == (sign > 0.0) else (middle, outside)
-    return at(min(inside, outside))
-
-
-def _least(search: _Search, wanted: Array, begun: Array) -> Array:
-    """The least cost, by sequential quadratic programming; grades by exchanges after that."""
-    kept: dict[bytes, tuple[Array, Array]] = {}
-
-    def known(x: Array) -> tuple[Array, Array]:
-        key = x.tobytes()
-        if key not in kept:
-            kept.clear()
-            kept[key] = search.probabilities(x)
-        return kept[key]
-
-    scale = max(abs(search.cost(np.zeros(len(search.low)))), TINY)
-    found = minimize(
-        lambda x: search.cost(x) / scale,
-        np.clip(begun, search.low, search.high),
-        jac=lambda x: search.cost_slopes(x) / scale,
-        bounds=list(zip(search.low, search.high, strict=True)),
-        constraints=[{"type": "ineq", "fun": lambda x: wanted - known(x)[0], "jac": lambda x: -known(x)[1]}],
-        method="SLSQP",
-        options={"ftol": ACCURACY, "maxiter": ITERATIONS},
-    )
-    x = np.clip(np.asarray(found.x, dtype=np.float64), search.low, search.high)
-    x = _pulled_in(search, wanted, x)
-    return _graded(search, wanted, x) if _is_graded(search).any() else x
+    def _rate(self, x: Array, off: Array, free: NDArray[np.bool_]) -> float:
+        """By first order, how the logarithm of the share that is most off changes with all factors that are free."""
+        slopes = self.search.probabilities(x)[1][int(np.argmax(off))]
+        return float(slopes[free].sum())
 
 
-def _pulled_in(search: _Search, wanted: Array, x: Array) -> Array:
-    """Factors a little tighter, all alike, where the programme ended outside."""
-    for _ in range(ROUNDS):
-        logs, slopes = search.probabilities(x)
-        off = logs - wanted
-        worst = int(np.argmax(off))
-        if off[worst] <= STRAIGHT:
-            return x
-        rate = float(slopes[worst].sum())
-        x = np.clip(x - (off[worst] / rate if rate > 0.0 else 0.1), search.low, search.high)
-    return x
-
-
-def _is_graded(search: _Search) -> NDArray[np.bool_]:
-    return np.array([isinstance(search.question.costs.of(name), Discrete) for name in search.names], dtype=bool)
-
-
-def _graded(search: _Search, wanted: Array, x: Array) -> Array:
-    """Grades near a solution: the next tighter ones, then looser ones and exchanges as long as they cost less."""
-    tables = {}
-    for k, name in enumerate(search.names):
-        cost = search.question.costs.of(name)
-        if isinstance(cost, Discrete):
-            logs = np.log(cost.factors)
-            tables[k] = logs[(logs >= search.low[k] - ACCURACY) & (logs <= search.high[k] + ACCURACY)]
-    x = x.copy()
-    for k, logs in tables.items():
-        below = logs[logs <= x[k] + ACCURACY]
-        x[k] = below[-1] if len(below) else logs[0]
-
-    def fits(other: Array) -> bool:
-        return bool((search.probabilities(other, slopes=False)[0] <= wanted + STRAIGHT).all())
-
-    def moved(own: Array, k: int, by: int) -> Array | None:
-        place = int(np.argmin(np.abs(tables[k] - own[k]))) + by
-        if not 0 <= place < len(tables[k]):
-            return None
-        other = own.copy()
-        other[k] = tables[k][place]
-        return other
-
-    while True:
-        looser = [own for k in tables if (own := moved(x, k, 1)) is not None]
-        exchanged = [
-            own
-            for k in tables
-            for steps in (1, 2)
-            if (one := moved(x, k, steps)) is not None
-            for n in tables
-            if n != k and (own := moved(one, n, -1)) is not None
-        ]
-        cheaper = [own for own in looser + exchanged if search.cost(own) < search.cost(x) - ACCURACY]
-        better = next((own for own in sorted(cheaper, key=search.cost) if fits(own)), None)
-        if better is None:
-            return x
-        x = better
-
-
-def _trade_off(search: _Search, shift: Array, x: Array) -> list[CostAt]:
+def _trade_off(search: Search, shift: Array, x: Array) -> list[CostAt]:
     """The least cost for other shares, all targets' alike, by first order as it was corrected at the target."""
     wanted = np.log([1e-6 * own.ppm for own in search.targets])
     first = search.targets[0].ppm
@@ -592,13 +269,16 @@ def _trade_off(search: _Search, shift: Array, x: Array) -> list[CostAt]:
         if first * times >= MOST_PPM:
             continue
         goal = wanted + math.log(times) - shift
-        own = _least(search, goal, x)
-        reached = bool((search.probabilities(own)[0] <= goal + 10 * STRAIGHT).all())
+        own = x
+        for _ in range(PASSES):
+            own = least_cost(search, goal, own)
+            search.move_to(own)
+        reached = bool((search.probabilities(own, slopes=False)[0] <= goal + 10 * STRAIGHT).all())
         found.append(made(CostAt, ppm=first * times, cost=search.cost(own) if reached else None))
     return sorted(found, key=lambda own: own.ppm)
 
 
-def _told(search: _Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict[str, Allocated]:
+def _told(search: Search, x: Array, held: Mapping[str, tuple[str, str]]) -> dict[str, Allocated]:
     response, other = search.response, search.scaled(x)
     by_name = {own.name: own for own in response.contributors}
     found = {}

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final
 
-from tol3d.analyses.allocate import Allocation
+from tol3d.analyses.allocation_section import Allocation
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure, plain_axes, save_figure
 from tol3d.report.label import legible
 

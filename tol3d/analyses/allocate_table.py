@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from tol3d.analyses.allocate import Allocation
+from tol3d.analyses.allocation_section import Allocation
 from tol3d.report.number import ppm_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
 

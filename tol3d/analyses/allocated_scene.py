@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from tol3d.analyses.allocate import Allocation
+from tol3d.analyses.allocation_section import Allocation
 from tol3d.analyses.response import Response
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError

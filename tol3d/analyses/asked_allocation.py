@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 
-from tol3d.analyses.allocate import Target, ppm_of_ppk
+from tol3d.analyses.allocate import ppm_of_ppk
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response
+from tol3d.analyses.tolerance_search import Target
 from tol3d.analyses.what_if import limits_of
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError

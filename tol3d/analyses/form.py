@@ -2,12 +2,14 @@
 
 A design point moves little where tolerances change little, so that a step or two of Hasofer, Lind, Rackwitz and
 Fiessler take it along. What a factor does to a distance β follows at the design point itself: the limit state's change
-with the factor, the normals held, over the size of its gradient there.
+with the factor, the normals held, over the size of its gradient there. About a design point the limit state is nearly
+linear in the deviations, whatever the laws are: with that tangent no build is asked until the factors are found.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -15,11 +17,10 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp, ndtr
 
 from tol3d.analyses.design_points import DesignPoint, design_points
-from tol3d.analyses.limit_state import LimitState, Side
+from tol3d.analyses.limit_state import LimitState, Positions, Side
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent
-from tol3d.system.measure import Measure
 
 PLACES: Final = 16
 STARTS: Final = 2
@@ -32,6 +33,8 @@ MET: Final = 1e-3
 """A step that is left, in standard normals: a distance is then known to its square."""
 LONGEST: Final = 3.0
 """Of a step, in standard normals."""
+SHARES: Final = (0.1, 1.5)
+"""Of a step that is gone."""
 SEEN: Final = 0.01
 """Of the probability: design points that stand for less are left out."""
 PLAIN: Final = 0.1
@@ -77,12 +80,15 @@ class Points:
         return min(1.0, float(self.each.sum()))
 
     def followed(self, response: Response) -> "Points":
-        """The design points with other tolerances."""
+        """The design points with other tolerances.
+
+        Steps that swing or creep are made shorter or longer, each point's by its last two (Irons and Tuck 1969).
+        """
         state = replace(self.state, response=response)
         z, gradients = self.normals.copy(), self.gradients.copy()
-        signs = self.signs.copy()
-        for _ in range(STEPS):
-            inside, gradients = _at(state, z, self.positions)
+        signs, shares, last = self.signs.copy(), np.ones(len(z)), np.zeros_like(z)
+        for k in range(STEPS):
+            inside, gradients = state.at(z, self.positions)[0], state.gradient(z, self.positions)
             square = (gradients * gradients).sum(axis=1)
             known = np.isfinite(inside) & (square > LEAST)
             gradients, inside = np.where(known[:, None], gradients, 0.0), np.where(known, inside, 0.0)
@@ -90,7 +96,12 @@ class Points:
             aim = (((gradients * z).sum(axis=1) - inside) / square)[:, None] * gradients
             step = np.where(known[:, None], aim - z, 0.0)
             size = np.linalg.norm(step, axis=1)
-            z = z + step * np.minimum(1.0, LONGEST / np.maximum(size, LEAST))[:, None]
+            if k:
+                change = step - last
+                shares *= -(last * change).sum(axis=1) / np.maximum((change * change).sum(axis=1), LEAST)
+                shares = np.clip(shares, *SHARES)
+            last = step
+            z = z + step * np.minimum(shares, LONGEST / np.maximum(size, LEAST))[:, None]
             if float(size.max(initial=0.0)) < MET:
                 break
         # ∇g · z is below 0 where the limit lies in the way from a good origin, above 0 from one that fails
@@ -132,24 +143,83 @@ class Points:
         means, variances = np.array(found).T
         return float(means.sum() / self.count), math.sqrt(float(variances.sum())) / self.count
 
-    def slopes(self, x: Array, at: Callable[[Array], Response]) -> Array:
+    def tangent(self) -> "Points":
+        """The same of a limit state that goes on from each of them linearly in the deviations."""
+        state = self.state
+        builds = state.response.deviations(self.normals)
+        rates = state.response.gradient(builds, self.positions)[:, 0] * (1.0 if state.side == "low" else -1.0)
+        inside = np.nan_to_num(state.at(self.normals, self.positions)[0])
+        rates = np.nan_to_num(rates)
+        return replace(self, state=Tangent(state.response, state.limit, state.side, builds, inside, rates))
+
+    def slopes(self, nudged: Sequence[tuple[Response, Response]]) -> Array:
         """Change of the logarithm of the probability with the logarithm of each factor (factors,).
 
         Args:
-            x: logarithms of the factors (factors,).
-            at: the response of one measure at any of them.
+            nudged: for each factor the response of one measure with it larger, and smaller, by `STEP`.
+
+        Raises:
+            TypeError: these are no design points of a tangent.
         """
+        if not isinstance(self.state, Tangent):
+            raise TypeError(f"expected design points of a tangent, got {type(self.state).__name__}")
         sizes = np.maximum(np.linalg.norm(self.gradients, axis=1), LEAST)
         weights = np.exp(-0.5 * self.betas**2) / math.sqrt(2 * math.pi) / self.count
-        found = []
-        for shift in STEP * np.eye(len(x)):
-            ends = [
-                replace(self.state, response=at(own)).at(self.normals, self.positions)[0]
-                for own in (x + shift, x - shift)
-            ]
-            change = np.nan_to_num((ends[0] - ends[1]) / (2 * STEP)) / sizes  # of β
-            found.append(-float((weights * change).sum()))
-        return np.array(found) / max(float(self.each.sum()), LEAST)
+        changes = [self.state.change(self.normals, *ends) / (2 * STEP) / sizes for ends in nudged]  # of β
+        return np.array([-float((weights * own).sum()) for own in changes]) / max(float(self.each.sum()), LEAST)
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent(LimitState):
+    """A limit state that goes on linearly in the deviations from some builds: no mechanism is asked.
+
+    Args:
+        builds: deviations (points, components).
+        inside: the limit state there (points,).
+        rates: its change with the deviations (points, components).
+    """
+
+    builds: Array
+    inside: Array
+    rates: Array
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """Contributors with which it changes."""
+        moves = (self.rates != 0.0).any(axis=0)
+        return frozenset(name for name, own in self.response.slices.items() if moves[own].any())
+
+    def at(self, normals: Array, positions: Positions | None) -> tuple[Array, NDArray[np.bool_]]:
+        """As of a limit state; of as many rows for each of its builds, one build after the other."""
+        rows = self.response.deviations(normals, self.names).reshape(len(self.builds), -1, self.builds.shape[1])
+        found = self.inside[:, None] + ((rows - self.builds[:, None]) @ self.rates[:, :, None])[:, :, 0]
+        return found.ravel(), np.ones(found.size, dtype=bool)
+
+    def gradient(self, normals: Array, positions: Positions) -> Array:
+        """As of a limit state; where draws read no others, the first normals of all are shifted at once, and so on."""
+        response = self.response
+        if response.copula.blocks or any(isinstance(response.draws[name], Dependent) for name in self.names):
+            return super().gradient(normals, positions)
+        own = [(response.normals[name], response.slices[name]) for name in self.names]
+        most = max((its.stop - its.start for its, _ in own), default=0)
+        shifts = np.zeros((2, most, normals.shape[1]))
+        for its, _ in own:
+            count = its.stop - its.start
+            shifts[0, np.arange(count), its.start + np.arange(count)] = STEP
+        shifts[1] = -shifts[0]
+        builds = (normals[:, None] + shifts.reshape(-1, normals.shape[1])).reshape(-1, normals.shape[1])
+        found = response.deviations(builds, self.names).reshape(len(normals), 2, most, self.builds.shape[1])
+        moved = (found[:, 0] - found[:, 1]) / (2 * STEP) * self.rates[:, None]
+        gradient = np.zeros(normals.shape)
+        for its, columns in own:
+            gradient[:, its] = moved[:, : its.stop - its.start, columns].sum(axis=2)
+        return gradient
+
+    def change(self, normals: Array, more: Response, less: Response) -> Array:
+        """From one set of tolerances to another, the normals held (points,)."""
+        names = {name for name, own in more.draws.items() if own is not less.draws[name]} & self.names
+        moved = more.deviations(normals, names) - less.deviations(normals, names)
+        return np.asarray((moved * self.rates).sum(axis=1))
 
 
 def points_of(response: Response, side: Side, limit: float, *, seed: int = 1) -> Points | None:
@@ -161,10 +231,10 @@ def points_of(response: Response, side: Side, limit: float, *, seed: int = 1) ->
         seed: of positions and starts.
     """
     generator = np.random.default_rng(seed)
-    moves = bool(response.simulation.system.streams)
+    state = LimitState(response, limit, side)
+    moves = state.reads_positions
     count = PLACES if moves else 1
     positions = response.positions(count, "drawn" if moves else "rest", int(generator.integers(2**31)))
-    state = LimitState(response, limit, side)
     found = design_points(state, positions, count, STARTS if moves else ALONE, generator)
     own = [(place, point) for place, points in enumerate(found) for point in points]
     if not own:
@@ -185,38 +255,3 @@ def _gathered(state: LimitState, own: Sequence[tuple[int, DesignPoint]], count: 
         np.array([place for place, _ in own]),
         count,
     )
-
-
-def _at(state: LimitState, z: Array, positions: Mapping[str, Array]) -> tuple[Array, Array]:
-    """The limit state (n,) and its gradient by the normals (n, dimension), in one batch."""
-    count, acting = len(z), _acting(state)
-    shifts = np.zeros((1 + 2 * len(acting), z.shape[1]))
-    shifts[1 + np.arange(len(acting)), acting] = STEP
-    shifts[1 + len(acting) + np.arange(len(acting)), acting] = -STEP
-    rows = {name: np.repeat(own, len(shifts), axis=0) for name, own in positions.items()}
-    found = state.at((z[:, None] + shifts).reshape(-1, z.shape[1]), rows)[0].reshape(count, len(shifts))
-    gradient = np.zeros_like(z)
-    gradient[:, acting] = (found[:, 1 : len(acting) + 1] - found[:, len(acting) + 1 :]) / (2 * STEP)
-    return found[:, 0], gradient
-
-
-def _acting(state: LimitState) -> NDArray[np.int64]:
-    """Normals of contributors that act on the measure, and of those that these read."""
-    names = concerned(state.response, state.measure)
-    kept = [own for name, own in state.response.normals.items() if name in names]
-    return np.array([k for own in kept for k in range(own.start, own.stop)], dtype=np.int64)
-
-
-def concerned(response: Response, measure: Measure) -> set[str]:
-    """Contributors that act on a measure, those that these read, and those that are correlated with them."""
-    draws = response.draws
-    names = {own.name for own in response.simulation.system.acting(measure)}
-    waiting = list(names)
-    while waiting:
-        own = waiting.pop()
-        draw = draws[own]
-        more = set(draw.reads) if isinstance(draw, Dependent) else set()
-        more |= {name for block in response.copula.blocks if own in block.names for name in block.names}
-        waiting += more - names
-        names |= more
-    return names

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tol3d.analyses.allocate import Allocation
 from tol3d.analyses.allocate_table import allocation_report
+from tol3d.analyses.allocation_section import Allocation
 from tol3d.analyses.effects import Effects, MeasureEffects
 from tol3d.analyses.effects_table import effects_report
 from tol3d.analyses.methods_section import Methods

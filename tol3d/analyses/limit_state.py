@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Dependent
 from tol3d.system.measure import Measure
 
 Side = Literal["low", "high"]
@@ -18,6 +17,8 @@ Positions = Mapping[str, Array]
 
 STEP: Final = 1e-3
 """Central differences, in standard normals."""
+BUILDS, POSITIONS = 4, 5
+"""By which it is seen whether a limit state reads positions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,17 +48,20 @@ class LimitState:
     @cached_property
     def acting(self) -> NDArray[np.int64]:
         """Normals of contributors that act on the measure, and of those that these read or are correlated with."""
-        draws = self.response.draws
-        names = {own.name for own in self.response.acting(self.measure)}
-        waiting = list(names)
-        while waiting:
-            draw = draws[waiting.pop()]
-            more = set(draw.reads) - names if isinstance(draw, Dependent) else set()
-            names |= more
-            waiting += more
-        names = names.union(*(own.names for own in self.response.copula.blocks if names & set(own.names)))
+        names = concerned(self.response, self.measure)
         kept = [own for name, own in self.response.normals.items() if name in names]
         return np.array([k for own in kept for k in range(own.start, own.stop)], dtype=np.int64)
+
+    @cached_property
+    def reads_positions(self) -> bool:
+        """Whether it differs with the position, by a few builds at a few of them."""
+        if not self.response.simulation.system.streams:
+            return False
+        builds = np.random.default_rng(1).standard_normal((BUILDS, self.dimension))
+        positions = self.response.positions(POSITIONS, "drawn")
+        found, _ = self.at(np.repeat(builds, POSITIONS, axis=0), tiled(positions, BUILDS))
+        each = found.reshape(BUILDS, POSITIONS)
+        return not np.array_equal(each, np.repeat(each[:, :1], POSITIONS, axis=1), equal_nan=True)
 
     def at(self, normals: Array, positions: Positions | None) -> tuple[Array, NDArray[np.bool_]]:
         """Distance of builds (n, dimension) within the limit (n,), and which seat; one that does not has no number."""
@@ -85,9 +89,20 @@ class LimitState:
         return gradient
 
 
+def concerned(response: Response, measure: Measure) -> frozenset[str]:
+    """Contributors that act on a measure, those that these read, and those that are correlated with them."""
+    names = response.read_by({own.name for own in response.acting(measure)})
+    return names.union(*(own.names for own in response.copula.blocks if names & set(own.names)))
+
+
 def repeated(positions: Positions, times: int) -> Positions:
     """Each position so many times in a row."""
     return {name: np.repeat(own, times, axis=0) for name, own in positions.items()}
+
+
+def tiled(positions: Positions, times: int) -> Positions:
+    """All positions so many times, one after the other."""
+    return {name: np.tile(own, (times,) + (1,) * (own.ndim - 1)) for name, own in positions.items()}
 
 
 def taken(positions: Positions, rows: NDArray[np.int64]) -> Positions:

@@ -78,7 +78,7 @@ class Places:
 
 def searched(state: LimitState, places: int, starts: int, alone: int, generator: np.random.Generator) -> Places:
     """Design points at several positions, or at the only one there is; see `rare_event`."""
-    moving = bool(state.response.simulation.system.streams)
+    moving = state.reads_positions
     count = _affordable(state, places, FEWEST_PLACES) if moving else 1
     starts = starts if moving else max(starts, _affordable(state, alone, FEWEST_STARTS))
     seed = int(generator.integers(2**31))

@@ -4,7 +4,7 @@ A response is a simulation, one of its roads and some of its measures. It knows 
 of the contributors, positions those of the system's streams.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Final, Literal
@@ -285,19 +285,35 @@ class Response:
         """Contributors without a smooth map from normals: methods that need one refuse them by name."""
         return tuple(own.name for own in self.contributors if groups_of(self.draws[own.name]) is None)
 
-    def deviations(self, normals: Array) -> Array:
+    def read_by(self, names: Collection[str]) -> frozenset[str]:
+        """Contributors, those that their draws read, and so on."""
+        found, waiting = set(names), list(names)
+        while waiting:
+            draw = self.draws[waiting.pop()]
+            more = set(draw.reads) - found if isinstance(draw, Dependent) else set()
+            found |= more
+            waiting += more
+        return frozenset(found)
+
+    def deviations(self, normals: Array, names: Collection[str] | None = None) -> Array:
         """Deviations (n, components) [mm, rad, K] of standard normals (n, dimension), by the laws of the draws.
 
         The normals are independent; those of correlated contributors are mixed here.
+
+        Args:
+            normals: the rows.
+            names: contributors that are wanted; columns of others may be zeros. All, if not given.
         """
+        wanted = self.draws.keys() if names is None else self.read_by(names)
         normals = np.atleast_2d(np.asarray(normals, dtype=np.float64))
         for block in self.copula.blocks:
             places = [self.normals[name].start for name in block.names]
             mixed = block.mixed([normals[:, place] for place in places])
             normals = normals.copy()
             normals[:, places] = np.array(mixed).T
-        found = np.empty((self.components, len(normals)))
-        for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
+        found = np.zeros((self.components, len(normals)))
+        asked = [_Redrawn(own, self.draws[own.name]) for own in self.contributors if own.name in wanted]
+        for own in in_draw_order(asked):
             uniforms = uniforms_of(own.draw, list(normals[:, self.normals[own.name]].T))
             found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
         return np.ascontiguousarray(found.T)

@@ -24,7 +24,7 @@ FOLDER: Final = "analyses"
 SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
     "what-if": "tol3d.analyses.what_if:WhatIf",
-    "allocation": "tol3d.analyses.allocate:Allocation",
+    "allocation": "tol3d.analyses.allocation_section:Allocation",
     "rare": "tol3d.analyses.rare_section:RareEvents",
     "changes": "tol3d.analyses.what_to_change:Changes",
     "methods": "tol3d.analyses.methods_section:Methods",
