@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from formulas import Formula
+from formulas import formula as response_with
 from numpy.typing import NDArray
 from scipy import stats
 from toys.parabola import PARABOLA
@@ -30,6 +31,7 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
 from tol3d.study.task import materials_of, road_of
 from tol3d.study.worst_cases import worst_cases
+from tol3d.system.copula import Block
 from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
 from tol3d.system.each_planar import EachPlanar
 from tol3d.system.plain import PlainContributor, PlainMeasure
@@ -97,6 +99,16 @@ def test_the_motor_assembly_has_its_published_worst_case_rss_and_modified_rss() 
     assert found.worst.low is not None
     expected = {f"x{k}": [-sign * own * per_inch] for k, (_, sign, own) in enumerate(MOTOR.values())}
     assert dict(found.worst.low.deviations) == {name: pytest.approx(own) for name, own in expected.items()}
+
+
+@pytest.mark.parametrize("rho", [0.6, -0.6])
+def test_rss_of_correlated_normals_is_that_of_their_covariance(rho: float) -> None:
+    """Three sigma of 2 x - y: 3 √(4 σ² + τ² - 4 ρ σ τ)."""
+    draws = scalars([Normal(0.0, 0.01), Normal(0.0, 0.03)])
+    block = Block(("x0", "x1"), ((1.0, rho), (rho, 1.0)))
+    own = response_with(lambda x: 2 * x[:, 0] - x[:, 1], draws, blocks=[block])
+    truth = 3 * math.sqrt(4e-4 + 9e-4 - 4 * rho * 3e-4)
+    assert methods(own).measures["value"].rss == pytest.approx(truth, rel=1e-9)
 
 
 def test_a_linear_sum_of_normals_has_the_same_ends_by_rss_and_by_simulation() -> None:

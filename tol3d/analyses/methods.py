@@ -26,6 +26,7 @@ from tol3d.analyses.subject import Subject
 from tol3d.numerics.arrays import Array
 from tol3d.runs.run import Run
 from tol3d.runs.summary.values import Unit, made
+from tol3d.study.correlated import value_correlations
 from tol3d.study.draws import drawn_ones
 from tol3d.study.regions import (
     Built,
@@ -214,7 +215,8 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
     column = trials.column(own.name)
     worst = _worst(response, source, space, built, trials, column)
     total = float(np.sum(halves))
-    rss, count = float(np.sqrt(np.sum(halves**2))), int(np.count_nonzero(halves > NEGLIGIBLE * total))
+    square = float(np.sum(halves**2)) + _together(response, space, slopes)
+    rss, count = math.sqrt(max(square, 0.0)), int(np.count_nonzero(halves > NEGLIGIBLE * total))
     factor = modified_factor(total, rss, count)
     return made(
         MeasureMethods,
@@ -259,6 +261,21 @@ def _half_tolerances(space: Space, slopes: Array) -> Array:
         if own.acts and slopes[own.columns].any():
             found.append(region_of(own.draw, turning=own.turning).halves(slopes[own.columns]))
     return np.concatenate(found)
+
+
+def _together(response: Response, space: Space, slopes: Array) -> float:
+    """What correlated contributors add to the sum of squares, or take off: each is one number, its half has a sign."""
+    drawn, total = {own.name: own for own in space.drawings if own.acts}, 0.0
+    for block in response.copula.blocks:
+        signed = np.zeros(len(block.names))
+        for k, name in enumerate(block.names):
+            if name in drawn:
+                its = slopes[drawn[name].columns]
+                halves = region_of(drawn[name].draw, turning=drawn[name].turning).halves(its)
+                signed[k] = float(np.sign(its[0])) * float(halves.sum())
+        others = value_correlations(block, response.draws) - np.eye(len(signed))
+        total += float(signed @ others @ signed)
+    return total
 
 
 def _worst(

@@ -1,22 +1,17 @@
 """Sigma by rates: slopes of measures at the mean build and the spreads of the draws, averaged over positions."""
 
-import math
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Final
 
 import numpy as np
-from scipy.special import ndtr
 
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
+from tol3d.study.correlated import value_correlations
 from tol3d.system.draw import Draw, JointDraw, component_sigmas
-from tol3d.system.normals import LEAST, MOST
 
 PLACES: Final = 16
 """Positions at which slopes are taken."""
-NODES: Final = 24
-"""Of a quadrature in one normal."""
 MANY_PLACES: Final = 256
 """Positions at which the mean build is read."""
 
@@ -31,21 +26,6 @@ def covariance_of(draw: Draw) -> Array:
         along = along / (float(np.linalg.norm(along)) or 1.0)
         return np.asarray(draw.sigma**2 * np.outer(along, along))
     return np.diag(np.square(component_sigmas(draw)))
-
-
-def _covariance(one: Draw, other: Draw, correlation: float) -> float:
-    """Of two deviations whose normals are correlated [mm², rad² or K²], by Gauss and Hermite's quadrature."""
-    nodes, weights = np.polynomial.hermite_e.hermegauss(NODES)
-    weights = weights / weights.sum()
-    first, second = np.meshgrid(nodes, nodes, indexing="ij")
-    mixed = correlation * first + math.sqrt(max(1.0 - correlation**2, 0.0)) * second
-    (x,), (y,) = one.deviations(_uniform(nodes)), other.deviations(_uniform(mixed.ravel()))
-    product = (x - weights @ x)[:, None] * y.reshape(mixed.shape)
-    return float(weights @ product @ weights)
-
-
-def _uniform(normals: Array) -> Array:
-    return np.asarray(np.clip(ndtr(normals), LEAST, MOST))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +56,10 @@ class Rates:
         """What correlated contributors add to the variances, or take off (measures,)."""
         total = np.zeros(self.slopes.shape[1])
         for block in response.copula.blocks:
-            for (k, one), (n, other) in combinations(enumerate(block.names), 2):
-                covariance = _covariance(response.draws[one], response.draws[other], float(block.correlation[k, n]))
-                both = self.slopes[:, :, response.slices[one].start] * self.slopes[:, :, response.slices[other].start]
-                total += 2.0 * covariance * both.mean(axis=0)
+            sigmas = np.array([response.draws[name].sigma for name in block.names])
+            effects = self.slopes[:, :, [response.slices[name].start for name in block.names]] * sigmas
+            others = value_correlations(block, response.draws) - np.eye(len(sigmas))
+            total += np.einsum("pmi,ij,pmj->m", effects, others, effects) / len(effects)
         return total
 
 
