@@ -140,10 +140,19 @@ class Search:
         self.tangents = {key: own.tangent() for key, own in self.points.items()}
 
     def _nudged(self, other: Response) -> list[tuple[Response, Response]]:
-        def with_factor(name: str, factor: float) -> Response:
-            return other.scaled(dict.fromkeys(self.groups[name], factor), self.question.stays, physical=False)
+        """For each factor the response with it larger and smaller, by two steps to one side where a bound is near."""
 
-        return [(with_factor(name, math.exp(STEP)), with_factor(name, math.exp(-STEP))) for name in self.names]
+        def at(name: str, steps: int) -> Response:
+            factors = dict.fromkeys(self.groups[name], math.exp(steps * STEP))
+            return other.scaled(factors, self.question.stays, physical=False)
+
+        found = []
+        for name in self.names:
+            try:
+                found.append((at(name, 1), at(name, -1)))
+            except InputError:  # a zone no wider than what refines it
+                found.append((at(name, 2), other))
+        return found
 
 
 def with_sides(response: Response, target: Target) -> Target:

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
 from tol3d.cli.arguments import (
     AcceptOption,
     EngineOption,
@@ -21,24 +22,15 @@ from tol3d.cli.arguments import (
 )
 from tol3d.cli.console import INTERRUPTED, err_console, out_console, tell
 
-SubjectArgument = Annotated[
-    str, typer.Argument(metavar="SCENE|RUN", help="A scene's file or bundled name, or the folder of a finished run.")
-]
-PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the picture here.")]
-CsvOption = Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write the table to this file.")]
-
 
 def changes(
-    scene: SubjectArgument,
+    subject: SubjectArgument,
     measure: Annotated[str | None, typer.Option(help="Which; by default all that are NOT OK.")] = None,
     accept: AcceptOption = None,
     builds: Annotated[
         Any, typer.Option(parser=whole(50), metavar="N", help="By which each change is judged; 5000, or less if slow.")
     ] = None,
-    csv: Annotated[
-        Path | None,
-        typer.Option("--csv", metavar="FILE", help="Write slopes and shares of every contributor and measure."),
-    ] = None,
+    csv: CsvOption = None,
     picture: PictureOption = None,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
@@ -51,40 +43,18 @@ def changes(
     from tol3d.report.verdict import ACCEPTED_PPM
     from tol3d.system.faults import faults_of
 
-    subject = subject_of(scene, trust_parts=trust_parts, run_builders=run_builders)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     accepted = ACCEPTED_PPM if accept is None else accept
     question = ChangesQuestion(measure, accepted, builds)
-    with faults_of(subject.simulation.mechanism), err_console.status("builds") as status:
-        response = subject.response
-        bad = None if subject.run is None else not_ok(subject.run, accepted)
+    with faults_of(own.simulation.mechanism), err_console.status("builds") as status:
+        response = own.response
+        bad = None if own.run is None else not_ok(own.run, accepted)
         found = changes_of(response, question, bad=bad, activity=status.update)
-        if csv is not None:
-            status.update("contributions")
-            write_csv(contributions_table(contributions_of(response, measure)).csv(), csv)
-    out_console.print(changes_report(subject.simulation.system.name, found))
-    if csv is not None:
-        tell(f"contributions: {csv}")
-    if picture is not None:
-        from tol3d.analyses.what_to_change_picture import draw_changes
-
-        draw_changes(subject.simulation.system.name, found, picture)
-        tell(f"picture: {picture}")
-    if (path := subject.keep("changes", found)) is not None:
-        tell(f"kept in the run: {path}")
-
-
-def write_csv(text: str, path: Path) -> None:
-    """Write a table.
-
-    Raises:
-        InputError: the file cannot be written.
-    """
-    from tol3d.errors import unwritable
-
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise unwritable(path, error, "choose another file") from None
+        numbers = "" if csv is None else contributions_table(contributions_of(response, measure)).csv()
+    name = own.simulation.system.name
+    tell_found(own, "changes", found, changes_report(name, found))
+    write_numbers(csv, numbers)
+    draw_picture(picture, "tol3d.analyses.what_to_change_picture:draw_changes", name, found)
 
 
 def sweep(
@@ -134,14 +104,9 @@ def sweep(
         found = swept(loaded, question, replace(order, done=done))
     out_console.print(sweep_report(found))
     write_text(text_of_section(found), folder / NAME)
-    if csv is not None:
-        write_text(whole_table(found).csv(), csv)
-    if picture is not None:
-        from tol3d.analyses.sweep_picture import draw_sweep
-
-        draw_sweep(found, picture)
-    files = [folder / NAME, *(own for own in (csv, picture) if own is not None)]
-    tell(f"variants: {folder}    files: {', '.join(map(str, files))}")
+    tell(f"variants: {folder}    all of them: {folder / NAME}")
+    write_numbers(csv, whole_table(found).csv())
+    draw_picture(picture, "tol3d.analyses.sweep_picture:draw_sweep", found)
 
 
 @contextmanager

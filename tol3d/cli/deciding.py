@@ -5,12 +5,9 @@ from typing import Annotated, Any
 
 import typer
 
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console, out_console, tell
-
-SubjectArgument = Annotated[str, typer.Argument(metavar="SCENE|RUN", help="A scene, or the folder of a finished run.")]
-CsvOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Write all numbers here.")]
-PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the picture here.")]
+from tol3d.cli.console import err_console, tell
 
 
 def what_if(
@@ -51,15 +48,9 @@ def what_if(
         trials, draws = (0, 0) if quick else (trials, draws)
         found = asked(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=status.update)
     report = what_if_report(own.name, found)
-    out_console.print(report)
-    _written(csv, report.csv())
-    if picture is not None:
-        from tol3d.analyses.what_if_picture import draw_what_if
-
-        draw_what_if(own.name, found, picture)
-        tell(f"picture: {picture}")
-    if (kept := own.keep("what-if", found)) is not None:
-        tell(f"kept in the run: {kept}")
+    tell_found(own, "what-if", found, report)
+    write_numbers(csv, report.csv())
+    draw_picture(picture, "tol3d.analyses.what_if_picture:draw_what_if", own.name, found)
 
 
 def allocate(
@@ -122,25 +113,11 @@ def allocate(
         found = allocation(response, targets, question, draws=draws, seed=seed, activity=status.update)
         scene = None if out is None else allocated_scene(own.scene, response, found, question.stays)
     report = allocation_report(own.name, found)
-    out_console.print(report)
-    _written(csv, report.csv())
-    if picture is not None:
-        from tol3d.analyses.allocate_picture import draw_allocation
-
-        draw_allocation(own.name, found, picture)
-        tell(f"picture: {picture}")
+    tell_found(own, "allocation", found, report)
+    write_numbers(csv, report.csv())
+    draw_picture(picture, "tol3d.analyses.allocate_picture:draw_allocation", own.name, found)
     if scene is not None and out is not None:
         from tol3d.scene.edit import write_scene
 
         write_scene(scene, out)
         tell(f"scene: {out}")
-    if (kept := own.keep("allocation", found)) is not None:
-        tell(f"kept in the run: {kept}")
-
-
-def _written(path: Path | None, text: str) -> None:
-    if path is not None:
-        from tol3d.records.folder import write_texts
-
-        write_texts({path.name: text}, path.parent)
-        tell(f"numbers: {path}")

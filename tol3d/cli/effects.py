@@ -1,13 +1,13 @@
 """The command that tells what each contributor does to each measure."""
 
 from enum import StrEnum
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console, out_console, tell
+from tol3d.cli.console import err_console
 
 
 class PositionWord(StrEnum):
@@ -18,7 +18,7 @@ class PositionWord(StrEnum):
 
 
 def effects(
-    subject: Annotated[str, typer.Argument(metavar="SCENE|RUN", help="A scene, or the folder of a finished run.")],
+    subject: SubjectArgument,
     measure: Annotated[str | None, typer.Option(help="On which measure; all that are one number a trial.")] = None,
     base: Annotated[
         Any, typer.Option(parser=whole(2), metavar="N", help="Pairs of builds, a power of two; as time allows.")
@@ -30,8 +30,8 @@ def effects(
     shapley: Annotated[
         bool, typer.Option("--shapley", help="Shapley effects too, also where nothing is correlated.")
     ] = False,
-    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all numbers here.")] = None,
-    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the matrix here.")] = None,
+    csv: CsvOption = None,
+    picture: PictureOption = None,
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
@@ -39,7 +39,6 @@ def effects(
     from tol3d.analyses.effects import effects as found_effects
     from tol3d.analyses.effects_table import effects_csv, effects_report
     from tol3d.analyses.subject import subject_of
-    from tol3d.records.folder import write_texts
     from tol3d.system.faults import faults_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
@@ -53,14 +52,7 @@ def effects(
             shapley=shapley,
             activity=status.update,
         )
-    out_console.print(effects_report(found))
+    tell_found(asked, "effects", found, effects_report(found))
     if csv is not None:
-        write_texts({csv.name: effects_csv(found)}, csv.parent)
-        tell(f"numbers: {csv}")
-    if picture is not None:
-        from tol3d.analyses.effects_picture import draw_effects
-
-        draw_effects(found, picture)
-        tell(f"picture: {picture}")
-    if (kept := asked.keep("effects", found)) is not None:
-        tell(f"kept in the run: {kept}")
+        write_numbers(csv, effects_csv(found))
+    draw_picture(picture, "tol3d.analyses.effects_picture:draw_effects", found)

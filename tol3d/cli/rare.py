@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console, out_console, tell
+from tol3d.cli.console import err_console, tell
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +28,7 @@ class MethodName(StrEnum):
 
 
 def rare(
-    subject: Annotated[str, typer.Argument(metavar="SCENE|RUN", help="A scene, by file or name, or a run's folder.")],
+    subject: SubjectArgument,
     measure: Annotated[str | None, typer.Option(help="Whose limits; those of all measures.")] = None,
     method: Annotated[
         MethodName,
@@ -43,8 +44,8 @@ def rare(
         ),
     ] = None,
     seed: Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="Of its draws.")] = 1,
-    csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the tables too.")] = None,
-    picture: Annotated[Path | None, typer.Option(metavar="FILE", help="Draw them: .png, .svg or .pdf.")] = None,
+    csv: CsvOption = None,
+    picture: PictureOption = None,
     export: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="Write the design point's build: .glb, .stl, .ply or .step; of one measure."),
@@ -60,8 +61,7 @@ def rare(
     from tol3d.analyses.rare_section import rare_section
     from tol3d.analyses.rare_table import rare_report
     from tol3d.analyses.subject import subject_of
-    from tol3d.errors import InputError, unwritable
-    from tol3d.runs.atomic_write import write_whole
+    from tol3d.errors import InputError
     from tol3d.system.faults import faults_of
 
     if measure is None and (export or view):
@@ -74,20 +74,9 @@ def rare(
         )
         found = rare_section(simulation.system.name, seed, asked.response, events)
     report = rare_report(found)
-    out_console.print(report)
-    if kept := asked.keep("rare", found):
-        tell(f"kept in the run: {kept}")
-    if csv is not None:
-        try:
-            write_whole(csv, report.csv().encode())
-        except OSError as error:
-            raise unwritable(csv, error, "choose another file") from None
-        tell(str(csv))
-    if picture is not None:
-        from tol3d.analyses.rare_picture import draw_rare
-
-        draw_rare(found, picture)
-        tell(f"picture: {picture}")
+    tell_found(asked, "rare", found, report)
+    write_numbers(csv, report.csv())
+    draw_picture(picture, "tol3d.analyses.rare_picture:draw_rare", found)
     if export or view:
         _show(asked, events, export, view)
 
