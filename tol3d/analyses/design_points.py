@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.analyses.limit_state import LimitState, Positions, at_place, repeated, taken
+from tol3d.analyses.limit_state import LimitState, Positions, at_place, repeated, taken, tiled
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 60
@@ -84,16 +84,16 @@ def design_points(
     begun = np.full((places, state.dimension), AT_ORIGIN)
     first, beyond = _walked(state, begun, positions, np.zeros(places, dtype=bool), known=False)
     found = [[own] if own is not None else [] for own in first]
-    for k in range(1, starts):
-        begun = generator.standard_normal((places, state.dimension))
-        if k == 1:
-            for place, own in enumerate(first):
-                if own is not None:
-                    begun[place] = -own.normals + 0.05 * begun[place]
-        more, _ = _walked(state, begun, positions, beyond, known=True)
-        for mine, own in zip(found, more, strict=True):
+    if starts > 1:
+        others = generator.standard_normal((starts - 1, places, state.dimension))
+        for place, own in enumerate(first):
             if own is not None:
-                mine.append(own)
+                others[0, place] = -own.normals + 0.05 * others[0, place]
+        rows, again = others.reshape(-1, state.dimension), starts - 1
+        more, _ = _walked(state, rows, tiled(positions, again), np.tile(beyond, again), known=True)
+        for k, own in enumerate(more):
+            if own is not None:
+                found[k % places].append(own)
     return [kept(own) for own in found]
 
 
