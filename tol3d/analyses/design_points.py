@@ -90,7 +90,8 @@ def design_points(
             if own is not None:
                 others[0, place] = -own.normals + 0.05 * others[0, place]
         rows, again = others.reshape(-1, state.dimension), starts - 1
-        more, _ = _walked(state, rows, tiled(positions, again), np.tile(beyond, again), known=True)
+        size = _size(state.at(begun, positions)[0])
+        more, _ = _walked(state, rows, tiled(positions, again), np.tile(beyond, again), known=True, scale=size)
         for k, own in enumerate(more):
             if own is not None:
                 found[k % places].append(own)
@@ -129,10 +130,16 @@ def kept(points: Sequence[DesignPoint]) -> list[DesignPoint]:
 
 
 def _walked(
-    state: LimitState, begun: Array, positions: Positions, beyond: NDArray[np.bool_], *, known: bool
+    state: LimitState,
+    begun: Array,
+    positions: Positions,
+    beyond: NDArray[np.bool_],
+    *,
+    known: bool,
+    scale: float | None = None,
 ) -> tuple[list[DesignPoint | None], NDArray[np.bool_]]:
     """The design point to which each start leads, and whether the build at the origin fails."""
-    walk = _Walk.begun(state, begun, positions)
+    walk = _Walk.begun(state, begun, positions, scale)
     if not known:
         beyond = walk.inside < 0.0
     for _ in range(ROUNDS):
@@ -151,6 +158,11 @@ def _walked(
         for k in range(len(begun))
     ]
     return found, beyond
+
+
+def _size(inside: Array) -> float:
+    """Size of a limit state, by its values (n,)."""
+    return float(np.nanmax(np.abs(inside), initial=0.0)) or 1.0
 
 
 @dataclass(eq=False)
@@ -177,10 +189,10 @@ class _Walk:
     ended: NDArray[np.bool_]
 
     @classmethod
-    def begun(cls, state: LimitState, normals: Array, positions: Positions) -> "_Walk":
+    def begun(cls, state: LimitState, normals: Array, positions: Positions, scale: float | None = None) -> "_Walk":
         """At their starts; those that do not seat go nowhere."""
         inside, _ = state.at(normals, positions)
-        scale, none = float(np.nanmax(np.abs(inside), initial=0.0)) or 1.0, np.zeros(len(normals), dtype=bool)
+        scale, none = scale or _size(inside), np.zeros(len(normals), dtype=bool)
         return cls(state, positions, normals.copy(), inside, np.zeros_like(normals), scale, none, ~np.isfinite(inside))
 
     @property
