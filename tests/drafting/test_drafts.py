@@ -12,10 +12,15 @@ from fixtures import Command
 from foreign_parts import nist_file, solid, step_file
 
 from tol3d.drafting import scene_from
+from tol3d.drafting.entry import Entry, Scene, Wording
+from tol3d.drafting.fixture import three_two_one
+from tol3d.drafting.parts import drafted_parts, read_files
 from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
+from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.step.reading import read_step
+from tol3d.study.draws import drawn
 from tol3d.system.stated import nominal_build
 
 HOSTILE = (
@@ -235,3 +240,46 @@ def test_a_part_without_a_drawing_runs_too(two: tuple[Path, Path], tmp_path: Pat
     assert tol3d("new", "--from", str(two[0]), "--out", str(out))[0] == 0
     code, _, err = tol3d("run", str(out), "--trials", "16", "--out", str(tmp_path / "run"), "--no-picture")
     assert code == 0, err
+
+
+def test_a_tolerance_that_cannot_be_read_is_listed_and_counts() -> None:
+    """Its magnitude is another tolerance: the sums stay those of the file."""
+    content = nist_file("ctc_01")
+    place = content.content.index(b"#22=")
+    end = content.content.index(b";", place)
+    broken = re.sub(rb",#\d+,", b",#26,", content.content[place:end], count=1)
+    text, _ = scene_from([FileContent(content.path, content.content[:place] + broken + content.content[end:])])
+    assert re.search(r"^# Of the 6 tolerances in \S+ 3 are said, 1 approximately, 2 left out\.$", text, re.MULTILINE)
+    assert re.search(r"^#   #22: ", text, re.MULTILINE)
+
+
+def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> None:
+    """Pads at 0.4 of each face's extents: the part stands where it is drawn, and a higher pad turns it by its lever."""
+    content = step_file({"block": BLOCK}, tmp_path / "block.step")
+    (part,) = drafted_parts(read_files([content]), Names())
+    wanted = ((0, 0, -10), (0, -10, 0), (-10, 0, 0))
+    frame = []
+    for letter, at in zip("ABC", wanted, strict=True):
+        (own,) = (each for each in part.features.part.features if np.allclose(each.at, at))
+        frame.append(part.features.add([own], letter))
+    (top,) = (each for each in part.features.part.features if np.allclose(each.at, (0, 0, 10)))
+    entries = three_two_one(part, frame, "fixture", "laid", "set up")
+    words = f"{{kind: gap, from: fixture.A3, to: {part.of(part.features.name(top))}, along: [0, 0, 1]}}"
+    measure = Entry("measures", "height", [Wording((words,))])
+    text, _ = Scene(["scene: block"], "{kind: normal}", [part.entry(), *entries, measure]).written()
+    higher = "{kind: locator, of: laid, pair: primary 1, distribution: {kind: constant, value: 0.08 mm}}"
+    text += f"tolerances:\n  pad: {higher}\n"
+    simulation = simulation_of(scene_file(text, tmp_path), Overrides())
+    system = simulation.system
+    road = system.road("exact", system.materials("exact"))
+    values = road.answers(drawn(simulation, 0, 1), system.measures).values["height"]
+    nominal = road.answers(nominal_build(system), system.measures).values["height"]
+    assert nominal[0, 0] == pytest.approx(20.0, abs=1e-9)
+    # pads of A at (-8, -8), (8, -8) and (0, 8) in its plane; the first one 0.08 higher lifts the middle by a quarter
+    assert values[0, 0] - 20.0 == pytest.approx(0.02, abs=1e-3)
+
+
+def scene_file(text: str, folder: Path) -> SceneOfFile:
+    """A scene as a file, which is read."""
+    (folder / "scene.yaml").write_text(text, encoding="utf-8")
+    return load(folder / "scene.yaml")

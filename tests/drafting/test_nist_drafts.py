@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from foreign_parts import nist_file
 from places import TESTS
 
@@ -38,6 +39,10 @@ SIGMAS = 0.005
 
 FORM = {10068: 10128, 10426: 10369}
 """Profiles of STC-06 beside a flatness of half their width on the same face, which takes that from its place."""
+
+
+DOUBLED = 948
+"""Of CTC-05, a second run-out of one pin, by faces of it that the file names apart."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +105,19 @@ def test_each_tolerance_is_what_the_table_has_it(drafted: Drafted) -> None:
         r"^# Of the (\d+) tolerances in \S+ (\d+) are said, (\d+) ap\S+ (\d+) left out", drafted.text, re.M
     )
     assert list(map(int, told)) == [sum(map(len, wanted.values())), *map(len, wanted.values())]
+
+
+def test_each_entry_has_the_kind_of_the_table(drafted: Drafted) -> None:
+    """Of an orientation of several faces each has the kind by its own angle; a doubled run-out is inspected."""
+    scene = yaml.safe_load(drafted.text)
+    kinds = {int(row["id"]): row["kind"] for row in ROWS if row["model"] == named(drafted.model)}
+    turned = {"parallelism", "perpendicularity", "angularity"}
+    for own in drafted.draft.entries:
+        if own.stands and own.source in kinds and own.section in ("tolerances", "measures"):
+            kind, wanted = scene[own.section][yaml.safe_load(own.name)]["kind"], kinds[own.source]
+            if {kind, wanted} <= turned or own.source == DOUBLED:
+                continue
+            assert kind == wanted, own.name
 
 
 def test_every_tolerance_of_the_file_stands_in_the_scene_by_its_number(drafted: Drafted) -> None:

@@ -95,7 +95,8 @@ class Draft:
                 left.append(f"{source(tolerance)}: {comment(reason, LONGEST)}")
             elif meaning.why or why:
                 lost.append(f"{source(tolerance)}: {comment('; '.join(filter(None, (meaning.why, why))), LONGEST)}")
-        count = len(own.text.tolerances)
+        left += unread(own, "tolerance")
+        count = len(own.text.tolerances) + len(unread(own, "tolerance"))
         said = count - len(lost) - len(left)
         name = comment(own.file.content.path.name)
         if count:
@@ -131,10 +132,18 @@ class Draft:
                 )
             )
             left.append(f"#   {comment(str(dimension))}: #{dimension.id}: {comment(why, LONGEST)}")
-        count = len(own.text.dimensions)
+        left += [f"#   {line}" for line in unread(own, "dimension")]
+        count = len(own.text.dimensions) + len(unread(own, "dimension"))
         if count:
             yield f"# Of its {count} dimensions {count - len(left)} are said, {len(left)} not:"
             yield from left
+
+
+def unread(own: ReadText, what: str) -> list[str]:
+    """The tolerances or dimensions of a file that cannot be read, each with why, for the list of what is left out."""
+    read = {each.id for each in own.text.tolerances} | {each.id for each in own.text.dimensions}
+    lost = [each for each in own.text.remarks if each.what == what and each.id not in read]
+    return [f"#{each.id}: {comment(each.why, LONGEST)}" for each in lost]
 
 
 def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
