@@ -122,6 +122,7 @@ def test_holes_in_line_are_bolted_and_faces_that_touch_are_laid_on_each_other(tm
     simulation_of(load(tmp_path / "scene.yaml"), Overrides())
 
 
+@pytest.mark.slow
 def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) -> None:
     """A block 20 mm wide whose underside stands 3 mm over the plate's top at z = 5."""
     text = drafted(tmp_path, {"plate": PLATE, "block": BLOCK.translate(cq.Vector(0, 0, 18))})
@@ -235,6 +236,7 @@ def test_wrong_words_are_told(words: tuple[str, ...], said: str, tol3d: Command)
     assert said in re.sub(r"\s+", " ", err)
 
 
+@pytest.mark.slow
 def test_a_part_without_a_drawing_runs_too(two: tuple[Path, Path], tmp_path: Path, tol3d: Command) -> None:
     out = tmp_path / "base" / "scene.yaml"
     assert tol3d("new", "--from", str(two[0]), "--out", str(out))[0] == 0
@@ -253,6 +255,7 @@ def test_a_tolerance_that_cannot_be_read_is_listed_and_counts() -> None:
     assert re.search(r"^#   #22: ", text, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> None:
     """Pads at 0.4 of each face's extents: the part stands where it is drawn, and a higher pad turns it by its lever."""
     content = step_file({"block": BLOCK}, tmp_path / "block.step")
