@@ -164,8 +164,8 @@ def test_pages_are_small_and_soon_ready(name: str, page: Page, tmp_path: Path) -
     path = write_report(run, tmp_path / "report.html")
     assert path.stat().st_size < LARGEST
     waited = []
-    for _ in range(3):
+    for _ in range(5):
         page.open(path)
         page.wait(READY)
         waited.append(page.ask("performance.getEntriesByName('seen')[0].startTime"))
-    assert sorted(waited)[1] < 1000 * SOON
+    assert sorted(waited)[2] < 1000 * SOON
