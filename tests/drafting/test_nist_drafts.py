@@ -193,3 +193,42 @@ def test_parts_of_one_file_have_datums_of_their_own_letters() -> None:
 
     assert kept(draft) == sorted(number for own in apart for number in kept(own))
     assert text.count("kind: step") == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("model", ["ftc_07", "ftc_10", "stc_06", "stc_07"])
+def test_distances_and_sizes_are_within_the_limits_of_the_file_and_reach_them(model: str, tmp_path: Path) -> None:
+    """Oracle: least and most as the file states them, whatever the scene makes of its nominal shape, and of signs."""
+    content = nist_file(model)
+    (tmp_path / content.path.name).write_bytes(content.content)
+    text, draft = scene_from([content])
+    text = text.replace("&zones {kind: normal}", "&zones {kind: uniform}")
+    text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")
+    limits = {own.id: own.limits for own in draft.files[0].text.dimensions if own.limits}
+    radii = {own.id for own in draft.files[0].text.dimensions if "radius" in own.kind}
+    scene = yaml.safe_load(text)
+    wanted = {yaml.safe_load(own.name): own.source for own in draft.entries if own.stands and own.source in limits}
+    lines = []
+    for name in wanted:
+        spec = scene["tolerances"][name]
+        part, _, feature = spec["of"].partition(".")
+        if spec["kind"] == "plus_minus":
+            words = f"{{kind: point_plane, from: '{spec['of']}', to: '{part}.{spec['datums'][0]}'}}"
+        else:
+            first = " 1" if "count" in scene["parts"][part]["features"][feature] else ""
+            words = f"{{kind: inspected_size, of: '{spec['of']}{first}'}}"
+        lines.append(f"  'asked {wanted[name]}': {words}")
+    text = text.replace("\nmeasures:\n", "\nmeasures:\n" + "\n".join(lines) + "\n")
+    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
+    simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
+    system = simulation.system
+    assert isinstance(system, AssemblySystem)
+    values = (
+        system.road("exact", system.materials("exact")).answers(drawn(simulation, 0, TRIALS), system.measures).values
+    )
+    assert len(wanted) > 3
+    for number in wanted.values():
+        least, most = (own * (2 if number in radii else 1) for own in limits[number])
+        found = np.abs(values[f"asked {number}"][:, 0])
+        assert least - WITHIN <= found.min() <= least + 0.02 * (most - least), number
+        assert most + WITHIN >= found.max() >= most - 0.02 * (most - least), number

@@ -138,6 +138,8 @@ class Drawing:
                 self.reasons[tolerance.id] = str(error)
                 continue
             if self.is_slot(tolerance, meaning.kind):
+                if len(found) == 2:
+                    self.features.slot(found)
                 continue
             by_name[tolerance.id] = tolerance.name
             for own in found:
