@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.drafting.dimensions import sized, take_distance, take_size
 from tol3d.drafting.entry import LAW, Entry, Wording
 from tol3d.drafting.features import Features, Group
-from tol3d.drafting.words import Names, comment, direction, length, scalar
-from tol3d.numerics.arrays import Array
+from tol3d.drafting.words import Names, comment, length, scalar
+from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, zone
 from tol3d.step.dimension import Dimension
 from tol3d.step.found import FoundFeature, Triple
 from tol3d.step.frame import frame
@@ -20,10 +21,6 @@ from tol3d.step.refused import StepError
 from tol3d.step.shape import shape_of
 from tol3d.step.tolerance import Tolerance
 
-SMALLEST_ZONE: Final = 1e-6  # mm; a zone of 0 at MMC is written so
-ROUND: Final = frozenset(("cylinder", "sphere"))
-SQUARE: Final = 1e-6
-FORMS: Final = frozenset(("flatness", "straightness"))
 INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"
 
@@ -87,12 +84,12 @@ class Drawing:
         self.take_datums()
         self.take_families()
         for dimension in self.dimensions:
-            self.take_size(dimension)
+            take_size(self, dimension)
         for tolerance, meaning in self.tolerances:
             if meaning.how != NOTHING:
                 self.say(tolerance, meaning)
         for dimension in self.dimensions:
-            self.take_distance(dimension)
+            take_distance(self, dimension)
 
     def take_datums(self) -> None:
         """Select the feature of each datum, under its letter."""
@@ -145,7 +142,7 @@ class Drawing:
             for own in found:
                 signed.setdefault(own.faces, (own, []))[1].append(tolerance.id)
         for dimension in self.dimensions:
-            for own in self.sized(dimension):
+            for own in sized(self, dimension):
                 if own.faces in signed:
                     signed[own.faces][1].append(dimension.id)
                     by_name[dimension.id] = dimension.name
@@ -187,57 +184,6 @@ class Drawing:
                     above = float(np.dot(np.subtract(own.at, member.at), axis))
                     return None if above > 0.0 else (-float(axis[0]), -float(axis[1]), -float(axis[2]))
         return None
-
-    def sized(self, dimension: Dimension) -> list[FoundFeature]:
-        """The round features of which a dimension is the size; none where it is of others."""
-        if not dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
-            return []
-        try:
-            found = self.features.of_faces(dimension.features[0].faces)
-        except StepError:
-            return []
-        wanted = ("hole", "pin", "ball", "socket")
-        return [own for own in found if own.kind in wanted] if "angle" not in dimension.kind else []
-
-    def take_size(self, dimension: Dimension) -> None:
-        """A size with limits of what the scene uses."""
-        if dimension.limits is None or dimension.role != "toleranced" or "angle" in dimension.kind:
-            return
-        per = 2.0 if "radius" in dimension.kind else 1.0
-        round_ones = self.sized(dimension)
-        known = [own for own in map(self.features.named, round_ones) if own is not None]
-        groups = list({id(group): group for group, _ in known}.values())
-        if not round_ones and (slot := self.slot_of(dimension)) is not None:
-            groups = [slot]
-        for group in groups:
-            if group.size is None or group.name in self.sizes:
-                continue
-            least, most = (per * own for own in dimension.limits)
-            self.sizes[group.name] = self.size_entry(dimension, group, least - group.size, most - group.size)
-        if round_ones and not groups:
-            self.reasons[dimension.id] = "the size of what no tolerance of this scene is of"
-
-    def slot_of(self, dimension: Dimension) -> Group | None:
-        """The slot or tab whose width a dimension is."""
-        faces = {face for each in dimension.features for face in each.faces}
-        for group in self.features.groups:
-            walls = [set(own.faces) for own in group.slot]
-            if len(walls) == 2 and all(faces & own for own in walls) and faces <= walls[0] | walls[1]:
-                return group
-        return None
-
-    def size_entry(self, dimension: Dimension, group: Group, lower: float, upper: float) -> Entry:
-        """A size as an entry."""
-        named = comment(dimension.name)
-        remark = f"{comment(str(dimension))}{unit_of(dimension)}: {named + ', ' if named else ''}#{dimension.id}"
-        line = (
-            f"{{kind: size, of: {self.of(group.name)}, distribution: {{kind: {self.spread}, "
-            f"lower: {length(lower)}, upper: {length(upper)}}}}}"
-        )
-        name = self.names.new(f"{group.name} size", "size", len(group.members))
-        made = Entry("tolerances", scalar(name), [Wording((line,), remark)], dimension.id, str(dimension))
-        self.entries.append(made)
-        return made
 
     def of(self, feature: str) -> str:
         """A feature with its part, as YAML."""
@@ -331,44 +277,11 @@ class Drawing:
             cosine = 1.0 - cosine if cosine in (0.0, 1.0) else cosine
         return "parallelism" if cosine > 1.0 - SQUARE else "perpendicularity" if cosine < SQUARE else "angularity"
 
-    def zone(self, tolerance: Tolerance, kind: str, group: Group) -> str:
-        """The zone of a tolerance as YAML.
-
-        Raises:
-            StepError: the file does not say in which direction it limits.
-        """
-        assert tolerance.magnitude is not None
-        size = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
-        projected = ""
-        if tolerance.projected is not None and group.kind == "cylinder" and kind == "position":
-            projected = f", projected: {length(tolerance.projected.length.value)}"
-        if group.kind in ("plane", "slot") or kind in ("circular_run_out", "total_run_out", *FORMS):
-            outward = f", outward: {length(tolerance.unequal.value)}" if tolerance.unequal and kind == "profile" else ""
-            return f"{{width: {size}{outward}}}"
-        if tolerance.zone != "width" or kind == "coaxiality" or group.kind == "sphere":
-            return f"{{diameter: {size}{projected}}}"
-        return f"{{width: {size}, along: {direction(self.limited(tolerance, group))}{projected}}}"
-
-    def limited(self, tolerance: Tolerance, group: Group) -> Array:
-        """The one direction in which a width limits an axis: across the last flat datum that lies along it.
-
-        Raises:
-            StepError: no datum says it.
-        """
-        axis = np.array(group.members[0].direction)
-        for each in reversed(tolerance.datums):
-            shape = self.meanings.datum_shape(each)
-            if shape is not None and shape.kind in ("plane", "slot"):
-                normal = np.array(shape.surfaces[0].direction)
-                if abs(float(normal @ axis)) < SQUARE:
-                    return normal
-        raise StepError("a width of an axis, in a direction that the file does not say")
-
     def wordings(
         self, tolerance: Tolerance, kind: str, group: Group, datums: tuple[tuple[str, str], ...], *, has_law: bool
     ) -> Iterator[tuple[str, str]]:
         """Ways to write a tolerance, the best first, with what is lost."""
-        zone = self.zone(tolerance, kind, group)
+        own = zone(self.meanings, tolerance, kind, group)
         law = f", law: {LAW}" if has_law else ""
         modifier = modifier_of(tolerance) if group.name in self.sizes and kind not in FORMS else ""
         for k, (said, _) in enumerate(datums):
@@ -377,7 +290,7 @@ class Drawing:
                 lost += ["the bonus is lost"] if bonus != modifier else []
                 frame_words = f", datums: [{said}]" if said and kind not in FORMS else ""
                 extra = f", modifier: {bonus}" if bonus else ""
-                head = f"{{kind: {kind}, of: {self.of(group.name)}, zone: {zone}"
+                head = f"{{kind: {kind}, of: {self.of(group.name)}, zone: {own}"
                 yield f"{head}{law}{frame_words}{extra}}}", "; ".join(lost)
 
     def inspect(
@@ -413,62 +326,6 @@ class Drawing:
             name = self.names.new(f"inspected {label}{number}", measured)
             source_id = None if entry is not None else tolerance.id
             self.entries.append(Entry("measures", scalar(name), words, source_id, remark, needs))
-
-    def take_distance(self, dimension: Dimension) -> None:
-        """A distance of two parallel faces with limits, of the one that nothing else locates."""
-        if dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
-            return
-        if "distance" not in dimension.kind or self.slot_of(dimension) is not None:
-            return
-        try:
-            sides = [self.features.of_faces(each.faces) for each in dimension.features]
-            if [len(own) for own in sides] != [1, 1] or {own[0].kind for own in sides} != {"plane"}:
-                raise StepError("a distance of other features than two faces")
-            first, second = sides[0][0], sides[1][0]
-            if abs(abs(float(np.dot(first.direction, second.direction))) - 1.0) > SQUARE:
-                raise StepError("a distance of faces that are not parallel")
-            self.distance_entry(dimension, first, second)
-        except StepError as error:
-            self.reasons[dimension.id] = str(error)
-
-    def distance_entry(self, dimension: Dimension, first: FoundFeature, second: FoundFeature) -> None:
-        """A distance as an entry: it starts at the face that is a datum.
-
-        Raises:
-            StepError: both faces are located already.
-        """
-        letters = {name: letter for letter, name in self.datums.items()}
-        known = [self.features.named(own) for own in (first, second)]
-        names = [own[1] if own else "" for own in known]
-        start, end = (second, first) if names[1] in letters and names[0] not in letters else (first, second)
-        if (own := self.features.named(end)) is not None and (own[1] in self.located or own[1] in letters):
-            raise StepError(f"{own[1]} is located by a tolerance already")
-        begin, there = self.features.name(start), self.features.name(end)
-        self.located[there] = dimension.id
-        distance = abs(float(np.dot(np.subtract(end.at, start.at), start.direction)))
-        assert dimension.limits is not None
-        least, most = dimension.limits
-        took = f"from datum {letters[begin]}" if begin in letters else f"from {begin}  # guess"
-        remark = f"{comment(str(dimension))}{unit_of(dimension)}: #{dimension.id}, {took}"
-        line = (
-            f"{{kind: plus_minus, of: {self.of(there)}, datums: [{scalar(begin)}], distribution: "
-            f"{{kind: {self.spread}, lower: {length(least - distance)}, upper: {length(most - distance)}}}}}"
-        )
-        name = scalar(self.names.new(dimension.name or f"distance {there}", "distance"))
-        self.entries.append(Entry("tolerances", name, [Wording((line,), remark)], dimension.id, str(dimension)))
-
-
-def modifier_of(tolerance: Tolerance) -> str:
-    """The material modifier of a tolerance as a scene has it; "" where it has none."""
-    words = [own for own in tolerance.modifiers if own in MATERIAL]
-    return "" if not words else "lmc" if "least" in words[0] else "mmc"
-
-
-def unit_of(dimension: Dimension) -> str:
-    """The unit in which the file has a dimension, where that is not mm."""
-    measures = (dimension.nominal, dimension.least, dimension.most)
-    unit = next((own.unit.name for own in measures if own is not None), "mm")
-    return "" if unit == "mm" else f" {comment(unit)}"
 
 
 def source(tolerance: Tolerance) -> str:
