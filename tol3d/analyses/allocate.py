@@ -28,7 +28,11 @@ from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.values import made
 
 ROUNDS: Final = 8
-TRIMS: Final = 4
+TRIMS: Final = 8
+NARROW: Final = 1e-3
+"""A bracket of trims, in logarithms of factors."""
+BETWEEN: Final = (0.15, 0.85)
+"""Of a bracket, where the next trim lies."""
 MIDDLE: Final = 0.993
 """Of the target: what trims aim at."""
 LONGEST: Final = 0.3
@@ -229,23 +233,39 @@ class _Rounds:
         return x if best is None else best[1]
 
     def _trimmed(self, x: Array, wanted: Array) -> tuple[Array, Array]:
-        """Factors a little tighter or looser, all alike that are at no bound, and what sampling says last."""
+        """Factors a little tighter or looser, all alike that are at no bound, and what sampling says of them.
+
+        By secants, between a share that is too large and one that is not as soon as both are known: where laws have
+        limits the share falls off as from a cliff.
+        """
+        begun, at, free = x, 0.0, np.zeros(0, dtype=bool)
+        sides: dict[bool, tuple[float, float, Array, Array]] = {}
         graded = bool(is_graded(self.search).any())
-        step, last = 0.0, 0.0
-        for k in range(TRIMS):
+        for _ in range(TRIMS):
             self.count += 1
             seen = np.log(np.maximum(_sampled(self.search, x, self.draws, self.seed), TINY))
             off = float((seen - wanted).max())
             self.tell(f"round {self.count}: cost {self.search.cost(x):.4g}, {math.exp(off):.3g} of the ppm")
+            before = sides.get(off <= STRAIGHT)
+            sides[off <= STRAIGHT] = at, off, x, seen
             loosest = off <= 0.0 and bool((x >= self.search.high - AT_BOUND).all())
-            if graded or loosest or math.log(NEAR) <= off <= STRAIGHT or k == TRIMS - 1:
+            if graded or loosest or math.log(NEAR) <= off <= STRAIGHT:
                 break
-            free = self._free(x, off)
-            rate = (last - off) / step if step else self._rate(x, seen - wanted, free)
-            if rate <= 0.0:
-                break
-            step, last = float(np.clip((off - math.log(MIDDLE)) / rate, -LONGEST, LONGEST)), off
-            x = np.clip(np.where(free, x - step, x), self.search.low, self.search.high)
+            if not free.size:
+                free = self._free(x, off)
+            if len(sides) > 1:
+                (low, its, *_), (high, other, *_) = sides[True], sides[False]
+                if abs(high - low) < NARROW:
+                    break
+                share = (math.log(MIDDLE) - its) / (other - its)
+                at = low + float(np.clip(share, *BETWEEN)) * (high - low)
+            else:
+                rate = self._rate(x, seen - wanted, free) if before is None else (off - before[1]) / (at - before[0])
+                if rate <= 0.0:
+                    break
+                at += float(np.clip((math.log(MIDDLE) - off) / rate, -LONGEST, LONGEST))
+            x = np.clip(np.where(free, begun + at, begun), self.search.low, self.search.high)
+        _, _, x, seen = sides[True] if True in sides else sides[False]
         return x, seen
 
     def _free(self, x: Array, off: float) -> NDArray[np.bool_]:
