@@ -29,9 +29,9 @@ def draw_allocation(name: str, found: Allocation, path: Path) -> None:
     left.barh([legible(own) for own, _ in rows], [own.factor for _, own in rows], color=colours, height=0.7)
     left.axvline(1.0, color=BLACK, linewidth=0.8)
     if found.equal_factor is not None:
-        left.axvline(found.equal_factor, color=ORANGE, linestyle="--", label=f"equal: {found.equal_factor:.3g}")
-        left.legend(fontsize=8.5, frameon=False, loc="lower right")
-    left.set_xlabel("factor of the scene's tolerance; grey stays", fontsize=9)
+        left.axvline(found.equal_factor, color=ORANGE, linestyle="--")
+    dashed = "" if found.equal_factor is None else f"; dashed: equal factors, {found.equal_factor:.3g}"
+    left.set_xlabel(f"factor of the scene's tolerance; grey: held by more than a bound{dashed}", fontsize=9)
     plain_axes(right)
     known = [(own.ppm, own.cost) for own in found.trade_off if own.cost is not None]
     right.semilogx([ppm for ppm, _ in known], [cost for _, cost in known], "o-", color=BLUE, label="least cost")

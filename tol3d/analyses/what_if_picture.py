@@ -43,7 +43,8 @@ def draw_what_if(name: str, found: WhatIf, path: Path) -> None:
             if limit is not None:
                 axes.axvline(limit, color=OUTSIDE, linestyle="--", linewidth=1.2, label=limit_text(limit, own.unit))
         axes.set_title(legible(measure), loc="left", fontsize=10, fontweight="bold")
-        axes.set_xlabel(UNIT_SIGNS.get(own.unit, own.unit), fontsize=9)
+        if own.unit != "arcmin":  # whose numbers have their signs
+            axes.set_xlabel(UNIT_SIGNS.get(own.unit, own.unit), fontsize=9)
         axes.set_ylabel("% of trials", fontsize=9)
         label_angles(axes.xaxis, own.unit)
         axes.legend(fontsize=8, frameon=False)

@@ -43,6 +43,9 @@ def draw_changes(name: str, found: Changes, path: Path) -> None:
         axes.invert_yaxis()
         axes.set_xlabel(f"{measure} [{UNIT_SIGNS.get(own.unit, own.unit)}], mean ± 3 sigma; out of limits", fontsize=9)
         label_angles(axes.xaxis, own.unit)
+    if not shown:
+        every[0].set_axis_off()
+        every[0].text(0.0, 0.5, "no limit is left more often than is accepted", fontsize=10, color=BLACK)
     save_figure(figure, path)
 
 
