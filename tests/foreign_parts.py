@@ -85,9 +85,9 @@ def rotated(vector: tuple[float, float, float], axis: tuple[float, float, float]
 
 def inch_file(shape: cq.Shape, path: Path) -> FileContent:
     """A file whose lengths are inches, with one product."""
+    writer = STEPControl_Writer()  # the parameter is there only after a first one was made
     Interface_Static.SetCVal_s("write.step.unit", "INCH")
     try:
-        writer = STEPControl_Writer()
         writer.Transfer(shape.wrapped, STEPControl_AsIs)
         writer.Write(str(path))
     finally:
