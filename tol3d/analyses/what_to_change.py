@@ -13,8 +13,7 @@ from typing import Final, Literal
 import numpy as np
 from pydantic import Field
 
-from tol3d.analyses.drawn_builds import drawn_builds
-from tol3d.analyses.halved import halved_deviations
+from tol3d.analyses.drawn_builds import drawn_builds, halved_deviations
 from tol3d.analyses.response import Response
 from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, rates_of
 from tol3d.errors import InputError

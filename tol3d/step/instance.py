@@ -97,9 +97,7 @@ class Record:
         Raises:
             StepError: it is no list of references.
         """
-        found = self.argument(index)
-        if isinstance(found, Typed) and len(found.arguments) == 1:
-            found = found.arguments[0]
+        found = self._untyped(index)
         if not isinstance(found, tuple) or any(not isinstance(each, Reference) for each in found):
             raise self.wrong(index, "a list of references such as (#12,#13)")
         return tuple(each for each in found if isinstance(each, Reference))
@@ -110,11 +108,9 @@ class Record:
         Raises:
             StepError: it is none.
         """
-        found = self.argument(index)
-        if isinstance(found, Missing):
+        if isinstance(self.argument(index), Missing):
             return ""
-        if isinstance(found, Typed) and len(found.arguments) == 1:
-            found = found.arguments[0]
+        found = self._untyped(index)
         if not isinstance(found, str):
             raise self.wrong(index, "a string")
         return found
@@ -125,9 +121,7 @@ class Record:
         Raises:
             StepError: it is none.
         """
-        found = self.argument(index)
-        if isinstance(found, Typed) and len(found.arguments) == 1:
-            found = found.arguments[0]
+        found = self._untyped(index)
         if isinstance(found, Reference) or not isinstance(found, int | float):
             raise self.wrong(index, "a number")
         return float(found)
@@ -152,12 +146,15 @@ class Record:
         Raises:
             StepError: it is no list of them.
         """
-        found = self.argument(index)
-        if isinstance(found, Typed) and len(found.arguments) == 1:
-            found = found.arguments[0]
+        found = self._untyped(index)
         if not isinstance(found, tuple) or any(not isinstance(each, Enumeration) for each in found):
             raise self.wrong(index, "a list of words such as (.FREE_STATE.)")
         return tuple(spoken(each.word) for each in found if isinstance(each, Enumeration))
+
+    def _untyped(self, index: int) -> Value:
+        """An argument, of a stated type the value in it."""
+        found = self.argument(index)
+        return found.arguments[0] if isinstance(found, Typed) and len(found.arguments) == 1 else found
 
 
 def spoken(word: str) -> str:
