@@ -27,7 +27,7 @@ CHOSEN: Final = 64
 DEFENCE: Final = 0.15
 """Share of them that is chosen alike."""
 FEWEST_PLACES, FEWEST_STARTS = 5, 3
-MOST_MINUTES: Final = 0.05
+MOST_MINUTES: Final = 0.01
 """Of a processor for one step of a walk from all positions: where builds take long there are fewer."""
 LEAST_MINUTES: Final = 1e-9
 
@@ -96,15 +96,20 @@ def _affordable(state: LimitState, most: int, fewest: int) -> int:
 
 
 def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.int64]) -> Places:
-    """Places with the design points to which builds lead that failed at some of them; they are tried at all."""
+    """Places with the design points to which builds lead that failed at some of them.
+
+    They are tried at all places; where builds take long, at their own.
+    """
     if not len(ends):
         return places
     points = [list(own) for own in places.points]
-    beyond = places.beyond
+    beyond, everywhere = places.beyond, len(ends) * places.count
+    anywhere = _affordable(state, everywhere, 1) == everywhere
     for place in range(places.count):
-        rows = np.full(len(ends), place)
+        tried = ends if anywhere else ends[where == place]
+        rows = np.full(len(tried), place)
         at = taken(places.positions, rows)
-        points[place] = kept([*points[place], *points_from(state, ends, at, beyond[rows])])
+        points[place] = kept([*points[place], *points_from(state, tried, at, beyond[rows])])
     return replace(places, points=points, shapes=None)
 
 
