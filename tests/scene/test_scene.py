@@ -269,14 +269,30 @@ def places_within(node: Any) -> list[Any]:
     return [(key, place, places_within(child)) for key, (place, child) in children if child.value not in (None, "")]
 
 
+SEVERAL = ("bracket_in_box",)
+"""Whose selectors select several features of a STEP file at once: its text alone says them."""
+
+
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_a_scene_survives_being_written_and_read(path: Path) -> None:
     scene = load_scene(path)
-    again = Scene.model_validate(json.loads(scene.model_dump_json(exclude_unset=True, by_alias=True)))
-    assert again.model_dump() == scene.model_dump()
+    if path.stem not in SEVERAL:
+        again = Scene.model_validate(json.loads(scene.model_dump_json(exclude_unset=True, by_alias=True)))
+        assert again.model_dump() == scene.model_dump()
     copied = pickle.loads(pickle.dumps(scene))
     assert copied == scene
     assert copied.places == scene.places
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SEVERAL)
+def test_a_scene_that_selects_several_features_survives_by_its_text(name: str, tmp_path: Path) -> None:
+    scene = load_scene(ROOT / "scenes" / f"{name}.yaml")
+    for own in (ROOT / "scenes").glob("*.st*p"):
+        (tmp_path / own.name).write_bytes(own.read_bytes())
+    (tmp_path / "again.yaml").write_text(scene.dump(), encoding="utf-8")
+    again = load_scene(tmp_path / "again.yaml")
+    assert again.model_dump(warnings=False) == scene.model_dump(warnings=False)
 
 
 def test_places_are_lines_and_columns_of_the_file() -> None:

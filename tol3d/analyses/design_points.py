@@ -14,6 +14,9 @@ from tol3d.analyses.limit_state import LimitState, Positions, at_place, repeated
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 60
+FEWEST_ROUNDS: Final = 12
+WALK_MINUTES: Final = 0.4
+"""Of a processor for a walk; where builds take long it has fewer rounds."""
 MET: Final = 1e-4
 """Remaining distance from the limit, as a share of that of the mean build, and of the way across it."""
 FURTHEST: Final = 9.0
@@ -142,7 +145,8 @@ def _walked(
     walk = _Walk.begun(state, begun, positions, scale)
     if not known:
         beyond = walk.inside < 0.0
-    for _ in range(ROUNDS):
+    round_minutes = max(2 * len(state.acting) * len(begun) * state.response.minutes, LEAST)
+    for _ in range(int(np.clip(WALK_MINUTES / round_minutes, FEWEST_ROUNDS, ROUNDS))):
         if not walk.step():
             break
     smooth = walk.met.copy()
