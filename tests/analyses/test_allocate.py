@@ -1,5 +1,6 @@
 """Allocation: sums of normals by Lagrange in closed form, a clutch on a grid, and the spur pair's least cost."""
 
+import io
 import math
 from dataclasses import replace
 from itertools import product
@@ -11,12 +12,15 @@ import pytest
 from fixtures import Command
 from formulas import formula
 from linear_stacks import stack
+from rich.console import Console
 from scipy.stats import norm
 from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.allocate import allocation, ppm_of_ppk
+from tol3d.analyses.allocate_table import allocation_report
+from tol3d.analyses.allocation_section import Allocation
 from tol3d.analyses.asked_allocation import bounds_of, stays_of, targets_of
 from tol3d.analyses.costs import Costs, Exponential, Grades, Reciprocal, costs_from
 from tol3d.analyses.response import Response, response_of
@@ -53,6 +57,21 @@ def test_a_sum_of_normals_has_the_least_cost_of_lagrange() -> None:
     curve = [point.cost for point in found.trade_off if point.cost is not None]
     assert curve == sorted(curve, reverse=True)
     assert len(curve) == 5
+
+
+def test_a_share_that_sampling_does_not_confirm_is_warned_of() -> None:
+    own = stack(SLOPES, SIGMAS, low=-0.03)
+    found = allocation(own, [Target("gap", (), 200.0)], Question(bounds=WIDE), draws=1000)
+    missed = found.targets[0].model_copy(update={"ppm": 400.0, "interval": (380.0, 420.0)})
+    words = "200 ppm were wanted, sampling says 400"
+    assert words in _printed(found.model_copy(update={"targets": [missed]}))
+    assert words not in _printed(found)
+
+
+def _printed(found: Allocation) -> str:
+    console = Console(width=200, file=io.StringIO(), record=True)
+    console.print(allocation_report("stack", found))
+    return console.export_text()
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ from typing import Final
 
 from tol3d.analyses.allocation_section import Allocation
 from tol3d.report.number import ppm_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
 
 WORDS: Final = (
     "factors are of the scene's tolerances, cost is the sum of their costs; first order: by design points; by "
@@ -23,6 +23,14 @@ def allocation_report(name: str, found: Allocation) -> Page:
     blocks: list[PageItem] = [Line(((name, "bold"), (" · tolerances at least cost", ""))), BLANK]
     blocks += titled("tolerances", _tolerances(found))
     blocks += [BLANK, *titled("out of limits [ppm]", _targets(found))]
+    blocks += [
+        warning(
+            f"{own.measure}: {ppm_text(own.wanted)} ppm were wanted, sampling says {ppm_text(own.ppm)}: near there the "
+            f"share jumps with the tolerances; ask for less (--ppm {ppm_text(own.wanted / 2)}), or freeze some"
+        )
+        for own in found.targets
+        if own.interval[0] > own.wanted
+    ]
     blocks += [BLANK, *titled("cost over ppm", _trade_off(found)), BLANK, note(WORDS)]
     counted = f"{found.rounds} rounds, {found.draws} draws a limit each, {found.evaluations} builds evaluated"
     return page(*blocks, note(counted))
