@@ -150,7 +150,7 @@ def four(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
 
 
 def columns(text: str, folder: Path) -> dict[str, np.ndarray]:
-    """Of 64 trials of a scene."""
+    """The columns of 64 trials of a scene."""
     (folder / "scene.yaml").write_text(text, encoding="utf-8")
     out = folder / f"run {len(list(folder.iterdir()))}"
     return run_scene(folder / "scene.yaml", overrides=Overrides(trials=64), out=out).columns()

@@ -25,7 +25,7 @@ TRIALS = 2000
 MANY = 100_000
 BLOCK = 10_000
 REACHED = 0.8
-"""Of its zone that a tolerance which is said reaches in MANY uniform trials."""
+"""Share of its zone that a tolerance which is said reaches in MANY uniform trials."""
 CHEAPEST = "ctc_01"
 MODELS = ("ctc_01", "ctc_05", "ftc_07", "ftc_10", "stc_06", "stc_07")
 with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
@@ -42,7 +42,7 @@ FORM = {10068: 10128, 10426: 10369}
 
 
 DOUBLED = 948
-"""Of CTC-05, a second run-out of one pin, by faces of it that the file names apart."""
+"""A second run-out of one pin of CTC-05, by faces of it that the file names apart."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def test_each_tolerance_is_what_the_table_has_it(drafted: Drafted) -> None:
 
 
 def test_each_entry_has_the_kind_of_the_table(drafted: Drafted) -> None:
-    """Of an orientation of several faces each has the kind by its own angle; a doubled run-out is inspected."""
+    """Each face of an orientation of several has the kind by its own angle; a doubled run-out is inspected."""
     scene = yaml.safe_load(drafted.text)
     kinds = {int(row["id"]): row["kind"] for row in ROWS if row["model"] == named(drafted.model)}
     turned = {"parallelism", "perpendicularity", "angularity"}

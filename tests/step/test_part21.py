@@ -1,5 +1,6 @@
 """The reader of ISO 10303-21 text: what it reads, and what it refuses with its place."""
 
+import gzip
 from contextlib import suppress
 from pathlib import Path
 
@@ -218,3 +219,8 @@ def test_noise_is_refused_or_read(noise: bytes, at: int) -> None:
     with suppress(StepError):
         file = read_part21(base[:at] + noise + base[at:], "x.stp")
         assert all(file[each].records for each in file.spans)
+
+
+def test_a_compressed_file_is_to_be_unpacked() -> None:
+    with pytest.raises(StepError, match="it is compressed: unpack it first"):
+        read_part21(gzip.compress(b"ISO-10303-21;"), "part.stp.gz")

@@ -32,9 +32,9 @@ TRIMS: Final = 8
 NARROW: Final = 1e-3
 """A bracket of trims, in logarithms of factors."""
 BETWEEN: Final = (0.15, 0.85)
-"""Of a bracket, where the next trim lies."""
+"""Shares of a bracket between which the next trim lies."""
 MIDDLE: Final = 0.993
-"""Of the target: what trims aim at."""
+"""The share of the target that trims aim at."""
 LONGEST: Final = 0.3
 """A trim, in logarithms of factors."""
 LESS: Final = 2e-3

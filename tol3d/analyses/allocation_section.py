@@ -1,4 +1,4 @@
-"""What an allocation finds, as a run keeps it."""
+"""The result of an allocation, as a run keeps it."""
 
 from pydantic import Field
 
@@ -16,7 +16,7 @@ class Allocated(Section):
 
 
 class TargetFound(Section):
-    """How often limits are left [ppm], as it was asked for and as it was found."""
+    """Builds beyond limits [ppm], as asked for and as found."""
 
     measure: Label
     sides: list[Label]

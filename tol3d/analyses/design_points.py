@@ -16,7 +16,7 @@ from tol3d.numerics.arrays import Array
 ROUNDS: Final = 60
 FEWEST_ROUNDS: Final = 12
 WALK_MINUTES: Final = 0.4
-"""Of a processor for a walk; where builds take long it has fewer rounds."""
+"""Time of a processor for a walk; where builds take long it has fewer rounds."""
 MET: Final = 1e-4
 """Remaining distance from the limit, as a share of that of the mean build, and of the way across it."""
 FURTHEST: Final = 9.0

@@ -34,7 +34,7 @@ MET: Final = 1e-3
 LONGEST: Final = 3.0
 """Of a step, in standard normals."""
 SHARES: Final = (0.1, 1.5)
-"""Of a step that is gone."""
+"""Least and largest share of a step that is gone."""
 SEEN: Final = 0.01
 """Of the probability: design points that stand for less are left out."""
 PLAIN: Final = 0.1

@@ -54,14 +54,15 @@ class LimitState:
 
     @cached_property
     def reads_positions(self) -> bool:
-        """Whether it differs with the position, by a few builds at a few of them."""
+        """True where it differs with the position, by a few builds at a few of them, or where none of these seats."""
         if not self.response.simulation.system.streams:
             return False
         builds = np.random.default_rng(1).standard_normal((BUILDS, self.dimension))
         positions = self.response.positions(POSITIONS, "drawn")
         found, _ = self.at(np.repeat(builds, POSITIONS, axis=0), tiled(positions, BUILDS))
         each = found.reshape(BUILDS, POSITIONS)
-        return not np.array_equal(each, np.repeat(each[:, :1], POSITIONS, axis=1), equal_nan=True)
+        alike = np.array_equal(each, np.repeat(each[:, :1], POSITIONS, axis=1), equal_nan=True)
+        return not alike or not np.isfinite(each).any()
 
     def at(self, normals: Array, positions: Positions | None) -> tuple[Array, NDArray[np.bool_]]:
         """Distance of builds (n, dimension) within the limit (n,), and which seat; one that does not has no number."""

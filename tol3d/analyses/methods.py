@@ -264,7 +264,7 @@ def _half_tolerances(space: Space, slopes: Array) -> Array:
 
 
 def _together(response: Response, space: Space, slopes: Array) -> float:
-    """What correlated contributors add to the sum of squares, or take off: each is one number, its half has a sign."""
+    """The part of correlated contributors in the sum of squares, which may be below 0; each is one number."""
     drawn, total = {own.name: own for own in space.drawings if own.acts}, 0.0
     for block in response.copula.blocks:
         signed = np.zeros(len(block.names))

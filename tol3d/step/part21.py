@@ -27,6 +27,8 @@ COMMENT = r"/\*(?:[^*]|\*(?!/))*+\*/"
 BLANK = rf"(?:\s++|{COMMENT})*+"
 BODY = rf"(?:[^';\"/]++|'(?:[^']|'')*+'|\"[^\"]*+\"|{COMMENT}|/)*+"
 START = re.compile(rf"{BLANK}ISO-10303-21{BLANK};")
+COMPRESSED: Final = ("\x1f\x8b", "PK\x03\x04")
+"""How files of gzip and zip begin."""
 STATEMENT = re.compile(rf"{BLANK}({BODY});")
 INSTANCE = re.compile(rf"{BLANK}#([0-9]{{1,15}}+){BLANK}={BLANK}({BODY});")
 FIRST_KEYWORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*+")
@@ -138,7 +140,8 @@ def read_part21(source: Path | bytes, name: str | None = None) -> Part21:
     text = text_of(source, name)
     start = START.match(text)
     if start is None:
-        raise StepError(f"{name}: expected a STEP file that begins with ISO-10303-21; got {shown(text[:30])!r}")
+        packed = "; it is compressed: unpack it first" if text.startswith(COMPRESSED) else ""
+        raise StepError(f"{name}: expected a STEP file that begins with ISO-10303-21; got {shown(text[:30])!r}{packed}")
     spans: dict[int, tuple[int, int]] = {}
     header: Header | None = None
     position = start.end()

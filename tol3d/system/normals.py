@@ -8,7 +8,7 @@ jumps where an angle begins anew. A draw that does not say what its uniforms are
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal, Protocol, runtime_checkable
+from typing import Final, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,6 @@ class Drawn(Protocol):
         ...
 
 
-@runtime_checkable
 class Smooth(Drawn, Protocol):
     """A Draw that says what its uniforms are."""
 
