@@ -13,7 +13,7 @@ from places import ROOT, SCENES
 from ruamel.yaml import YAML
 from said_fields import fields_said, fields_within, unsaid
 
-from tol3d import load_scene
+from tol3d import Overrides, load_scene, run_scene
 from tol3d.assembly.grammar.builders import OwnFileSpec
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
@@ -24,7 +24,7 @@ from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.model.datum_frame import Simulator
 from tol3d.assembly.model.statuses import WITH_CLEARANCES
 from tol3d.assembly.zones import catalogue, normal_in, uniform_in
-from tol3d.scene import Grammar
+from tol3d.scene import Grammar, Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.units import FACTORS
 
@@ -88,7 +88,15 @@ STEP_PARTS = [
     for own in YAML(typ="safe").load(lines)["parts"].values()
 ]
 
+DRAWINGS = re.findall(r"```yaml\n(scene:.*?)```", (ROOT / "docs" / "drawings.md").read_text("utf-8"), re.DOTALL)
+
 FEATURES, LAWS = union("SolidSpec", "features"), union("PositionSpec", "law")
+
+
+def drawn(text: str, folder: Path) -> Scene:
+    """A scene of the page of drawings."""
+    (folder / "drawing.yaml").write_text(text, "utf-8")
+    return load_scene(folder / "drawing.yaml")
 
 
 # the scenes --------------------------------------------------------------------------------------------------
@@ -107,23 +115,31 @@ def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path
         assert one_line(table) in one_line(out)
 
 
-def test_the_scenes_use_every_field_of_every_kind() -> None:
+def test_the_scenes_use_every_field_of_every_kind(tmp_path: Path) -> None:
     kinds = [spec for section in SECTIONS for spec in ASSEMBLY.specs(section)]
     known = {own for spec in kinds for own in fields_within(spec) if own[0].__module__.startswith(OWN)}
-    # placement, datum, zone, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders, 13 details, face
-    # and the selector
-    beside = 52
+    # placement, datum, zone, lower segment, force; 6 features, pattern, 4 laws, 6 pairs, bolt, 3 floats; 12 builders,
+    # 13 details, face and the selector
+    beside = 53
     assert len({model for model, _ in known}) == len(kinds) + beside
     said = {own for name in FIELD_SCENES for own in fields_said(load_scene(SCENES / f"{name}.yaml", KINDS))}
     said |= {own for name in LINKAGES for own in fields_said(load_scene(SCENES / f"{name}.yaml"))}
     assert len(PAIRS) == 3
     said |= {own for pair in PAIRS for own in fields_said(pair)}  # of the page
     said |= set(fields_said(OWN_BUILDER))  # which runs only where the user says so: no scene that comes along has one
+    said |= {own for text in DRAWINGS for own in fields_said(drawn(text, tmp_path))}
     said |= {own for part in STEP_PARTS for own in fields_said(part)}  # of the page; no STEP file comes along
     of_poses = {"at", "over", "take"}  # of machines and linkages
     posed = {(model, field) for model, field in known if field in of_poses and issubclass(model, TimedSpec)}
     assert unsaid(known - posed, said) == set()
     assert set(kinds) <= {model for model, _ in said}
+
+
+@pytest.mark.parametrize("text", DRAWINGS, ids=lambda text: text.splitlines()[0])
+def test_every_scene_of_the_page_of_drawings_runs_and_holds_its_limits(text: str, tmp_path: Path) -> None:
+    drawn(text, tmp_path)
+    found = run_scene(tmp_path / "drawing.yaml", overrides=Overrides(trials=300), out=tmp_path / "run").summary
+    assert {own["geometric"]["above_limit_ppm"] for own in found["measures"].values()} == {0.0}
 
 
 def test_the_program_of_the_page_builds_what_it_says(tmp_path: Path) -> None:

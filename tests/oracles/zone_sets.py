@@ -126,6 +126,20 @@ def _about(middle: Array, half: Array) -> Array:
     return np.concatenate([middle - half, middle + half], axis=1)
 
 
+def _motion(shifts: int) -> Inside:
+    """Of a pattern as a whole: the length of its shift, so many numbers, and that of its turn add up."""
+
+    def inside(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
+        squares = points**2
+        lengths = np.sqrt(squares[:, :shifts].sum(axis=1)), np.sqrt(squares[:, shifts:].sum(axis=1))
+        return lengths[0] + lengths[1] <= width / 2
+
+    return inside
+
+
+MOTIONS = ((2, 1), (2, 0), (1, 2), (3, 3))
+"""Directions of shifts and of turns."""
+
 SETS = {
     "rectangle": ZoneSet(_corners, (False, True, True), _beside, (1, 2)),
     "round face": ZoneSet(_rim, (False, True, True), _beside, (1, 2)),
@@ -139,6 +153,10 @@ SETS = {
     "point in a sphere": ZoneSet(_length, (False,) * 3),
     "point in a disc": ZoneSet(_length, (False, False)),
     "point between planes": ZoneSet(_length, (False,)),
+    **{
+        f"{a} shifts and {b} turns": ZoneSet(_motion(a), (False,) * (a + b), _beside if b else None, (a, b))
+        for a, b in MOTIONS
+    },
 }
 """By name."""
 

@@ -28,7 +28,8 @@ from tol3d.system.mechanism import Mechanism
 
 OTHER_KINDS: Final = (
     ("concentricity", "it left ASME Y14.5 in 2018: write coaxiality, of the axis, as in ISO 1101"),
-    ("composite_position", "composite zones are not there: write the position, and refine its tilt by an orientation"),
+    ("composite_position", "write position, with a lower_segment"),
+    ("composite_profile", "write profile, with a lower_segment"),
     ("axial_run_out", "of a round face about an axis it is the perpendicularity to that axis, in the same width"),
     ("face_run_out", "of a round face about an axis it is the perpendicularity to that axis, in the same width"),
     ("surface_profile", "write profile"),
@@ -52,6 +53,7 @@ OTHER_KINDS: Final = (
     ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),
 )
 OTHER_KEYS: Final = (
+    ("composite", "write lower_segment: {zone: …, datums: …}"),
     ("tangent_plane", "tangent planes (circled T) are not there: a face is judged by its own plane"),
     ("tangent", "tangent planes (circled T) are not there: a face is judged by its own plane"),
     ("translation", "datums that may shift (a triangle) are not there: leave the datum out, or name it with `mmb`"),

@@ -3,12 +3,12 @@
 import math
 import pickle
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from oracles.zone_sets import REFINED, SETS
+from oracles.zone_sets import MOTIONS, REFINED, SETS
 from scipy.integrate import dblquad
 from scipy.stats import chi2, ks_2samp, qmc
 from thinned import thinned
@@ -32,6 +32,7 @@ ZONES: dict[str, Callable[..., Zone]] = {
     "point in a sphere": catalogue.point_in_sphere,
     "point in a disc": catalogue.point_in_disc,
     "point between planes": catalogue.point_between_planes,
+    **{f"{a} shifts and {b} turns": partial(catalogue.pattern_motion, shifts=a, turns=b) for a, b in MOTIONS},
 }
 WIDTH = 0.1
 CASES: list[tuple[str, str, float | None]] = [(name, law, None) for name in ZONES for law in LAWS]

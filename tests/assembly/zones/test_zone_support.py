@@ -74,6 +74,8 @@ def test_the_support_of_a_refined_zone_is_that_of_a_linear_programme(name: str, 
         (catalogue.point_in_sphere(0.1), (3.0, -4.0, 12.0), 0.65),
         (catalogue.point_in_disc(0.1), (3.0, -4.0), 0.25),
         (catalogue.point_between_planes(0.1), (-3.0,), 0.15),
+        (catalogue.pattern_motion(0.1, 2, 1), (3.0, -4.0, 4.5), 0.25),  # all shift, or all turn
+        (catalogue.pattern_motion(0.1, 1, 3), (5.0, 2.0, 3.0, -6.0), 0.35),
         (catalogue.rectangle(0.1, None, 0.08), (3.0, 0.0, 0.0), 0.24),
         (catalogue.rectangle(0.1, None, 0.08), (-3.0, 0.0, 0.0), 0.06),
         (catalogue.rectangle(0.1, 0.04, None, 0.02), (3.0, -1.0, 5.0), 0.02 * 3 + 0.02 * 5),

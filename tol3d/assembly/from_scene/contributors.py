@@ -5,8 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tol3d.assembly.from_scene.segments import motion_of
 from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
+from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
@@ -79,6 +81,15 @@ class Effects:
                 self._zone(own)
             case FormSpec() if own.spec.law is not None:
                 self._form(own, own.spec)
+
+    def add_motion(self, pattern: Sequence[Stated]) -> None:
+        """The motion of a pattern as a whole, which a composite tolerance leaves it."""
+        own = pattern[0]
+        draw, moved, word = motion_of(self.scene, self.drawing, pattern)
+        name = motion_name(own, word)
+        columns = self._added(name, own.spec.kind, f"of all features of {own.entry} together", draw)
+        for feature, matrix in moved.items():
+            self.moved_by.setdefault(feature, []).append(Contribution(name, columns, matrix))
 
     def add_float(self, name: str, spec: PlaySpec) -> None:
         """What is drawn of a part with play, if anything is."""
@@ -185,6 +196,11 @@ class Effects:
         return f"{words}; {lay}, or leave the law out, and the form {then}"
 
 
+def motion_name(own: Stated, word: str) -> str:
+    """The name of a pattern's motion: "holes shift and turn", "holes shift of cover 2"."""
+    return f"{own.entry} {word}" + (f" of {part_of(own.feature)}" if own.alike else "")
+
+
 SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
 
 
@@ -203,6 +219,8 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
     effects = Effects(scene, drawing, _touching(scene))
     for own in drawing.stated:
         effects.add(own)
+        if isinstance(own, Stated) and (pattern := drawing.composite(own)) and own is pattern[-1]:
+            effects.add_motion(pattern)
     for name, move in scene.moves.items():
         if isinstance(move, PlaySpec):
             effects.add_bolts(name, move)

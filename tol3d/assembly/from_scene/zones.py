@@ -9,7 +9,7 @@ from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
-from tol3d.assembly.grammar.tolerances.location import CircularRunOutSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import CircularRunOutSpec, Composite, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
 from tol3d.assembly.model import Axis, Contribution, Feature, Slot
@@ -141,8 +141,23 @@ def drawn_by(law: LawSpec, zone: Zone, files: Files) -> Confined | Process:
     return found
 
 
+def limited_along(spec: LocationSpec, feature: FeatureUnion) -> Array:
+    """Directions (directions, 3) in which the zone of a location limits a feature, in the feature's frame."""
+    if isinstance(feature, PlaneSpec | SlotSpec):
+        return np.eye(3)[2:]
+    if isinstance(feature, PointSpec | SphereSpec):
+        return np.eye(3) if spec.zone.diameter is not None else np.array([_seen(spec.zone.along, feature)])
+    if spec.zone.along is None:
+        return np.eye(3)[:2]
+    x, y = _across(spec.zone.along, feature)
+    return np.array([[x, y, 0.0]]) / math.hypot(x, y)
+
+
 def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:
     width, outward = spec.zone.size, None if spec.zone.outward is None else spec.zone.outward.internal
+    if isinstance(spec, Composite) and spec.lower_segment is not None:  # about the middle of the upper zone
+        own = spec.lower_segment.zone.size
+        width, outward = own, None if outward is None else outward + 0.5 * (own - width)
     if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
         return made(width, orientation, outward, form)

@@ -15,7 +15,7 @@ from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import Composite, FormSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
@@ -159,6 +159,21 @@ class Drawing:
     def of(self, feature: str, spec: type[FeatureTolerance]) -> tuple[Stated, ...]:
         """Its tolerances of a kind, or of several with a class in common."""
         return tuple(own for own in self._by_feature.get(feature, ()) if isinstance(own.spec, spec))
+
+    def composite(self, own: Stated) -> Sequence[Stated]:
+        """A composite tolerance of each feature of the pattern of which one is; none of another tolerance."""
+        if not isinstance(own.spec, Composite) or own.spec.lower_segment is None:
+            return ()
+        return self._patterns[own.entry, part_of(own.feature)]
+
+    @cached_property
+    def _patterns(self) -> Mapping[tuple[str, str], Sequence[Stated]]:
+        """By entry and part."""
+        found: dict[tuple[str, str], list[Stated]] = {}
+        for own in self.stated:
+            if isinstance(own, Stated):
+                found.setdefault((own.entry, part_of(own.feature)), []).append(own)
+        return found
 
     def form(self, feature: str) -> float:
         """What its form takes of a location zone's width [mm]."""

@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.location import (
     CircularRunOutSpec,
     CoaxialitySpec,
+    Composite,
     FormSpec,
     LocationSpec,
     OrientationSpec,
@@ -27,6 +28,8 @@ from tol3d.scene.place import KeyPath
 Problem = tuple[KeyPath, str]
 
 ROUNDING = 1e-9  # mm, of a sum of widths; cosine of a right angle
+MOTIONS = ("shift", "shift and turn")
+"""What the motion of a pattern as a whole is called, after the tolerance's own name."""
 REFINED = "a tilt that it refines is an orientation tolerance beside the other"
 
 
@@ -85,6 +88,10 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
             yield from _shape_problems(here, spec, drawing.kind(feature).kind)
         if isinstance(spec, LocationSpec):
             yield from _room_problems(here, spec, drawing, feature)
+            if isinstance(spec, Composite) and spec.lower_segment is not None and len(drawing.composite(own)) < 2:
+                words = f"expected a pattern of features of {spec.of!r}, which lie to each other, got one alone"
+                instead = f"of one feature write an orientation tolerance of {spec.lower_segment.zone.stated} beside"
+                yield (*here, "lower_segment"), f"{words}; {instead} {own.entry!r}"
         elif isinstance(spec, OrientationSpec):
             located = drawing.of(feature, LocationSpec)
             if located and spec.law is not None:
@@ -119,14 +126,15 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
 
 
 def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
-    width = spec.zone.size
+    lower = spec.lower_segment if isinstance(spec, Composite) else None
+    width = spec.zone.size if lower is None else lower.zone.size
     for other in (*drawing.of(feature, OrientationSpec), *drawing.of(feature, FormSpec)):
         assert isinstance(other.spec, OrientationSpec | FormSpec)
         own = other.spec.zone.size
         if own > width or (own == width and isinstance(other.spec, FormSpec)):
             got = f"got {width * 1e3:g} um"
             yield (
-                (*here, "zone"),
+                (*here, "zone") if lower is None else (*here, "lower_segment", "zone"),
                 f"expected more than the {own * 1e3:g} um of {other.entry!r}, which refines it, {got}",
             )
 
@@ -165,6 +173,11 @@ def _names(drawing: Drawing) -> Iterator[Problem]:
         if own.name in taken:
             yield taken[own.name], f"expected another name: {own.entry!r} has {own.name!r} for {own.feature!r}"
         taken[own.name] = ("tolerances", own.entry)
+    for own in drawing.stated:
+        if isinstance(own, Stated) and own.is_own and drawing.composite(own):
+            for word in MOTIONS:
+                if (name := f"{own.entry} {word}") in taken:
+                    yield taken[name], f"expected another name: {own.entry!r} has {name!r} for its pattern"
 
 
 def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:

@@ -41,6 +41,11 @@ class ZoneSpec(Strict):
         given = self.diameter or self.width
         return 0.0 if given is None else given.internal
 
+    @property
+    def stated(self) -> str:
+        """Diameter or width, as it is written."""
+        return str(self.diameter or self.width)
+
     def scaled(self, factor: float) -> Self:
         """As many times as wide, about its middle."""
         given = {name: getattr(self, name) for name in ("diameter", "width")}

@@ -7,10 +7,13 @@ three coordinates. `Zone.matrix` embeds what is drawn in these: all of them, or 
 
 import math
 
+import numpy as np
+
 from tol3d.assembly.zones.balls import Flat, Line, Sphere
 from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
 from tol3d.assembly.zones.ends import Ends, FlatEnds
 from tol3d.assembly.zones.face import Face
+from tol3d.assembly.zones.motions import Motions
 from tol3d.assembly.zones.zone import Shape, Zone
 from tol3d.errors import InputError
 
@@ -86,6 +89,21 @@ def point_between_planes(
 ) -> Zone:
     """Of a point between planes t apart whose normal points `along`: of a surface at a point, its profile."""
     return Zone(Shape(Line(), ("along",), tuple((own,) for own in _unit(along))), width, outward=outward)
+
+
+def pattern_motion(width: float, shifts: int, turns: int) -> Zone:
+    """Of a pattern as a whole: |shift| + |turn| <= t/2, a turn as the way of the feature that it moves most.
+
+    Args:
+        width: t.
+        shifts: directions in which it may shift, 1 to 3.
+        turns: directions about which it may turn, 0 to 3.
+    """
+    count = shifts + turns
+    names = [f"shift {own}" for own in "xyz"[:shifts]]
+    names += ["turn"] if turns == 1 else [f"turn {own}" for own in "xyz"[:turns]]
+    unit = tuple(tuple(row) for row in np.eye(count).tolist())
+    return Zone(Shape(Motions(shifts, turns), tuple(names), unit), width)
 
 
 def _rises(section: CrossSection, width: float) -> Zone:

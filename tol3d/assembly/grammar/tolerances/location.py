@@ -7,11 +7,23 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
-from tol3d.assembly.grammar.zone import LawUnion, ZoneSpec, scaled_in_zone
+from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
 from tol3d.files import Files
 from tol3d.scene.place import KeyPath
-from tol3d.strict import refused
+from tol3d.strict import Strict, refused
+
+
+class SegmentSpec(Strict):
+    """The lower segment of a composite tolerance: how the features of a pattern lie to each other.
+
+    It holds their places to each other, and turns them by its datums alone: where the pattern lies is of the upper one.
+    """
+
+    zone: ZoneSpec = Field(description="of the shape of the upper one, and narrower")
+    datums: Datums | None = Field(
+        default=None, description="the first ones of the upper segment, which orient the pattern; it may turn without"
+    )
 
 
 class LocationSpec(FeatureTolerance):
@@ -42,7 +54,53 @@ class LocationSpec(FeatureTolerance):
         return ((("law", *path), name) for path, name in self.law.file_names())
 
 
-class PositionSpec(Modified, LocationSpec):
+class Composite(LocationSpec):
+    """A location that a pattern may have in two segments: of the pattern, and of its features to each other."""
+
+    lower_segment: SegmentSpec | None = Field(
+        default=None, description="of a pattern: how its features lie to each other, in a narrower zone"
+    )
+
+    def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
+        """See ToleranceEntry: both segments."""
+        own, lower = super().scaled(factor, stays, files), self.lower_segment
+        if lower is None:
+            return own
+        return own.model_copy(update={"lower_segment": lower.model_copy(update={"zone": lower.zone.scaled(factor)})})
+
+    @model_validator(mode="after")
+    def _refuse_unfit_segments(self) -> Self:
+        lower, upper = self.lower_segment, self.zone
+        if lower is None:
+            return self
+        if isinstance(self.law, ProcessLawSpec | RingLawSpec):
+            raise refused("law", "uniform or normal of a composite tolerance", f"{self.law.kind}")
+        for field in ("diameter", "width"):
+            if (getattr(lower.zone, field) is None) != (getattr(upper, field) is None):
+                expected = f"a {'diameter' if upper.width is None else 'width'}, as in the upper segment"
+                raise refused(
+                    "lower_segment.zone", expected, f"a {'diameter' if lower.zone.width is None else 'width'}"
+                )
+        if lower.zone.along != upper.along:
+            raise refused("lower_segment.zone.along", "that of the upper segment", "another one")
+        if lower.zone.projected != upper.projected:
+            raise refused("lower_segment.zone.projected", "that of the upper segment", "another one")
+        if lower.zone.outward is not None:
+            raise refused("lower_segment.zone.outward", "none: the upper segment's counts for both", "one")
+        if lower.zone.size >= upper.size:
+            expected = f"a zone narrower than {upper.stated}, that of the upper segment"
+            raise refused(
+                "lower_segment.zone", expected, f"{lower.zone.stated}; swap the two, or leave lower_segment out"
+            )
+        datums, own = self.datums or (), lower.datums or ()
+        if datums[: len(own)] != own:
+            words = ", ".join("-".join(datum.features) for datum in datums) or "none"
+            expected = f"the first datums of the upper segment ({words}), in their order"
+            raise refused("lower_segment.datums", expected, ", ".join("-".join(datum.features) for datum in own))
+        return self
+
+
+class PositionSpec(Modified, Composite):
     """A true position."""
 
     words: ClassVar[str] = "a position tolerance"
@@ -51,7 +109,7 @@ class PositionSpec(Modified, LocationSpec):
     kind: Literal["position"]
 
 
-class ProfileSpec(LocationSpec):
+class ProfileSpec(Composite):
     """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else."""
 
     words: ClassVar[str] = "a profile tolerance"
