@@ -10,6 +10,7 @@ from tol3d.assembly.from_scene.zones import drawn_in
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
+from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
@@ -180,7 +181,9 @@ class Effects:
         if not spec.law.touching:
             words = f"expected uniform, normal or process, got {spec.law.kind} of a {spec.kind} of {own.feature!r}"
             raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words}; {spec.law.lies}")
-        law: Distribution = named(spec.law.touching)(spec.law, 0.5 * spec.zone.size, self.scene.files)
+        law: Distribution = named(spec.law.touching)(
+            spec.law, 0.5 * whole_form(spec, self.drawing.kind(own.feature).shape), self.scene.files
+        )
         columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)))
         for k, touches in enumerate(others.values()):
             matrix = np.zeros((1, len(others)))

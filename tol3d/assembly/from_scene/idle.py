@@ -3,7 +3,16 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec
+from tol3d.assembly.grammar.tolerances.location import (
+    AxialRunOutSpec,
+    CircularRunOutSpec,
+    FormSpec,
+    LocationSpec,
+    OrientationSpec,
+    RoundnessSpec,
+    TotalRunOutSpec,
+)
+from tol3d.assembly.model import Axis
 
 
 def idle_forms(drawing: Drawing) -> Iterator[str]:
@@ -11,7 +20,13 @@ def idle_forms(drawing: Drawing) -> Iterator[str]:
     for own in drawing.stated:
         if not isinstance(own, Stated) or not own.is_own or not isinstance(own.spec, FormSpec):
             continue
-        if own.spec.law is None and not drawing.of(own.feature, LocationSpec):
-            why = f"it has no law, and {own.feature!r} has no location zone that it could narrow"
+        located, shape = drawing.of(own.feature, LocationSpec), drawing.kind(own.feature).shape
+        alone = isinstance(own.spec, RoundnessSpec) and not any(
+            isinstance(each.spec, CircularRunOutSpec | TotalRunOutSpec) for each in located
+        )
+        zones = "run-out" if isinstance(shape, Axis) and alone else "location zone"
+        turned = any(isinstance(each.spec, AxialRunOutSpec) for each in drawing.of(own.feature, OrientationSpec))
+        if own.spec.law is None and not turned and (alone or not located):
+            why = f"it has no law, and {own.feature!r} has no {zones} that it could narrow"
             mend = "give a law to the form of a face that touches points in a move, or take it out"
             yield f"{own.name}: this {own.spec.kind} acts on nothing, for {why}; {mend}"

@@ -49,11 +49,11 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         _refuse_no_ring(scene, own, drawing)
     try:
         if isinstance(spec.law, RingLawSpec):
-            zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature))
+            zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature, spec))
         elif isinstance(spec, LocationSpec):
-            zone = _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature))
+            zone = _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature, spec))
         else:
-            zone = _orientation(spec.zone, feature)
+            zone = _orientation(spec.zone, feature, drawing.oriented(own))
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
     draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing)
@@ -166,19 +166,19 @@ def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | No
             return catalogue.point_in_sphere(width)
         return catalogue.point_between_planes(width, _seen(spec.zone.along, feature), outward)
     if isinstance(spec, CircularRunOutSpec):
-        return catalogue.axis_section(width)
+        return catalogue.axis_section(width, form)
     if spec.zone.along is not None:
         return catalogue.flat_axis(width, _across(spec.zone.along, feature), orientation, form)
     return catalogue.axis(width, orientation, form)
 
 
-def _orientation(zone: ZoneSpec, feature: FeatureUnion) -> Zone:
+def _orientation(zone: ZoneSpec, feature: FeatureUnion, width: float) -> Zone:
     if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle_orientation if feature.extent is not None else catalogue.round_face_orientation
-        return made(zone.size)
+        return made(width)
     if zone.along is not None:
-        return catalogue.flat_axis_orientation(zone.size, _across(zone.along, feature))
-    return catalogue.axis_orientation(zone.size)
+        return catalogue.flat_axis_orientation(width, _across(zone.along, feature))
+    return catalogue.axis_orientation(width)
 
 
 def _seen(along: Triple | None, feature: FeatureUnion) -> Triple:

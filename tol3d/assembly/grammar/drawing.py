@@ -13,9 +13,18 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.forms import of_location, of_section, of_total_run_out
 from tol3d.assembly.grammar.parts import SolidSpec, likes
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.location import Composite, FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import (
+    AxialRunOutSpec,
+    CircularRunOutSpec,
+    Composite,
+    FormSpec,
+    LocationSpec,
+    OrientationSpec,
+    TotalRunOutSpec,
+)
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
@@ -175,16 +184,29 @@ class Drawing:
                 found.setdefault((own.entry, part_of(own.feature)), []).append(own)
         return found
 
-    def form(self, feature: str) -> float:
-        """What its form takes of a location zone's width [mm]."""
-        return sum(own.spec.zone.size for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec))
+    def form(self, feature: str, located: FeatureTolerance | None = None) -> float:
+        """What its form takes of the width of a zone [mm]: that of a location, or of an axial run-out, if not given."""
+        forms = [own.spec for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec)]
+        match located:
+            case CircularRunOutSpec():
+                return of_section(forms, self.kind(feature).shape)
+            case TotalRunOutSpec():
+                return of_total_run_out(forms, self.kind(feature).shape)
+        return of_location(forms, self.kind(feature).shape)
+
+    def oriented(self, own: Stated) -> float:
+        """Width of a zone of orientation [mm]; of an axial run-out of the whole face, without its form."""
+        assert isinstance(own.spec, OrientationSpec)
+        width = own.spec.zone.size
+        if not isinstance(own.spec, AxialRunOutSpec):
+            return width
+        shape, radius = self.kind(own.feature).shape, own.spec.radius
+        left = max(width - self.form(own.feature), 0.0)
+        return left if radius is None else left * max(shape.reach) / radius.internal  # type: ignore[union-attr]
 
     def orientation(self, feature: str) -> float | None:
         """Width of the zone to which its orientation is refined [mm], beside a location zone."""
-        widths = [
-            own.spec.zone.size for own in self.of(feature, OrientationSpec) if isinstance(own.spec, OrientationSpec)
-        ]
-        return min(widths, default=None)
+        return min((self.oriented(own) for own in self.of(feature, OrientationSpec)), default=None)
 
     def datums(self, feature: str) -> tuple[DatumSpec, ...]:
         """Those of the tolerance that says where it lies; of its orientation where none says that."""

@@ -1,24 +1,28 @@
 """What must hold across the tolerances of each feature."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
+from tol3d.assembly.grammar.forms import units, whole_form
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.location import (
+    AxialRunOutSpec,
     CircularRunOutSpec,
     CoaxialitySpec,
     Composite,
     FormSpec,
     LocationSpec,
     OrientationSpec,
+    StraightnessSpec,
     SymmetrySpec,
     TotalRunOutSpec,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec
+from tol3d.assembly.model import RoundPlane
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files
 from tol3d.scene import Scene
@@ -50,12 +54,59 @@ def _twice(drawing: Drawing, feature: str) -> Iterator[Problem]:
         ((*located, *dimensions) if located else (), "where it lies", f"; {REFINED}"),
         (drawing.of(feature, OrientationSpec), "how it is turned", ""),
         (drawing.of(feature, SizeSpec), "its size", ""),
-        (drawing.of(feature, FormSpec), "its form", ""),
+        *((own, "its form", "") for own in _forms_alike(drawing, feature)),
     ):
         if len(several) > 1 and not several[1].alike:
             first, second = several[0].entry, several[1].entry
             words = f"expected one tolerance of {feature!r} for {what}, got {first!r} too, which would count twice"
             yield ("tolerances", second), f"{words}; remove one{instead}"
+
+
+def _forms_alike(drawing: Drawing, feature: str) -> Iterator[Sequence[Stated]]:
+    """Its forms of one kind; that of every piece stands beside that of the whole."""
+    found: dict[object, list[Stated]] = {}
+    for own in drawing.of(feature, FormSpec):
+        key = type(own.spec), getattr(own.spec, "per", None) is None, own.spec.zone.diameter is None  # type: ignore[attr-defined]
+        found.setdefault(key, []).append(own)
+    yield from found.values()
+
+
+def _form_problems(here: KeyPath, spec: FormSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
+    zone, own, shape = spec.zone, drawing.kind(feature), drawing.kind(feature).shape
+    of_axis = isinstance(spec, StraightnessSpec) and own.kind in ("cylinder", "axis")
+    if not of_axis and (zone.diameter is not None or zone.along is not None):
+        yield (*here, "zone"), "expected a width alone: the distance of what lies about the surface"
+    if of_axis and own.kind == "axis" and zone.width is not None and zone.along is None:
+        yield (*here, "zone"), "expected a diameter, or a width with `along`, for an axis has no surface"
+    for field in ("projected", "outward"):
+        if getattr(zone, field) is not None:
+            yield (*here, "zone", field), f"expected none of a {spec.kind}; take it out"
+    if isinstance(spec, StraightnessSpec) and (own.kind == "plane") != (spec.lines is not None):
+        wanted = (
+            "x or y, along which lines of the plane run" if own.kind == "plane" else "none: lines run along the axis"
+        )
+        yield (*here, "lines"), f"expected {wanted}, got {spec.lines or 'none'}"
+        return
+    for length, piece in units(spec, shape):
+        if piece > length:
+            words = f"expected a piece of the feature, which is {length:g} mm long, got {piece:g} mm"
+            yield (*here, "per"), f"{words}; leave `per` out, and the zone is of the whole"
+            return
+    beside = [each for each in drawing.of(feature, type(spec)) if getattr(each.spec, "per", None) is None]
+    if units(spec, shape) and beside and spec.law is not None:
+        yield (*here, "law"), f"expected none, for that of {beside[0].entry!r}, of the whole, counts; leave it out"
+
+
+def _axial_problems(here: KeyPath, spec: AxialRunOutSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
+    shape = drawing.kind(feature).shape
+    if not isinstance(shape, RoundPlane):
+        yield (*here, "of"), f"expected a plane with a `radius`, which turns about the axis, got {feature!r}"
+    elif spec.radius is not None and spec.radius.internal > shape.radius:
+        words = f"expected a circle on the face, whose radius is {shape.radius:g} mm, got {spec.radius}"
+        yield (*here, "radius"), words
+    if drawing.form(feature) >= spec.zone.size:
+        words = f"expected more than the {drawing.form(feature) * 1e3:g} um of its form, which it holds too"
+        yield (*here, "zone"), f"{words}, got {spec.zone.size * 1e3:g} um"
 
 
 def _counted_once(drawing: Drawing, feature: str) -> tuple[Stated, ...]:
@@ -93,12 +144,16 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
                 instead = f"of one feature write an orientation tolerance of {spec.lower_segment.zone.stated} beside"
                 yield (*here, "lower_segment"), f"{words}; {instead} {own.entry!r}"
         elif isinstance(spec, OrientationSpec):
+            if isinstance(spec, AxialRunOutSpec):
+                yield from _axial_problems(here, spec, drawing, feature)
             located = drawing.of(feature, LocationSpec)
             if located and spec.law is not None:
                 yield (*here, "law"), f"expected none, for that of {located[0].entry!r} counts; leave it out"
             if not located and spec.law is None:
                 words = "expected a law, such as {kind: uniform}: no other zone says where the feature lies"
                 yield here, words
+        elif isinstance(spec, FormSpec):
+            yield from _form_problems(here, spec, drawing, feature)
         elif isinstance(spec, PlusMinusSpec):
             yield from _direction_problems(here, spec, drawing, feature)
 
@@ -128,9 +183,17 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
 def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
     lower = spec.lower_segment if isinstance(spec, Composite) else None
     width = spec.zone.size if lower is None else lower.zone.size
+    taken = drawing.form(feature, spec)
     for other in (*drawing.of(feature, OrientationSpec), *drawing.of(feature, FormSpec)):
         assert isinstance(other.spec, OrientationSpec | FormSpec)
-        own = other.spec.zone.size
+        is_form = isinstance(other.spec, FormSpec)
+        own = (
+            whole_form(other.spec, drawing.kind(feature).shape)
+            if isinstance(other.spec, FormSpec)
+            else drawing.oriented(other)
+        )
+        if is_form and taken < width:
+            continue  # another form limits it more, or it takes nothing of this zone
         if own > width or (own == width and isinstance(other.spec, FormSpec)):
             got = f"got {width * 1e3:g} um"
             yield (

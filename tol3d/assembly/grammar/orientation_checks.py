@@ -10,6 +10,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import is_across
 from tol3d.assembly.grammar.tolerances.location import (
     AngularitySpec,
+    AxialRunOutSpec,
     CircularRunOutSpec,
     CoaxialitySpec,
     LocationSpec,
@@ -37,6 +38,8 @@ def unfit_orientations(scene: Scene) -> Iterator[Problem]:
             if own.is_own:
                 yield from _elsewhere(drawing, own)
                 yield from _other_angle(drawing, own)
+                if isinstance(own.spec, AxialRunOutSpec):
+                    yield from _without_axis(drawing, own)
         for own in drawing.of(feature, LocationSpec):
             if own.is_own and isinstance(own.spec, CoaxialitySpec | CircularRunOutSpec | TotalRunOutSpec):
                 yield from _without_axis(drawing, own)
@@ -91,9 +94,11 @@ def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     kind = _nominal_kind(drawing, own.feature, datum)
     if not kind or isinstance(spec, AngularitySpec) or kind == spec.kind:
         return
+    if isinstance(spec, AxialRunOutSpec) and kind == "perpendicularity":
+        return
     angle = _angle(drawing, own.feature, datum)
     got = {"parallelism": "parallel", "perpendicularity": "square"}.get(kind, f"at {angle:.4g} deg")
-    wanted = "square" if isinstance(spec, PerpendicularitySpec) else "parallel"
+    wanted = "square" if isinstance(spec, PerpendicularitySpec | AxialRunOutSpec) else "parallel"
     words = f"expected a feature that is nominally {wanted} to {datum.features[0]!r}, got one that is {got} to it"
     article = "an" if kind == "angularity" else "a"
     yield ("tolerances", own.entry, "of"), f"{words}; that is {article} {kind}, write kind: {kind}"

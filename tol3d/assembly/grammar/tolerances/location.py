@@ -1,7 +1,7 @@
 """Zones that say where a feature lies, how it is turned, of what form it is; run-outs are of an axis."""
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,8 @@ from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
 from tol3d.files import Files
+from tol3d.scene.listed import listed
+from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
 
@@ -182,6 +184,16 @@ class AngularitySpec(OrientationSpec):
     kind: Literal["angularity"]
 
 
+class AxialRunOutSpec(OrientationSpec):
+    """Axial run-out of a round face about an axis: how far it wobbles in a turn, on a circle of the `radius`."""
+
+    words: ClassVar[str] = "an axial run-out tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("plane",)
+
+    kind: Literal["axial_run_out"]
+    radius: Length | None = Field(default=None, description="of the circle that is read; that of the face if not given")
+
+
 class FormSpec(FeatureTolerance):
     """A zone for the form of a feature; where it touches at a point, that point lies off by up to half of it."""
 
@@ -196,21 +208,44 @@ class FormSpec(FeatureTolerance):
 
 
 class FlatnessSpec(FormSpec):
-    """Of a plane."""
+    """Of a plane, or of every piece of it `per` an area."""
 
     words: ClassVar[str] = "a flatness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("plane",)
 
     kind: Literal["flatness"]
+    per: Annotated[tuple[Length, Length], listed("lengths", 2, 2)] | None = Field(
+        default=None, description="every piece so long along x and y of the face; the whole face if not given"
+    )
 
 
 class StraightnessSpec(FormSpec):
-    """Of an axis."""
+    """Of an axis in a diameter, of the lines of a surface in a width; of the whole or of every piece `per` a length."""
 
     words: ClassVar[str] = "a straightness tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis", "plane")
 
     kind: Literal["straightness"]
+    per: Length | None = Field(default=None, description="every piece of that length; the whole if not given")
+    lines: Literal["x", "y"] | None = Field(default=None, description="of a plane: along which of its axes lines run")
+
+
+class RoundnessSpec(FormSpec):
+    """Of every section of a cylinder, between two circles with one centre."""
+
+    words: ClassVar[str] = "a roundness tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
+
+    kind: Literal["roundness"]
+
+
+class CylindricitySpec(FormSpec):
+    """Of a cylinder, between two cylinders with one axis."""
+
+    words: ClassVar[str] = "a cylindricity tolerance"
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
+
+    kind: Literal["cylindricity"]
 
 
 class CircularRunOutSpec(LocationSpec):

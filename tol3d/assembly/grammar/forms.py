@@ -1,0 +1,75 @@
+"""What the form of a feature takes of the zones in which it lies.
+
+An axis' zone holds its bend, so it loses the straightness of the axis or of the lines of its surface, or the
+cylindricity; roundness moves no axis. A run-out is read on the surface: at one section it loses the roundness, over the
+whole length the cylindricity.
+"""
+
+from collections.abc import Callable, Sequence
+
+from tol3d.assembly.grammar.tolerances.location import (
+    CylindricitySpec,
+    FlatnessSpec,
+    FormSpec,
+    RoundnessSpec,
+    StraightnessSpec,
+)
+from tol3d.assembly.model import Axis, Plane, RoundPlane
+from tol3d.assembly.model.feature import Shape
+
+Forms = Sequence[FormSpec]
+
+
+def whole_form(spec: FormSpec, shape: Shape) -> float:
+    """Width [mm] of a form over the whole feature; of one per unit the bow of a feature bent evenly.
+
+    Every piece of a length l within f lets a length L bow by f (L/l)^2: sagittas grow with the square of the chord. An
+    area goes by the longer of its two ratios.
+    """
+    return spec.zone.size * max((length / unit for length, unit in units(spec, shape)), default=1.0) ** 2
+
+
+def units(spec: FormSpec, shape: Shape) -> Sequence[tuple[float, float]]:
+    """Lengths of a feature, and the unit of each for which a form is stated [mm]; none where it is of the whole."""
+    if isinstance(spec, FlatnessSpec) and spec.per is not None and isinstance(shape, Plane | RoundPlane):
+        return tuple((2.0 * reach, own.internal) for reach, own in zip(shape.reach, spec.per, strict=True))
+    if isinstance(spec, StraightnessSpec) and spec.per is not None:
+        return ((_length(spec, shape), spec.per.internal),)
+    return ()
+
+
+def _length(spec: StraightnessSpec, shape: Shape) -> float:
+    """Of an axis, or of the line of a plane through its middle [mm]; of a plane `lines` are told in its own frame."""
+    match shape:
+        case Axis():
+            return shape.length
+        case RoundPlane():
+            return 2.0 * shape.radius
+        case Plane():
+            along = shape.reach[0 if spec.lines != "y" else 1]
+            return 2.0 * along
+    return 0.0
+
+
+def of_location(forms: Forms, shape: Shape) -> float:
+    """What form takes of a zone in which an axis, a median plane or a face lies [mm]."""
+    if isinstance(shape, Axis):
+        return _least(forms, shape, lambda own: isinstance(own, StraightnessSpec | CylindricitySpec))
+    flat = _least(forms, shape, lambda own: isinstance(own, FlatnessSpec))
+    return flat or _least(forms, shape, lambda own: isinstance(own, StraightnessSpec))
+
+
+def of_section(forms: Forms, shape: Shape) -> float:
+    """What form takes of a run-out at one section [mm]."""
+    return _least(forms, shape, lambda own: isinstance(own, RoundnessSpec | CylindricitySpec))
+
+
+def of_total_run_out(forms: Forms, shape: Shape) -> float:
+    """What form takes of a run-out over the whole length [mm]: the cylindricity, or what makes it up."""
+    whole = _least(forms, shape, lambda own: isinstance(own, CylindricitySpec))
+    parts = (RoundnessSpec, StraightnessSpec)
+    return whole or sum(_least(forms, shape, lambda own, kind=kind: isinstance(own, kind)) for kind in parts)
+
+
+def _least(forms: Forms, shape: Shape, counts: Callable[..., bool]) -> float:
+    return min((whole_form(own, shape) for own in forms if counts(own)), default=0.0)
