@@ -26,6 +26,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     TotalRunOutSpec,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
+from tol3d.assembly.model import Plane, RoundPlane
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -202,7 +203,9 @@ class Drawing:
             return width
         shape, radius = self.kind(own.feature).shape, own.spec.radius
         left = max(width - self.form(own.feature), 0.0)
-        return left if radius is None else left * max(shape.reach) / radius.internal  # type: ignore[union-attr]
+        if radius is None or not isinstance(shape, Plane | RoundPlane):  # of another feature: refused elsewhere
+            return left
+        return left * max(shape.reach) / radius.internal
 
     def orientation(self, feature: str) -> float | None:
         """Width of the zone to which its orientation is refined [mm], beside a location zone."""

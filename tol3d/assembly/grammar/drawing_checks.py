@@ -66,7 +66,8 @@ def _forms_alike(drawing: Drawing, feature: str) -> Iterator[Sequence[Stated]]:
     """Its forms of one kind; that of every piece stands beside that of the whole."""
     found: dict[object, list[Stated]] = {}
     for own in drawing.of(feature, FormSpec):
-        key = type(own.spec), getattr(own.spec, "per", None) is None, own.spec.zone.diameter is None  # type: ignore[attr-defined]
+        assert isinstance(own.spec, FormSpec)
+        key = type(own.spec), getattr(own.spec, "per", None) is None, own.spec.zone.diameter is None
         found.setdefault(key, []).append(own)
     yield from found.values()
 
