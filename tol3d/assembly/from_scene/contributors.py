@@ -14,9 +14,9 @@ from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
-from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Contribution
+from tol3d.assembly.model import Axis, Contribution, Point
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution
@@ -169,6 +169,11 @@ class Effects:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
         columns = self._added(own.name, own.spec.kind, own.spec.description, draw)
         self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+        if is_of_round_surface(own.spec, self.drawing.kind(own.feature).kind):
+            shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
+            assert isinstance(shape, Axis | Point)
+            larger[0, 0] = -2.0 if shape.inner else 2.0  # outward is out of the material
+            self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, larger))
 
     def _form(self, own: Stated, spec: FormSpec) -> None:
         others = self.touching.get(own.feature, {})

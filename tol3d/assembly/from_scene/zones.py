@@ -6,10 +6,16 @@ from dataclasses import replace
 import numpy as np
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
+from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
-from tol3d.assembly.grammar.tolerances.location import CircularRunOutSpec, Composite, LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import (
+    CircularRunOutSpec,
+    Composite,
+    LocationSpec,
+    OrientationSpec,
+    ProfileSpec,
+)
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
 from tol3d.assembly.model import Axis, Contribution, Feature, Slot
@@ -67,7 +73,8 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
 def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
     """A ring is of where an axis lies, in a cylinder or at a section, and of an axis that does not lean."""
     spec, path = own.spec, ("tolerances", own.entry, "law")
-    located = isinstance(spec, LocationSpec) and isinstance(drawing.kind(own.feature).shape, Axis)
+    surface = isinstance(spec, ProfileSpec)  # whose zone holds the size too
+    located = isinstance(spec, LocationSpec) and isinstance(drawing.kind(own.feature).shape, Axis) and not surface
     if not isinstance(spec, LocationSpec) or not located or spec.zone.along is not None:
         words = f"expected uniform, normal or process, got ring of a {spec.kind} of {own.feature!r}"
         raise scene.refuse(path, f"{words}; a ring is of where an axis lies, in a cylinder or at a section")
@@ -146,7 +153,8 @@ def limited_along(spec: LocationSpec, feature: FeatureUnion) -> Array:
     if isinstance(feature, PlaneSpec | SlotSpec):
         return np.eye(3)[2:]
     if isinstance(feature, PointSpec | SphereSpec):
-        return np.eye(3) if spec.zone.diameter is not None else np.array([_seen(spec.zone.along, feature)])
+        whole = spec.zone.diameter is not None or (isinstance(spec, ProfileSpec) and isinstance(feature, SphereSpec))
+        return np.eye(3) if whole else np.array([_seen(spec.zone.along, feature)])
     if spec.zone.along is None:
         return np.eye(3)[:2]
     x, y = _across(spec.zone.along, feature)
@@ -158,6 +166,10 @@ def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | No
     if isinstance(spec, Composite) and spec.lower_segment is not None:  # about the middle of the upper zone
         own = spec.lower_segment.zone.size
         width, outward = own, None if outward is None else outward + 0.5 * (own - width)
+    if isinstance(spec, ProfileSpec) and isinstance(feature, CylinderSpec):
+        return catalogue.cylinder_surface(width, outward, form)
+    if isinstance(spec, ProfileSpec) and isinstance(feature, SphereSpec):
+        return catalogue.sphere_surface(width, outward)
     if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
         return made(width, orientation, outward, form)

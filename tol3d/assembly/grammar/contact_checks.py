@@ -9,7 +9,6 @@ from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGap
 from tol3d.assembly.grammar.moves import LocatingSpec, PinAndHoleSpec, PlaySpec, RestSpec
 from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec
-from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.model.moves import unfit_surfaces
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -57,7 +56,7 @@ def unfit_engagements(scene: Scene) -> Iterator[Problem]:
             sized = [("from", pair.from_), ("to", pair.to)]
             sized += [("bolt", bolt.of)] if bolt is not None and bolt.of is not None else []
             for end, own in sized:
-                if not drawing.of(own, SizeSpec):
+                if not drawing.is_sized(own):
                     words = f"expected a size tolerance of {own!r}, for its play follows from its size, got none"
                     yield (*here, end), f"{words}; {NO_SIZE}"
 

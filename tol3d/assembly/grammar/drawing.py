@@ -23,10 +23,12 @@ from tol3d.assembly.grammar.tolerances.location import (
     FormSpec,
     LocationSpec,
     OrientationSpec,
+    ProfileSpec,
     TotalRunOutSpec,
+    is_of_round_surface,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Plane, RoundPlane
+from tol3d.assembly.model import Axis, Plane, RoundPlane
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -191,7 +193,7 @@ class Drawing:
         match located:
             case CircularRunOutSpec():
                 return of_section(forms, self.kind(feature).shape)
-            case TotalRunOutSpec():
+            case TotalRunOutSpec() | ProfileSpec() if isinstance(self.kind(feature).shape, Axis):
                 return of_total_run_out(forms, self.kind(feature).shape)
         return of_location(forms, self.kind(feature).shape)
 
@@ -210,6 +212,12 @@ class Drawing:
     def orientation(self, feature: str) -> float | None:
         """Width of the zone to which its orientation is refined [mm], beside a location zone."""
         return min((self.oriented(own) for own in self.of(feature, OrientationSpec)), default=None)
+
+    def is_sized(self, feature: str) -> bool:
+        """Whether a tolerance says how large it is: of its size, or a profile of a round surface."""
+        kind = self.kind(feature).kind
+        surfaces = (own for own in self.of(feature, LocationSpec) if is_of_round_surface(own.spec, kind))
+        return bool(self.of(feature, SizeSpec)) or any(surfaces)
 
     def datums(self, feature: str) -> tuple[DatumSpec, ...]:
         """Those of the tolerance that says where it lies; of its orientation where none says that."""

@@ -19,6 +19,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     StraightnessSpec,
     SymmetrySpec,
     TotalRunOutSpec,
+    is_of_round_surface,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec
@@ -140,6 +141,8 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
             yield from _shape_problems(here, spec, drawing.kind(feature).kind)
         if isinstance(spec, LocationSpec):
             yield from _room_problems(here, spec, drawing, feature)
+            if is_of_round_surface(spec, drawing.kind(feature).kind):
+                yield from _surface_problems(here, own, drawing)
             if isinstance(spec, Composite) and spec.lower_segment is not None and len(drawing.composite(own)) < 2:
                 words = f"expected a pattern of features of {spec.of!r}, which lie to each other, got one alone"
                 instead = f"of one feature write an orientation tolerance of {spec.lower_segment.zone.stated} beside"
@@ -173,12 +176,24 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
         yield place, "expected a diameter, for the axis lies in a cylinder about the datum's"
     elif isinstance(spec, SymmetrySpec) and zone.width is None:
         yield place, "expected a width, about the datum's middle"
-    elif zone.width is not None and zone.along is None and not (kind == "point" and spec.kind == "profile"):
+    elif zone.width is not None and zone.along is None and spec.kind != "profile":
         yield place, "expected the direction `along` in which the width limits, or a diameter"
-    elif kind == "point" and spec.kind == "profile" and (zone.diameter is not None or zone.along is not None):
-        yield place, "expected a width alone, which limits along the point's normal"
+    elif spec.kind == "profile" and (zone.diameter is not None or zone.along is not None):
+        which = "the point's normal" if kind == "point" else "the normal of the surface"
+        yield place, f"expected a width alone, which limits along {which}"
     if zone.outward is not None and spec.kind != "profile":
         yield (*place, "outward"), f"expected it of a profile tolerance, got a {spec.kind}"
+
+
+def _surface_problems(here: KeyPath, own: Stated, drawing: Drawing) -> Iterator[Problem]:
+    """What stands beside the profile of a round surface, which holds its size and how it is turned too."""
+    kind = drawing.kind(own.feature).kind
+    for other in drawing.of(own.feature, SizeSpec):
+        words = f"expected no size of {own.feature!r} beside a profile, which holds the {kind}'s diameter too"
+        yield here, f"{words}, got {other.entry!r}; write a position for where it lies, or take {other.entry!r} out"
+    for other in drawing.of(own.feature, OrientationSpec):
+        words = f"expected no orientation beside the profile of a {kind}, got {other.entry!r}"
+        yield here, f"{words}; write size and position, which an orientation may refine"
 
 
 def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:

@@ -14,6 +14,7 @@ from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
 from tol3d.assembly.zones.ends import Ends, FlatEnds
 from tol3d.assembly.zones.face import Face
 from tol3d.assembly.zones.motions import Motions
+from tol3d.assembly.zones.round_surfaces import BallSurface, RoundSurface
 from tol3d.assembly.zones.zone import Shape, Zone
 from tol3d.errors import InputError
 
@@ -104,6 +105,18 @@ def pattern_motion(width: float, shifts: int, turns: int) -> Zone:
     names += ["turn"] if turns == 1 else [f"turn {own}" for own in "xyz"[:turns]]
     unit = tuple(tuple(row) for row in np.eye(count).tolist())
     return Zone(Shape(Motions(shifts, turns), tuple(names), unit), width)
+
+
+def cylinder_surface(width: float, outward: float | None = None, form: float = 0.0) -> Zone:
+    """Of a cylinder's surface: |outward| + the farther end of its axis <= t/2, outward by the radius."""
+    axis = tuple((0.0, *row) for row in FOUR)
+    return Zone(Shape(RoundSurface(), ("outward", *AXIS), axis, (0.0, 0.5, 0.0, 0.5, 0.0)), width, None, outward, form)
+
+
+def sphere_surface(width: float, outward: float | None = None) -> Zone:
+    """Of a ball's surface: |outward| + the offset of its centre <= t/2, outward by the radius."""
+    centre = tuple((0.0, *row) for row in THREE)
+    return Zone(Shape(BallSurface(), ("outward", *POINT), centre, (0.0, 1.0, 0.0, 0.0)), width, None, outward)
 
 
 def _rises(section: CrossSection, width: float) -> Zone:

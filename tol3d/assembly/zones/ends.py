@@ -110,8 +110,8 @@ class NormalEnds(UnitLaw):
         """See UnitLaw: the radius and angle of m, the length of d and its angle against m."""
         u, v, p, q = uniforms
         length, angle, turn = cut_rayleigh(_ONE, u), (2.0 * math.pi) * v, (2.0 * math.pi) * q
-        room = np.minimum(_room(length, np.cos(turn), np.sin(turn)) / ratio, 1.0)
-        apart, direction = ratio * cut_rayleigh(room, p), angle + turn
+        left = np.minimum(room(length, np.cos(turn), np.sin(turn)) / ratio, 1.0)
+        apart, direction = ratio * cut_rayleigh(left, p), angle + turn
         x, y = length * np.cos(angle), length * np.sin(angle)
         a, b = apart * np.cos(direction), apart * np.sin(direction)
         return x - a, y - b, x + a, y + b
@@ -122,7 +122,7 @@ class NormalEnds(UnitLaw):
         return np.kron(np.array([[middle + apart, middle - apart], [middle - apart, middle + apart]]), np.eye(2))
 
 
-def _room(length: Array, along: Array, across: Array) -> Array:
+def room(length: Array, along: Array, across: Array) -> Array:
     """Longest half difference in a direction (along, across) to both sides of a middle of a length, in a disc of 1."""
     chord = np.sqrt(np.maximum(1.0 - (length * across) ** 2, 0.0)) + length * np.abs(along)
     return np.asarray((1.0 - length) * (1.0 + length) / np.maximum(chord, np.finfo(float).tiny))
@@ -142,7 +142,7 @@ def _normal_difference(ratio: float) -> float:
     length = np.sin(place)
     rayleigh = SIGMAS**2 * length * np.exp(-0.5 * (SIGMAS * length) ** 2)
     mass = WEIGHTS * (0.5 * math.pi - start) * np.cos(place) * rayleigh
-    variance = Disc().normal_variance(np.minimum(_room(length, along, across) / ratio, 1.0))
+    variance = Disc().normal_variance(np.minimum(room(length, along, across) / ratio, 1.0))
     whole = -np.expm1(-0.5 * (SIGMAS * near) ** 2) * float(Disc().normal_variance(_ONE))
     total = float((WEIGHTS * (whole[:, 0] + (mass * variance).sum(axis=1))).sum())
     return ratio**2 * total / -math.expm1(-0.5 * SIGMAS**2)

@@ -112,10 +112,13 @@ class PositionSpec(Modified, Composite):
 
 
 class ProfileSpec(Composite):
-    """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else."""
+    """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else.
+
+    That of a cylinder or a sphere holds its size, its place and its form together.
+    """
 
     words: ClassVar[str] = "a profile tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point", "cylinder", "sphere")
 
     kind: Literal["profile"]
 
@@ -266,3 +269,8 @@ class TotalRunOutSpec(LocationSpec):
 
     kind: Literal["total_run_out"]
     datums: Datums = Field(description="the axis that it turns about")
+
+
+def is_of_round_surface(spec: FeatureTolerance, kind: str) -> bool:
+    """Whether a tolerance of a kind of feature holds a size and a place together: a profile of what is round."""
+    return isinstance(spec, ProfileSpec) and kind in ("cylinder", "sphere")
