@@ -18,6 +18,7 @@ from scipy.special import logsumexp, ndtr
 
 from tol3d.analyses.design_points import DesignPoint, design_points
 from tol3d.analyses.limit_state import LimitState, Positions, Side
+from tol3d.analyses.places import FEWEST_PLACES, FEWEST_STARTS, affordable
 from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent
@@ -233,9 +234,10 @@ def points_of(response: Response, side: Side, limit: float, *, seed: int = 1) ->
     generator = np.random.default_rng(seed)
     state = LimitState(response, limit, side)
     moves = state.reads_positions
-    count = PLACES if moves else 1
+    count = affordable(state, PLACES, FEWEST_PLACES) if moves else 1
     positions = response.positions(count, "drawn" if moves else "rest", int(generator.integers(2**31)))
-    found = design_points(state, positions, count, STARTS if moves else ALONE, generator)
+    starts = STARTS if moves else affordable(state, ALONE, FEWEST_STARTS)
+    found = design_points(state, positions, count, starts, generator)
     own = [(place, point) for place, points in enumerate(found) for point in points]
     if not own:
         return None

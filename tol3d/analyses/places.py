@@ -79,8 +79,8 @@ class Places:
 def searched(state: LimitState, places: int, starts: int, alone: int, generator: np.random.Generator) -> Places:
     """Design points at several positions, or at the only one there is; see `rare_event`."""
     moving = state.reads_positions
-    count = _affordable(state, places, FEWEST_PLACES) if moving else 1
-    starts = starts if moving else max(starts, _affordable(state, alone, FEWEST_STARTS))
+    count = affordable(state, places, FEWEST_PLACES) if moving else 1
+    starts = starts if moving else max(starts, affordable(state, alone, FEWEST_STARTS))
     seed = int(generator.integers(2**31))
     positions = state.response.positions(count, "drawn" if moving else "rest", seed)
     points = design_points(state, positions, count, starts, generator)
@@ -89,7 +89,7 @@ def searched(state: LimitState, places: int, starts: int, alone: int, generator:
     return _screened(state, found, generator) if moving else found
 
 
-def _affordable(state: LimitState, most: int, fewest: int) -> int:
+def affordable(state: LimitState, most: int, fewest: int) -> int:
     """So many walks, fewer where their gradients take long."""
     step = 2 * len(state.acting) * state.response.minutes
     return min(most, max(fewest, int(MOST_MINUTES / max(step, LEAST_MINUTES))))
@@ -104,7 +104,7 @@ def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.
         return places
     points = [list(own) for own in places.points]
     beyond, everywhere = places.beyond, len(ends) * places.count
-    anywhere = _affordable(state, everywhere, 1) == everywhere
+    anywhere = affordable(state, everywhere, 1) == everywhere
     for place in range(places.count):
         tried = ends if anywhere else ends[where == place]
         rows = np.full(len(tried), place)
@@ -155,7 +155,7 @@ def _screened(state: LimitState, places: Places, generator: np.random.Generator)
     betas = _betas_elsewhere(state, centres[:8], many, SCREENED)
     likely = ndtr(-np.clip(betas, -8.0, 12.0)) ** 0.9
     shares = DEFENCE / SCREENED + (1 - DEFENCE) * likely / likely.sum()
-    count = max(_affordable(state, CHOSEN, FEWEST_PLACES), places.count)
+    count = max(affordable(state, CHOSEN, FEWEST_PLACES), places.count)
     chosen = generator.choice(SCREENED, size=count, p=shares)
     positions = taken(many, chosen)
     points = design_points(state, positions, count, 2, generator)
