@@ -203,6 +203,17 @@ def test_the_lower_segment_frees_all_shifts_and_the_turns_that_its_datums_leave(
     assert own.name == ("holes shift" if components == 2 else "holes shift and turn")
 
 
+def test_names_and_the_order_of_features_change_nothing(tmp_path: Path) -> None:
+    """Draws are by the names of tolerances: the same bits where features have other names and stand in another order."""
+    text = plate()
+    pads = next(line for line in text.splitlines(keepends=True) if line.startswith("      pad: "))
+    other = text.replace(pads, "").replace("    features:\n", f"    features:\n{pads}")
+    other = other.replace("plate.hole", "plate.bore").replace("      hole: ", "      bore: ")
+    before, after = (assembled(own, tmp_path).drawn(50) for own in (text, other))
+    for name, values in before.items():
+        np.testing.assert_array_equal(after[name], values)
+
+
 def test_pads_that_may_tilt_together_stay_in_both_zones_at_all_corners(tmp_path: Path) -> None:
     """Without datums the lower segment makes pads flush: they shift along their normal and tilt as one."""
     made = assembled(plate(), tmp_path)

@@ -68,29 +68,76 @@ def test_a_hole_inspected_within_its_plate_is_judged_by_another_zone(tmp_path: P
     assert own["analytic"]["above_limit_ppm"] > 10_000
 
 
+LEAN = "  lean: {kind: inspected_orientation, of: HOLE, datums: [DATUM]}\n"
+UPRIGHT = "{diameter: 0.05 mm}, law: {kind: uniform}, datums: [under]"
+REFINED = "{diameter: 0.05 mm}, modifier: mmc, datums: [face]"
+STUD_UPRIGHT = "  upright: {kind: perpendicularity, of: base.stud hole, zone: {diameter: 0.03 mm}, datums: [face]}\n"
+
+
+@pytest.mark.parametrize(
+    ("edits", "hole", "datum", "lean"),
+    [
+        # of 8 mm, held within 0.05 mm over 16 mm
+        ([(UPRIGHT, UPRIGHT.replace("mm}", "mm, projected: 16 mm}"))], "cover.hole 1", "under", 0.025),
+        # of 10 mm, within 0.05 mm over 40 mm, beside a position of the hole itself
+        (
+            [(REFINED, "{diameter: 0.05 mm, projected: 40 mm}, datums: [face]")],
+            "base.hole 1",
+            "face",
+            0.0125,
+        ),
+        # a projected position, and an orientation of the 10 mm themselves
+        ([("tolerances:\n", "tolerances:\n" + STUD_UPRIGHT)], "base.stud hole", "face", 0.03),
+        # both projected: 0.03 mm over 20 mm
+        (
+            [("tolerances:\n", "tolerances:\n" + STUD_UPRIGHT.replace("0.03 mm}", "0.03 mm, projected: 20 mm}"))],
+            "base.stud hole",
+            "face",
+            0.015,
+        ),
+    ],
+)
+def test_an_orientation_holds_an_axis_over_the_length_that_it_states(
+    edits: list[tuple[str, str]], hole: str, datum: str, lean: float, tmp_path: Path
+) -> None:
+    """The lean over the own length is that of a straight line over the stated one; it fills it, by both methods."""
+    own = LEAN.replace("HOLE", hole).replace("DATUM", datum)
+    path = written(tmp_path, *edits, ("\nmeasures:\n", "\nmeasures:\n" + own))
+    simulation = simulation_of(load_scene(path), Overrides())
+    trials = drawn(simulation, 0, 8000)
+    (measure,) = (each for each in simulation.system.measures if each.name == "lean")
+    read = {}
+    for road in ("exact", "analytic"):
+        read[road] = simulation.system.road(road, None).answers(trials, [measure]).values["lean"][:, 0]
+        assert 0.97 * lean < read[road].max() <= lean * (1 + 1e-5)
+    np.testing.assert_allclose(read["exact"], read["analytic"], rtol=0, atol=2e-7)
+    scaled = simulation.system.road("exact", None).answers(trials.scaled(0.25), [measure]).values["lean"][:, 0]
+    np.testing.assert_allclose(scaled, 0.25 * read["analytic"], rtol=0, atol=2e-8)  # of order 2
+
+
 @pytest.mark.parametrize(
     ("edits", "place", "words"),
     [
         (
             [
                 (
-                    "zone: {diameter: 0.05 mm}, law: {kind: uniform}, datums: [under]",
-                    "zone: {diameter: 0.05 mm, projected: 9 mm}, law: {kind: uniform}, datums: [under]",
-                )
+                    "tolerances:\n",
+                    "tolerances:\n  under: {kind: parallelism, of: base.under, zone: {width: 1 um, projected: 9 mm}, "
+                    "law: {kind: uniform}, datums: [face]}\n",
+                ),
+                (
+                    "    features:\n",
+                    "    features:\n      under: {kind: plane, at: [50 mm, 30 mm, -10 mm], "
+                    "normal: [0, 0, -1], extent: [100 mm, 60 mm]}\n",
+                ),
             ],
-            "tolerances.cover hole 1.zone.projected",
-            "expected a location of an axis or a cylinder, got perpendicularity of 'cover.hole 1'; take projected out",
+            "tolerances.under.zone.projected",
+            "expected an axis or a cylinder, got 'base.under'; take projected out",
         ),
         (
-            [
-                (
-                    "    of: base.hole 1\n    zone: {diameter: 0.2 mm}",
-                    "    of: base.hole 1\n    zone: {diameter: 0.2 mm, projected: 9 mm}",
-                )
-            ],
-            "tolerances.base hole 1.zone.projected",
-            "expected no tolerance of its orientation beside a projected zone, got 'base hole 1 upright', which holds "
-            "the axis over its own length; take out one",
+            [(REFINED, REFINED.replace("mm}", "mm, projected: 40 mm}"))],
+            "tolerances.base hole 1 upright.modifier",
+            "expected none, for 'base hole 1' holds the axis over another length; leave it out, or project both alike",
         ),
         (
             [("of: base.stud hole, projected: 20 mm", "of: base.face, projected: 20 mm")],

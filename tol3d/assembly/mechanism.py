@@ -51,8 +51,8 @@ OTHER_KINDS: Final = (
 )
 OTHER_KEYS: Final = (
     ("composite", "write lower_segment: {zone: …, datums: …}"),
-    ("tangent_plane", "tangent planes (circled T) are not there: a face is judged by its own plane"),
-    ("tangent", "tangent planes (circled T) are not there: a face is judged by its own plane"),
+    ("tangent_plane", "leave it out: an orientation is of the plane in contact, and form takes nothing of it"),
+    ("tangent", "leave it out: an orientation is of the plane in contact, and form takes nothing of it"),
     ("translation", "datums that may shift (a triangle) are not there: leave the datum out, or name it with `mmb`"),
     ("freedoms", "customised datum freedoms are not there: each datum takes what earlier ones leave"),
     ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),

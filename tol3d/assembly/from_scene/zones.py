@@ -57,7 +57,7 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         if isinstance(spec.law, RingLawSpec):
             zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature, spec))
         elif isinstance(spec, LocationSpec):
-            zone = _location(spec, feature, drawing.orientation(own.feature), drawing.form(own.feature, spec))
+            zone = _location(spec, feature, _refined(spec, drawing, own.feature), drawing.form(own.feature, spec))
         else:
             zone = _orientation(spec.zone, feature, drawing.oriented(own))
     except InputError as error:
@@ -68,6 +68,13 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         return draw, matrix
     judged = JudgedProcess(draw.zone, draw.laws, size) if isinstance(draw, Process) else Widened(draw.zone, draw, size)
     return judged, matrix
+
+
+def _refined(spec: LocationSpec, drawing: Drawing, feature: str) -> float | None:
+    """Width to which the orientation within a location zone is refined [mm], at most that of the zone."""
+    found = drawing.orientation(feature)
+    lower = spec.lower_segment if isinstance(spec, Composite) else None
+    return None if found is None else min(found, spec.zone.size if lower is None else lower.zone.size)
 
 
 def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
@@ -84,21 +91,22 @@ def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
 
 
 def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
-    """(4, 4): what the ends of the projected part of an axis do to its own ends.
+    """(4, 4): what the ends of the projected part of an axis do to its own ends; of an orientation about its middle.
 
     Raises:
-        SceneError: the feature is no axis, or the zone no location alone.
+        SceneError: the feature is no axis, or is read at one section.
     """
     assert isinstance(own.spec, LocationSpec | OrientationSpec)
     projected = own.spec.zone.projected
     assert projected is not None
     shape, path = drawing.kind(own.feature).shape, ("tolerances", own.entry, "zone", "projected")
-    if not isinstance(shape, Axis) or isinstance(own.spec, OrientationSpec | CircularRunOutSpec):
-        words = f"expected a location of an axis or a cylinder, got {own.spec.kind} of {own.feature!r}"
+    if not isinstance(shape, Axis) or isinstance(own.spec, CircularRunOutSpec | ProfileSpec):
+        words = (
+            f"expected a location or an orientation of an axis or a cylinder, got {own.spec.kind} of {own.feature!r}"
+        )
         raise scene.refuse(path, f"{words}; take projected out")
-    for other in drawing.of(own.feature, OrientationSpec):
-        words = f"expected no tolerance of its orientation beside a projected zone, got {other.entry!r}"
-        raise scene.refuse(path, f"{words}, which holds the axis over its own length; take out one")
+    if isinstance(own.spec, OrientationSpec):
+        return np.eye(4) * (shape.length / projected.internal)
     return seen_from_projected(shape.length, projected.internal)
 
 

@@ -28,6 +28,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     is_of_round_surface,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.model import Axis, Plane, RoundPlane
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
@@ -198,9 +199,17 @@ class Drawing:
         return of_location(forms, self.kind(feature).shape)
 
     def oriented(self, own: Stated) -> float:
-        """Width of a zone of orientation [mm]; of an axial run-out of the whole face, without its form."""
+        """Width of a zone of orientation [mm], where a location zone, or else itself, holds the feature.
+
+        That of an axial run-out is of the whole face, without its form; of a projected axis it goes with the length
+        over which either zone holds it.
+        """
         assert isinstance(own.spec, OrientationSpec)
         width = own.spec.zone.size
+        if located := self.of(own.feature, LocationSpec):
+            spec = located[0].spec
+            assert isinstance(spec, LocationSpec)
+            width *= self.held_over(own.feature, spec.zone) / self.held_over(own.feature, own.spec.zone)
         if not isinstance(own.spec, AxialRunOutSpec):
             return width
         shape, radius = self.kind(own.feature).shape, own.spec.radius
@@ -212,6 +221,13 @@ class Drawing:
     def orientation(self, feature: str) -> float | None:
         """Width of the zone to which its orientation is refined [mm], beside a location zone."""
         return min((self.oriented(own) for own in self.of(feature, OrientationSpec)), default=None)
+
+    def held_over(self, feature: str, zone: ZoneSpec) -> float:
+        """The length over which a zone holds an axis [mm]: its own, or beyond its end; 1 of what has no ends."""
+        if zone.projected is not None:
+            return zone.projected.internal
+        shape = self.kind(feature).shape
+        return shape.length if isinstance(shape, Axis) else 1.0
 
     def is_sized(self, feature: str) -> bool:
         """Whether a tolerance says how large it is: of its size, or a profile of a round surface."""

@@ -151,6 +151,14 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
             if isinstance(spec, AxialRunOutSpec):
                 yield from _axial_problems(here, spec, drawing, feature)
             located = drawing.of(feature, LocationSpec)
+            if located and spec.modifier is not None and _held_otherwise(drawing, feature, spec, located[0]):
+                words = f"expected none, for {located[0].entry!r} holds the axis over another length"
+                yield (*here, "modifier"), f"{words}; leave it out, or project both alike"
+            if spec.zone.projected is not None and drawing.kind(feature).kind not in ("axis", "cylinder"):
+                yield (
+                    (*here, "zone", "projected"),
+                    f"expected an axis or a cylinder, got {feature!r}; take projected out",
+                )
             if located and spec.law is not None:
                 yield (*here, "law"), f"expected none, for that of {located[0].entry!r} counts; leave it out"
             if not located and spec.law is None:
@@ -160,6 +168,13 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
             yield from _form_problems(here, spec, drawing, feature)
         elif isinstance(spec, PlusMinusSpec):
             yield from _direction_problems(here, spec, drawing, feature)
+
+
+def _held_otherwise(drawing: Drawing, feature: str, spec: OrientationSpec, located: Stated) -> bool:
+    """Whether a zone of orientation holds a feature over another length than that of its location."""
+    other = located.spec
+    assert isinstance(other, LocationSpec)
+    return drawing.held_over(feature, spec.zone) != drawing.held_over(feature, other.zone)
 
 
 def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: str) -> Iterator[Problem]:
@@ -210,6 +225,8 @@ def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature:
         )
         if is_form and taken < width:
             continue  # another form limits it more, or it takes nothing of this zone
+        if other.spec.zone.projected != spec.zone.projected:
+            continue  # over another length it may be as wide
         if own > width or (own == width and isinstance(other.spec, FormSpec)):
             got = f"got {width * 1e3:g} um"
             yield (

@@ -28,7 +28,7 @@ class ZoneSpec(Strict):
     )
     projected: Length | None = Field(
         default=None,
-        description="of a location of an axis: the zone holds the axis over such a length beyond its end along +z, "
+        description="of an axis: the zone holds it over such a length beyond its end along +z, "
         "where what is screwed in stands out, instead of over the axis itself",
     )
     outward: Annotated[Quantity, Of("length")] | None = Field(
