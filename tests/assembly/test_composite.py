@@ -204,7 +204,7 @@ def test_the_lower_segment_frees_all_shifts_and_the_turns_that_its_datums_leave(
 
 
 def test_names_and_the_order_of_features_change_nothing(tmp_path: Path) -> None:
-    """Draws are by the names of tolerances: the same bits where features have other names and stand in another order."""
+    """Draws are by the names of tolerances: the same bits where features have other names and another order."""
     text = plate()
     pads = next(line for line in text.splitlines(keepends=True) if line.startswith("      pad: "))
     other = text.replace(pads, "").replace("    features:\n", f"    features:\n{pads}")
