@@ -123,6 +123,37 @@ def test_parts_of_older_files_are_placed_by_mapped_items() -> None:
         assert placed(leaf) == pytest.approx(matrix(at) @ np.linalg.inv(matrix(UPSIDE_DOWN, 25.4)), abs=1e-9)
 
 
+@pytest.mark.parametrize("listed", [0, 1, 2])
+def test_mapped_items_that_no_parts_list_has_are_parts_too(listed: int) -> None:
+    """Two bolts are shown, of which the parts list has none, one or both; one is placed by an operator."""
+    writer = Writer()
+    bolt = writer.product("bolt", "#8")
+    source = writer.add(f"REPRESENTATION_MAP(#{writer.axes(UPSIDE_DOWN)},#{bolt[1]})")
+    at, z, x = TURNED
+    point = writer.add(f"CARTESIAN_POINT('',({','.join(map(str, at))}))")
+    ways = [writer.add(f"DIRECTION('',({','.join(map(str, own))}))") for own in (x, z)]
+    operator = writer.add(f"CARTESIAN_TRANSFORMATION_OPERATOR_3D('','',#{ways[0]},$,#{point},1.,#{ways[1]})")
+    items = [writer.add(f"MAPPED_ITEM('',#{source},#{own})") for own in (operator, writer.axes(UPSIDE_DOWN))]
+    top = writer.product("top", ",".join(f"#{each}" for each in items))
+    for _ in range(listed):
+        writer.add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('1','','',#{top[0]},#{bolt[0]},$)")
+    leaves = writer.read().structure.leaves
+    assert [each.path for each in leaves] == [("bolt",), ("bolt_2",)]
+    for leaf, own in zip(leaves, (TURNED, UPSIDE_DOWN), strict=True):
+        assert placed(leaf) == pytest.approx(matrix(own) @ np.linalg.inv(matrix(UPSIDE_DOWN)), abs=1e-9)
+
+
+def test_a_mapped_item_without_axes_is_refused() -> None:
+    writer = Writer()
+    bolt = writer.product("bolt", "#8")
+    source = writer.add(f"REPRESENTATION_MAP(#{writer.axes(PLAIN)},#{bolt[1]})")
+    point = writer.add("CARTESIAN_POINT('',(0.,0.,0.))")
+    item = writer.add(f"MAPPED_ITEM('',#{source},#{point})")
+    writer.product("top", f"#{item}")
+    with pytest.raises(StepError, match=r"expected a MAPPED_ITEM that is placed by axes .*, got CARTESIAN_POINT; exp"):
+        writer.read()
+
+
 def test_uses_without_a_name_are_told_apart() -> None:
     writer = Writer()
     bolt, top = writer.product("bolt", "#8"), writer.product("top", "")

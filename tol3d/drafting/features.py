@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tol3d.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
-from tol3d.step.found import FoundFeature, Triple
+from tol3d.step.found import FoundFeature, Triple, by_place
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError, shown
 from tol3d.step.selecting import Selector, line_of, selected
@@ -173,7 +173,7 @@ class Features:
             letter: that of the datum that they are.
             pmi: names of what the drawing says of them.
         """
-        ordered = tuple(sorted(members, key=lambda own: own.at))
+        ordered = tuple(by_place(members))
         if len(ordered) > 1 and (line := self.selector(ordered, letter, pmi)) is None:
             raise StepError("no one line selects them")
         first = ordered[0]

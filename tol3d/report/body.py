@@ -1,14 +1,15 @@
 """Parts as they are shown and exported: where they stand, their surfaces, solids and colours."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.solids import BuiltShape, PosedPart, PosedShape, surface_of
+from tol3d.solids.built_shape import MeshedShape
 
 Surface = tuple[Array, NDArray[np.int64]]
 
@@ -28,6 +29,8 @@ class Body:
         smooth: whether its facets stand for one round surface, as a cylinder's do.
         opacity: of its surface in pictures, from 0 to 1; what is within it is seen where that is less.
         details: a closed triangle mesh in its own frame that pictures show on it or within it, and no file holds.
+        painted: "#RRGGBB" of each triangle of its surface that has a colour of its own, empty of the others; made when
+            asked for. None: none has.
     """
 
     name: str
@@ -39,6 +42,38 @@ class Body:
     smooth: bool = False
     opacity: float = 1.0
     details: Callable[[], Surface] | None = None
+    painted: Callable[[], Sequence[str]] | None = None
+
+    @cached_property
+    def paint(self) -> Sequence[str]:
+        """The colour of each of its triangles, "#RRGGBB"; empty where all have that of the body."""
+        found = () if self.painted is None else self.painted()
+        return [own or self.colour for own in found] if any(found) else ()
+
+    @cached_property
+    def pieces(self) -> tuple["Body", ...]:
+        """Itself; where faces have colours of their own, without them, and a body of the faces of each such colour."""
+        if not self.paint:
+            return (self,)
+        vertices, triangles = self.surface()
+        paint = np.array(self.paint)
+        found = []
+        for colour in sorted(set(self.paint), key=lambda own: (own != self.colour, own)):
+            used, corners = np.unique(triangles[paint == colour], return_inverse=True)
+            surface = vertices[used], np.asarray(corners.reshape(-1, 3), dtype=np.int64)
+            whole = colour == self.colour
+            found.append(
+                replace(
+                    self,
+                    name=self.name if whole else f"{self.name}, {colour} faces",
+                    surface=partial(_as_made, surface),
+                    posed=None,
+                    colour=colour,
+                    details=self.details if whole else None,
+                    painted=None,
+                )
+            )
+        return tuple(found)
 
     @cached_property
     def mesh(self) -> Surface:
@@ -54,6 +89,10 @@ class Body:
         vertices, triangles = surface
         rotation, translation = self.world_from_part[:3, :3], self.world_from_part[:3, 3]
         return self.scale * vertices @ rotation.T + translation, triangles
+
+
+def _as_made(surface: Surface) -> Surface:
+    return surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,4 +137,5 @@ def built_body(
         deflection: how far its triangles may lie off its faces [mm].
     """
     posed = PosedShape(name, shape, world_from_part)
-    return Body(name, world_from_part, lambda: surface_of(shape, deflection), lambda: posed, colour)
+    painted = partial(shape.colours, deflection) if isinstance(shape, MeshedShape) else None
+    return Body(name, world_from_part, lambda: surface_of(shape, deflection), lambda: posed, colour, painted=painted)

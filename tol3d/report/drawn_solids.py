@@ -15,6 +15,7 @@ from tol3d.report.label import legible
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened
 NAME_SIZE: Final = 12
+PAINT: Final = "colours"
 EDGE_ANGLE: Final = 25.0  # deg; sharper edges are drawn as lines: tips, ends, not the facets of a curved face
 
 
@@ -32,7 +33,9 @@ def set_background(plotter: pv.Plotter) -> None:
 def add_body(plotter: pv.Plotter, body: Body) -> None:
     """A body where it stands, with what is shown on it or within it."""
     mesh = poly_data(*body.mesh)
-    if body.opacity < 1.0:
+    if body.paint:
+        add_painted_solid(plotter, mesh, body.paint, body.opacity)
+    elif body.opacity < 1.0:
         add_translucent_solid(plotter, mesh, body.colour, body.opacity)
     else:
         (add_round_solid if body.smooth else add_solid)(plotter, mesh, body.colour)
@@ -49,6 +52,16 @@ def add_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str) -> None:
 def add_translucent_solid(plotter: pv.Plotter, mesh: pv.PolyData, colour: str, opacity: float) -> None:
     """A solid through which one sees, and its sharp edges."""
     plotter.add_mesh(mesh, color=colour, opacity=opacity, smooth_shading=False, specular=0.1, ambient=0.3)
+    _add_edges(plotter, mesh)
+
+
+def add_painted_solid(plotter: pv.Plotter, mesh: pv.PolyData, paint: Sequence[str], opacity: float) -> None:
+    """A solid whose triangles have colours "#RRGGBB" of their own, and its sharp edges."""
+    mesh.cell_data[PAINT] = np.array([[*bytes.fromhex(own.removeprefix("#"))] for own in paint], dtype=np.uint8)
+    specular, ambient = (0.1, 0.3) if opacity < 1.0 else (0.25, 0.15)
+    plotter.add_mesh(
+        mesh, scalars=PAINT, rgb=True, opacity=opacity, smooth_shading=False, specular=specular, ambient=ambient
+    )
     _add_edges(plotter, mesh)
 
 

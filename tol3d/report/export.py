@@ -148,7 +148,7 @@ def _glb(world: World) -> object:
     """A glTF scene of named meshes, each with a material that is seen without a room around it, and normals."""
     scene = trimesh.Scene()
     to_metres = np.diag([METRES_PER_MM, METRES_PER_MM, METRES_PER_MM, 1.0])
-    for body in world.bodies:
+    for body in (piece for own in world.bodies for piece in own.pieces):
         mesh = trimesh.Trimesh(*body.mesh, process=False)
         mesh.visual = trimesh.visual.TextureVisuals(material=_material(body))
         scene.add_geometry(mesh, node_name=body.name, geom_name=body.name, transform=to_metres)

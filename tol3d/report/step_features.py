@@ -34,6 +34,12 @@ def features_report(file: StepFile) -> Page:
         blocks += [Line(((shown(part.name), "bold"), (f" · {_counted(part)}", ""))), _table(part)]
     if len(file.uses) > 1:
         blocks += [BLANK, *titled("parts as they stand in the file", _uses(file))]
+    if file.layers:
+        named = ", ".join(repr(shown(own)) for own in file.layers[:LONGEST_FACES])
+        blocks += [
+            BLANK,
+            note(f"{len(file.layers)} layers are ignored: {named}{', …' if len(file.layers) > LONGEST_FACES else ''}"),
+        ]
     return page(*blocks, BLANK, note(WORDS))
 
 

@@ -1,7 +1,7 @@
 """Shapes that come with a builder of their own: what a mechanism shows and exports that is no gear, shaft or arm."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -45,6 +45,14 @@ class MeshedShape(BuiltShape):
 
         Raises:
             InputError: they cannot be made.
+        """
+
+    @abstractmethod
+    def colours(self, deflection: float) -> Sequence[str]:
+        """Of each triangle of `mesh` its colour "#RRGGBB", empty where it has that of its part.
+
+        Raises:
+            InputError: the mesh cannot be made.
         """
 
 

@@ -14,6 +14,12 @@ DEEPEST: Final = 64  # styles that refer to each other
 STYLED: Final = ("STYLED_ITEM", "OVER_RIDING_STYLED_ITEM")
 OTHER_STYLES: Final = ("CURVE_STYLE", "POINT_STYLE", "TEXT_STYLE", "FILL_AREA_STYLE_HATCHING")
 
+NAMED_COLOURS: Final = {
+    "red": "#FF0000", "green": "#00FF00", "blue": "#0000FF", "yellow": "#FFFF00", "magenta": "#FF00FF",
+    "cyan": "#00FFFF", "black": "#000000", "white": "#FFFFFF",
+}  # fmt: skip
+"""Pre-defined colours of ISO 10303-202."""
+
 
 @dataclass(frozen=True)
 class Body:
@@ -91,6 +97,11 @@ def colours_of(file: Part21, body: Body) -> dict[int, str]:
     return {**faces, **{item: colour for item, colour in found.items() if item not in whole}}
 
 
+def layers_of(file: Part21) -> tuple[str, ...]:
+    """Names of the layers of a file, each once."""
+    return tuple(dict.fromkeys(own.text(0) for own in file.records("PRESENTATION_LAYER_ASSIGNMENT")))
+
+
 def _colour(file: Part21, styles: tuple[Reference, ...]) -> str:
     """The first colour of surfaces that styles lead to; "" where they say none."""
     stack, seen = [(int(own), 0) for own in reversed(styles)], set(map(int, styles))
@@ -100,6 +111,9 @@ def _colour(file: Part21, styles: tuple[Reference, ...]) -> str:
         if (rgb := instance.record("COLOUR_RGB")) is not None:
             red, green, blue = (round(255 * min(max(rgb.number(k), 0.0), 1.0)) for k in (-3, -2, -1))
             return f"#{red:02X}{green:02X}{blue:02X}"
+        known = instance.record("DRAUGHTING_PRE_DEFINED_COLOUR", "PRE_DEFINED_COLOUR")
+        if known is not None and known.text(0).lower() in NAMED_COLOURS:
+            return NAMED_COLOURS[known.text(0).lower()]
         if instance.record(*OTHER_STYLES) is not None or depth > DEEPEST:
             continue
         for record in reversed(instance.records):

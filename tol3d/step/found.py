@@ -248,7 +248,8 @@ class Shell:
         """Middle (3,), direction (3,) towards +x, +y or +z, and length of a round feature."""
         face = self.faces[ids[0]]
         axis = np.array(cosines_of(face.axis))
-        if axis[int(np.argmax(np.abs(axis)))] < 0.0:
+        sizes = np.abs(axis)
+        if axis[int(np.argmax(sizes > sizes.max() - SAME_SLOPE))] < 0.0:  # the first of those that are as long
             axis = 0.0 - axis
         low, high = self.along(ids, axis)
         at = np.array(face.at)
@@ -334,6 +335,24 @@ class Shell:
 def shell_of(faces: Faces, roots: Sequence[int]) -> Shell:
     """Some solids and shells of a file as one part."""
     return Shell.of([root for root in faces.roots if root.id in roots])
+
+
+def by_place(found: Sequence[FoundFeature]) -> list[FoundFeature]:
+    """Features by x, then y, then z, where places that differ by rounding of a file are one."""
+
+    def ordered(some: list[FoundFeature], axis: int) -> Iterator[FoundFeature]:
+        if axis == 3 or len(some) < 2:
+            yield from some
+            return
+        level: list[FoundFeature] = []
+        for own in sorted(some, key=lambda each: each.at[axis]):
+            if level and own.at[axis] - level[-1].at[axis] > SAME_PLACE:
+                yield from ordered(level, axis + 1)
+                level = []
+            level.append(own)
+        yield from ordered(level, axis + 1)
+
+    return list(ordered(list(found), 0))
 
 
 def _normal(face: Face) -> Array:

@@ -81,7 +81,7 @@ class StructureReader:
         """
         products = {each: self.product(each) for each in self.definitions}
         occurrences = tuple(self.occurrence(each, products) for each in self.file.records(USES[0]))
-        structure = Structure(self.file.name, products, occurrences)
+        structure = Structure(self.file.name, products, (*occurrences, *self.bare_maps(products)))
         self.refuse_other_files(structure)
         return structure
 
@@ -175,22 +175,64 @@ class StructureReader:
         found = self.file.records(USES[0])
         return {each.instance.id: (int(each.reference(3)), int(each.reference(4))) for each in found}
 
-    def maps(self, parent: int, used: int) -> list[Placement]:
-        """The placements of a product by the MAPPED_ITEMs in an assembly's representations, as in older files."""
-        own = self.represented_by(used)
-        found = []
+    def bare_maps(self, products: dict[int, Product]) -> Iterator[Occurrence]:
+        """Parts that stand in an assembly by a MAPPED_ITEM alone, beyond its uses in the parts list."""
+        used = list(self.uses.values())
+        related = {self.uses[each] for each in self.uses if self.shapes.get(each) in self.relations}
+        for parent in self.definitions:
+            seen: dict[int, int] = {}
+            for item, own in self.mapped_items(parent):
+                if own == parent or (parent, own) in related:  # these are placed by relations, and shown by maps too
+                    continue
+                seen[own] = seen.get(own, 0) + 1
+                if seen[own] > used.count((parent, own)):
+                    name = item.text(0).strip() or products[own].name
+                    yield Occurrence(item.instance.id, name, parent, own, self.map_placement(item, parent))
+
+    @cached_property
+    def owners(self) -> dict[int, int]:
+        """From each representation of a product to its definition, the first that has it."""
+        found: dict[int, int] = {}
+        for definition in self.definitions:
+            for each in self.represented_by(definition):
+                found.setdefault(each, definition)
+        return found
+
+    def mapped_items(self, parent: int) -> Iterator[tuple[Record, int]]:
+        """The MAPPED_ITEMs in an assembly's representations that show a product, and which."""
         for outer in self.represented_by(parent):
             for item in representation(self.file, outer)[0]:
                 record = self.file[item].record("MAPPED_ITEM")
-                if record is None or self.file[record.reference(2)].record("AXIS2_PLACEMENT_3D") is None:
+                if record is None:
                     continue
-                source = self.file[record.reference(1)].needed("REPRESENTATION_MAP")
-                if int(source.reference(1)) in own:
-                    origin = placement_of(self.file, source.reference(0), self.unit(source.reference(1)))
-                    found.append(
-                        product(placement_of(self.file, record.reference(2), self.unit(outer)), inverse(origin))
-                    )
-        return found
+                source = self.file[record.reference(1)].record("REPRESENTATION_MAP")
+                if source is not None and int(source.reference(1)) in self.owners:
+                    yield record, self.owners[int(source.reference(1))]
+
+    def maps(self, parent: int, used: int) -> list[Placement]:
+        """The placements of a product by the MAPPED_ITEMs in an assembly's representations, as in older files."""
+        return [self.map_placement(item, parent) for item, own in self.mapped_items(parent) if own == used]
+
+    def map_placement(self, item: Record, parent: int) -> Placement:
+        """The placement that a MAPPED_ITEM says: its target, less the origin of what it shows.
+
+        Raises:
+            StepError: the target is neither axes nor a transformation that is rigid.
+        """
+        source = self.file[item.reference(1)].needed("REPRESENTATION_MAP")
+        outer = next(
+            each for each in self.represented_by(parent) if item.instance.id in representation(self.file, each)[0]
+        )
+        origin = placement_of(self.file, source.reference(0), self.unit(source.reference(1)))
+        target = self.file[item.reference(2)]
+        if (operator := target.record(*TRANSFORMS)) is not None:
+            return product(self.operated(operator, self.unit(outer)), inverse(origin))
+        if target.record("AXIS2_PLACEMENT_3D") is None:
+            raise StepError(
+                f"{item.instance.place}: expected a MAPPED_ITEM that is placed by axes (AXIS2_PLACEMENT_3D), got "
+                f"{target.records[0].keyword}; export the assembly with its parts as components"
+            )
+        return product(placement_of(self.file, item.reference(2), self.unit(outer)), inverse(origin))
 
     def represented_by(self, definition: int) -> tuple[int, ...]:
         """The representations of a product, in its own frame."""

@@ -31,7 +31,7 @@ from tol3d.numerics.sources import sources_of
 from tol3d.scene.nearest import hint
 from tol3d.solids.cache import CacheWarning
 from tol3d.solids.lazy import Arrays
-from tol3d.step.bodies import Body, bodies_of, colours_of, names_of
+from tol3d.step.bodies import Body, bodies_of, colours_of, layers_of, names_of
 from tol3d.step.face_mesh import FaceMesh
 from tol3d.step.faces import Face, Faces
 from tol3d.step.found import FoundFeature, Shell, Triple, cosines_of, lengths_of, shell_of
@@ -65,12 +65,14 @@ class ReadPart:
         features: with names and colours of their faces.
         names: what the file calls its faces, by their numbers.
         named: what its drawing names on its faces.
+        colours: "#RRGGBB" of its faces that have one, by their numbers.
     """
 
     body: Body
     features: tuple[FoundFeature, ...]
     names: Mapping[int, str]
     named: tuple[Named, ...]
+    colours: Mapping[int, str]
 
 
 @dataclass(frozen=True)
@@ -96,10 +98,11 @@ class Use:
 
 @dataclass(frozen=True)
 class ReadFile:
-    """A file as it is kept: its products with geometry, and where each is used."""
+    """A file as it is kept: its products with geometry, where each is used, and its layers, which are ignored."""
 
     parts: tuple[ReadPart, ...]
     uses: tuple[Use, ...]
+    layers: tuple[str, ...]
 
 
 READ: Final = TypeAdapter(ReadFile)
@@ -115,6 +118,7 @@ class StepPart:
         features: what is found on its faces, with names and colours.
         names: what the file calls its faces, by their numbers.
         named: what its drawing names on its faces: datums, tolerances, dimensions.
+        colours: "#RRGGBB" of its faces that have one, by their numbers.
     """
 
     file: "StepFile"
@@ -122,6 +126,7 @@ class StepPart:
     features: tuple[FoundFeature, ...]
     names: Mapping[int, str]
     named: tuple[Named, ...]
+    colours: Mapping[int, str]
 
     @property
     def name(self) -> str:
@@ -172,7 +177,9 @@ class StepFile:
     @cached_property
     def parts(self) -> tuple[StepPart, ...]:
         """Its products with geometry of their own, in the order of the file."""
-        return tuple(StepPart(self, own.body, own.features, own.names, own.named) for own in self.read.parts)
+        return tuple(
+            StepPart(self, own.body, own.features, own.names, own.named, own.colours) for own in self.read.parts
+        )
 
     def part(self, product: str | None, use: str | None = None) -> StepPart:
         """The product of that name, or that a use has; the only one if none is said.
@@ -197,6 +204,11 @@ class StepFile:
     def uses(self) -> tuple[Use, ...]:
         """Where parts with geometry stand in it, in its order."""
         return self.read.uses
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """Names of its layers, which nothing here heeds."""
+        return self.read.layers
 
     def use(self, path: str) -> Use:
         """A part as it stands in the file.
@@ -233,7 +245,7 @@ def read_step(content: FileContent) -> StepFile:
         parts = tuple(_read_part(text.file, body, faces, mesh, named) for body in bodies)
         own = {body.product for body in bodies}
         uses = (Use("/".join(leaf.path), leaf.product, leaf.placement) for leaf in text.structure.leaves)
-        found = ReadFile(parts, tuple(use for use in uses if use.product in own))
+        found = ReadFile(parts, tuple(use for use in uses if use.product in own), layers_of(text.file))
         return {"read": np.frombuffer(READ.dump_json(found), dtype=np.uint8)}
 
     sources = sources_of(__name__)
@@ -249,7 +261,7 @@ def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Se
     found = (replace(own, on=mesh.middle(own.faces)) for own in _shell(body, faces).features)
     features = tuple(_described(own, names, colours) for own in found)
     own = body.faces | body.loose
-    return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}))
+    return ReadPart(body, features, names, tuple(each for each in named if own & {*each.faces}), colours)
 
 
 def _described(feature: FoundFeature, names: Mapping[int, str], colours: Mapping[int, str]) -> FoundFeature:

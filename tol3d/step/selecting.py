@@ -9,7 +9,7 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
 from tol3d.step.face_mesh import FaceMesh
-from tol3d.step.found import FeatureKind, FoundFeature, Triple
+from tol3d.step.found import FeatureKind, FoundFeature, Triple, by_place
 from tol3d.step.named import Named
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError, shown
@@ -88,7 +88,7 @@ def selected(part: StepPart, selector: Selector) -> tuple[FoundFeature, ...]:
         found = _nearest(part, selector, _fitting(part, selector))
     if selector.along is not None:
         found = [part.shell.made_of(own.faces, selector.along) for own in found]
-    return tuple(sorted(found, key=lambda own: own.at))
+    return tuple(by_place(found))
 
 
 def _of_faces(part: StepPart, selector: Selector) -> FoundFeature:

@@ -1,6 +1,7 @@
 """The solid of a product of a foreign STEP file as mechanisms show and export it."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -9,7 +10,8 @@ from numpy.typing import NDArray
 
 from tol3d.files import FileContent
 from tol3d.solids.built_shape import MeshedShape
-from tol3d.step.reading import read_step
+from tol3d.step.face_mesh import FaceMesh
+from tol3d.step.reading import StepPart, read_step
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,24 @@ class StepShape(MeshedShape):
 
     def mesh(self, deflection: float) -> Mapping[str, NDArray[np.generic]]:
         """See MeshedShape; the solids without the loose faces beside them."""
-        part = read_step(self.file).part(self.product, self.use)
-        mesh = part.mesh(deflection)
-        mesh = mesh.of_faces(part.body.faces) if part.body.faces else mesh
+        mesh = self._shown(deflection)[1]
         return {
             "vertices": mesh.vertices,
             "triangles": mesh.triangles,
             "side": np.zeros(len(mesh.vertices), dtype=np.int8),
             "chord_error": np.array(mesh.chord_error),
         }
+
+    def colours(self, deflection: float) -> Sequence[str]:
+        """See MeshedShape; most faces of a part have one colour in its file, which is that of the part."""
+        part, mesh = self._shown(deflection)
+        counted = Counter(part.colours.get(face, "") for face in sorted(part.body.faces))
+        ((usual, _),) = counted.most_common(1) or (("", 0),)
+        own = {face: colour for face, colour in part.colours.items() if colour != usual}
+        return [own.get(face, "") for face in mesh.faces.tolist()]
+
+    def _shown(self, deflection: float) -> tuple[StepPart, FaceMesh]:
+        """The part, and the triangles of its solids without the loose faces beside them."""
+        part = read_step(self.file).part(self.product, self.use)
+        mesh = part.mesh(deflection)
+        return part, mesh.of_faces(part.body.faces) if part.body.faces else mesh

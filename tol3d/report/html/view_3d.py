@@ -5,7 +5,7 @@ import gzip
 import json
 import tempfile
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, cast
@@ -133,6 +133,8 @@ def _states(
     for factor in (1.0,) if which == "nominal" else FACTORS:
         display = presenter.display(run, which, magnify=factor)
         world = _world_of(display, shown)
+        if world is not None:
+            world = replace(world, bodies=tuple(piece for own in world.bodies for piece in own.pieces))
         shown = shown or world
         if shown is None or world is None:
             continue
