@@ -88,8 +88,9 @@ def pads(plane: FoundFeature, count: int) -> list[tuple[float, float]]:
 
 def seat_and_pins(part: DraftedPart, frame: Sequence[Group], name: str, move: str, held: str) -> list[Entry]:
     """A seat on a plane, and expanding pins in holes: relations of a mate, each of which takes what is left."""
-    features, relations = [], []
+    features, relations, holding = [], [], []
     for group in frame:
+        holding += [group.name] if group.kind in ("plane", "cylinder") else []
         own, target = group.members[0], f"for {group.name}"
         normal = part.along(own.direction)
         at = place(part_at(part, own.at))
@@ -113,9 +114,10 @@ def seat_and_pins(part: DraftedPart, frame: Sequence[Group], name: str, move: st
     body = Entry("parts", scalar(name), [Wording(("kind: solid", "features:", *features), "guess: its seat and pins")])
     fixed = Entry("moves", scalar(held), [Wording((f"{{kind: fix, part: {scalar(name)}}}",))])
     head = ("kind: mate", f"part: {scalar(part.name)}", "relations:")
-    letters = " | ".join(own.name for own in frame)
+    idle = [f"{own.name} is a {own.kind} and holds nothing here" for own in frame if own.name not in holding]
+    words = "; ".join((f"guess: by its datums {' | '.join(holding)}", "pins without play", *idle))
     ways = [
-        Wording((*head, *relations[:k]), f"guess: by its datums {letters}; pins without play", "" if k == len(relations)
+        Wording((*head, *relations[:k]), words, "" if k == len(relations)
                 else "what the last datum holds is left as drawn")
         for k in range(len(relations), 0, -1)
     ]  # fmt: skip
