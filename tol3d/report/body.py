@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.solids import BuiltShape, PosedPart, PosedShape, surface_of
-from tol3d.solids.built_shape import MeshedShape
+from tol3d.solids import BuiltShape, PosedPart, PosedShape, paint_of, surface_of
 
 Surface = tuple[Array, NDArray[np.int64]]
 
@@ -137,5 +136,5 @@ def built_body(
         deflection: how far its triangles may lie off its faces [mm].
     """
     posed = PosedShape(name, shape, world_from_part)
-    painted = partial(shape.colours, deflection) if isinstance(shape, MeshedShape) else None
+    painted = partial(paint_of, shape, deflection)
     return Body(name, world_from_part, lambda: surface_of(shape, deflection), lambda: posed, colour, painted=painted)

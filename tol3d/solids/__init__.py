@@ -1,7 +1,7 @@
 """From a part's CAD solid to measuring strips, display meshes and STEP; cached, so a warm run loads no CAD."""
 
 from tol3d.solids.built_shape import BuiltShape, PosedShape, SweptShape
-from tol3d.solids.display_mesh import DisplayMesh, display_mesh, export_step, surface_of
+from tol3d.solids.display_mesh import DisplayMesh, display_mesh, export_step, paint_of, surface_of
 from tol3d.solids.face_strips import FaceStrip, face_strips
 from tol3d.solids.flank_strips import WHOLE_FACE, FlankStrips, Span, measuring_strips, strip_mesh
 from tol3d.solids.posed_gear import ArmBody, Collar, PosedBody, PosedGear, PosedPart, ShaftBody
@@ -27,6 +27,7 @@ __all__ = [
     "export_step",
     "face_strips",
     "measuring_strips",
+    "paint_of",
     "strip_mesh",
     "surface_of",
 ]

@@ -52,6 +52,11 @@ def surface_of(shape: BuiltShape, deflection: float) -> tuple[Array, NDArray[np.
     return mesh.vertices, mesh.triangles
 
 
+def paint_of(shape: BuiltShape, deflection: float) -> Sequence[str]:
+    """Of each triangle of a shape's display mesh its colour "#RRGGBB", empty where it has none; () where none has one."""
+    return shape.colours(deflection) if isinstance(shape, MeshedShape) else ()
+
+
 def display_mesh(shape: Gear | Body | BuiltShape, deflection: float) -> DisplayMesh:
     """Mesh whose faces follow the solid's within about `deflection` [mm]; see its chord_error for the truth."""
     if isinstance(shape, MeshedShape):
