@@ -12,6 +12,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.analyses.kept_batches import KeptBatches
 from tol3d.distributions import Distribution
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
@@ -85,6 +86,7 @@ class Response:
         draws: by contributor, how it is drawn: the scene's, or other tolerances.
         curves: by the name of such an end of a curve, the curve.
         count: of evaluations.
+        batches: where those that took long are kept, so that an interrupted analysis can go on; None: nowhere.
     """
 
     simulation: Simulation
@@ -93,6 +95,7 @@ class Response:
     draws: Mapping[str, Draw]
     curves: Mapping[str, Measure] = field(default_factory=dict)
     count: Count = field(default_factory=Count)
+    batches: KeptBatches | None = None
 
     @property
     def evaluations(self) -> int:
@@ -190,11 +193,24 @@ class Response:
         if deviations.shape[1] != self.components:
             raise InputError(f"expected deviations (n, {self.components}), got {deviations.shape}")
         trials = stated(system, deviations) if positions is None else Trials(deviations, positions)
-        evaluation = Evaluation(system, self.road)
+        if self.batches is None:
+            values, codes = self._evaluated(trials)
+        else:
+            asked = repr((None if self.road is None else self.simulation.study.engine, self.names))
+            builds = {"": trials.deviations, **{f"position {name}": own for name, own in trials.positions.items()}}
+            values, codes = self.batches.evaluated(asked, builds, lambda: self._evaluated(trials))
+        kept = np.array([own.keeps_overlap for own in self.measures])
+        values[(codes != OK) & ~kept] = np.nan
+        self.count.evaluations += len(trials)
+        return Values(values, codes, system.statuses.texts)
+
+    def _evaluated(self, trials: Trials) -> tuple[Array, Codes]:
+        """Values and codes (n, measures) of builds."""
         values = np.empty((len(trials), len(self.measures)))
         codes = np.zeros(values.shape, dtype=np.int8)
         first = 0
         sources = [self.source(own) for own in self.measures]
+        evaluation = Evaluation(self.simulation.system, self.road)
         for asked in evaluation.asked(trials, [*{own.name: own for own in sources}.values()]):
             rows = slice(first, first + len(asked.trials))
             first = rows.stop
@@ -203,10 +219,7 @@ class Response:
                 values[rows, k] = found if source is own else ENDS[_end_of(own)](found)
                 if self.road is not None and (status := asked.answers.status.get(source.name)) is not None:
                     codes[rows, k] = status
-        kept = np.array([own.keeps_overlap for own in self.measures])
-        values[(codes != OK) & ~kept] = np.nan
-        self.count.evaluations += len(trials)
-        return Values(values, codes, system.statuses.texts)
+        return values, codes
 
     def gradient(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Array:
         """Change of each measure with each component (n, measures, components), in its unit a mm, rad or K.

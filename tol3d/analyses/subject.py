@@ -2,13 +2,15 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Final
 
+from tol3d.analyses.kept_batches import KeptBatches
 from tol3d.analyses.response import Response, response_of
 from tol3d.errors import RunError, unwritable
+from tol3d.execution.pools import Execution
 from tol3d.import_path import named
 from tol3d.kinds import NEEDED_KINDS
 from tol3d.runs.atomic_write import write_whole
@@ -18,6 +20,7 @@ from tol3d.runs.summary.values import Section, as_json
 from tol3d.scene import Scene, read_scene
 from tol3d.scene.bundled import scene_path
 from tol3d.simulate import load, simulation_again, simulation_of
+from tol3d.study.fingerprint import fingerprint_of
 from tol3d.study.simulation import Simulation
 
 FOLDER: Final = "analyses"
@@ -61,8 +64,13 @@ class Subject:
 
     @cached_property
     def response(self) -> Response:
-        """By the engine of its study."""
-        return response_of(self.simulation)
+        """By the engine of its study; what it evaluates is kept until the analysis ends."""
+        return replace(response_of(self.simulation), batches=self.batches)
+
+    @cached_property
+    def batches(self) -> KeptBatches:
+        """What an interrupted analysis of it evaluated."""
+        return KeptBatches.of(fingerprint_of(self.scene, self.simulation, Execution()))
 
     def keep(self, name: str, found: Section) -> Path | None:
         """Keep a section in the run; its file, None of a scene.

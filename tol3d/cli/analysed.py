@@ -1,14 +1,17 @@
 """How commands tell what an analysis found: the table, the files that were asked for, and where a run keeps it."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tol3d.cli.console import out_console, tell
+from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
+    from rich.status import Status
 
     from tol3d.analyses.subject import Subject
     from tol3d.runs.summary.values import Section
@@ -18,6 +21,26 @@ SubjectArgument = Annotated[
 ]
 CsvOption = Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write all numbers to this file.")]
 PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw the picture here: .png, .svg or .pdf.")]
+
+
+@contextmanager
+def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
+    """While an analysis goes on: what goes on is shown, a mechanism's faults are its own, an interrupted one goes on.
+
+    Args:
+        subject: the scene or the run.
+        activity: what it begins with, in words.
+    """
+    from tol3d.system.faults import faults_of
+
+    with faults_of(subject.simulation.mechanism), err_console.status(activity) as status:
+        try:
+            yield status
+        except KeyboardInterrupt:
+            if subject.batches.written:
+                err_console.print("what was evaluated is kept: the same command goes on from there")
+            raise
+    subject.batches.clear()
 
 
 def tell_found(subject: "Subject", section: str, found: "Section", report: "RenderableType") -> None:

@@ -8,7 +8,15 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
+from tol3d.cli.analysed import (
+    CsvOption,
+    PictureOption,
+    SubjectArgument,
+    asked_of,
+    draw_picture,
+    tell_found,
+    write_numbers,
+)
 from tol3d.cli.arguments import (
     AcceptOption,
     EngineOption,
@@ -41,12 +49,11 @@ def changes(
     from tol3d.analyses.what_to_change import ChangesQuestion, changes_of, contributions_of
     from tol3d.analyses.what_to_change_table import changes_report, contributions_table
     from tol3d.report.verdict import ACCEPTED_PPM
-    from tol3d.system.faults import faults_of
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     accepted = ACCEPTED_PPM if accept is None else accept
     question = ChangesQuestion(measure, accepted, builds)
-    with faults_of(own.simulation.mechanism), err_console.status("builds") as status:
+    with asked_of(own, "builds") as status:
         response = own.response
         bad = None if own.run is None else not_ok(own.run, accepted)
         found = changes_of(response, question, bad=bad, activity=status.update)

@@ -5,9 +5,17 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
+from tol3d.cli.analysed import (
+    CsvOption,
+    PictureOption,
+    SubjectArgument,
+    asked_of,
+    draw_picture,
+    tell_found,
+    write_numbers,
+)
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console, tell
+from tol3d.cli.console import tell
 
 
 def what_if(
@@ -38,10 +46,9 @@ def what_if(
     from tol3d.analyses.subject import subject_of
     from tol3d.analyses.what_if import what_if as asked
     from tol3d.analyses.what_if_table import what_if_report
-    from tol3d.system.faults import faults_of
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with faults_of(own.simulation.mechanism), err_console.status("what if") as status:
+    with asked_of(own, "what if") as status:
         response = own.response
         changes = [change_of(response, text) for text in changed or ()]
         changes += [factor_of(response, text) for text in factor or ()]
@@ -95,10 +102,9 @@ def allocate(
     from tol3d.analyses.costs import Costs, costs_from
     from tol3d.analyses.subject import subject_of
     from tol3d.analyses.tolerance_search import Question
-    from tol3d.system.faults import faults_of
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with faults_of(own.simulation.mechanism), err_console.status("tolerances") as status:
+    with asked_of(own, "tolerances") as status:
         response, groups = own.response, groups_of(own.scene, own.response)
         question = Question(
             costs=Costs() if cost is None else costs_from(cost, groups),

@@ -5,9 +5,16 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
+from tol3d.cli.analysed import (
+    CsvOption,
+    PictureOption,
+    SubjectArgument,
+    asked_of,
+    draw_picture,
+    tell_found,
+    write_numbers,
+)
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console
 
 
 class PositionWord(StrEnum):
@@ -39,10 +46,9 @@ def effects(
     from tol3d.analyses.effects import effects as found_effects
     from tol3d.analyses.effects_table import effects_csv, effects_report
     from tol3d.analyses.subject import subject_of
-    from tol3d.system.faults import faults_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with faults_of(asked.simulation.mechanism), err_console.status("effects") as status:
+    with asked_of(asked, "effects") as status:
         response = asked.response if measure is None else asked.response.of(measure)
         found = found_effects(
             response,

@@ -4,9 +4,16 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
+from tol3d.cli.analysed import (
+    CsvOption,
+    PictureOption,
+    SubjectArgument,
+    asked_of,
+    draw_picture,
+    tell_found,
+    write_numbers,
+)
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import err_console
 
 
 def methods(
@@ -28,10 +35,9 @@ def methods(
     from tol3d.analyses.methods import trials_of
     from tol3d.analyses.methods_table import methods_report
     from tol3d.analyses.subject import subject_of
-    from tol3d.system.faults import faults_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with faults_of(asked.simulation.mechanism), err_console.status("trials") as status:
+    with asked_of(asked, "trials") as status:
         response = asked.response if measure is None else asked.response.of(measure)
         found = found_by(response, trials_of(asked, response, trials), status.update)
     report = methods_report(found, response.contributors)

@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, draw_picture, tell_found, write_numbers
+from tol3d.cli.analysed import (
+    CsvOption,
+    PictureOption,
+    SubjectArgument,
+    asked_of,
+    draw_picture,
+    tell_found,
+    write_numbers,
+)
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 from tol3d.cli.console import err_console, tell
 
@@ -62,13 +70,12 @@ def rare(
     from tol3d.analyses.rare_table import rare_report
     from tol3d.analyses.subject import subject_of
     from tol3d.errors import InputError
-    from tol3d.system.faults import faults_of
 
     if measure is None and (export or view):
         raise InputError(f"{'--export' if export else '--view'}: expected with --measure NAME, whose build is shown")
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     simulation = asked.simulation
-    with faults_of(simulation.mechanism), err_console.status("design points") as status:
+    with asked_of(asked, "design points") as status:
         events = limits_left(
             asked.response, measure, method=method.value, draws=draws, seed=seed, activity=status.update
         )
