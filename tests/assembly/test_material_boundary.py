@@ -303,7 +303,7 @@ WRONG: dict[str, tuple[Callable[[str], str], str, str]] = {
     "in a measure": (
         lambda text: text.replace("datums: [floor, bore]", "datums: [floor, {feature: bore, mmb: random}]"),
         "measures.inspected.datums",
-        "expected datums without mmb, or mmb: least of an inspected position",
+        "expected datums without mmb, or mmb: least of what is inspected",
     ),
     "least of a tolerance": (
         lambda text: text.replace("mmb: random", "mmb: least", 1),

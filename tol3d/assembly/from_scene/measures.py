@@ -12,7 +12,11 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
-from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedPatternSpec,
+    InspectedPositionSpec,
+    InspectedTogetherSpec,
+)
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.grammar.moves import FixSpec
 from tol3d.assembly.model import Feature, Measured, Point
@@ -46,11 +50,13 @@ def _inspected(
     if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
     frame = frames.named(part_of(features[0]), spec.named_datums)
-    room = room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
+    several = spec if isinstance(spec, InspectedTogetherSpec) else None
+    room = None if several else room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
     over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
-    return replace(found, gauge=gauge, room=room, over_gauges=over_gauges)
+    zones = tuple(own.internal for own in several.zones) if several else ()
+    return replace(found, gauge=gauge, zones=zones, room=room, over_gauges=over_gauges)
 
 
 def _after(scene: Scene, spec: TimedSpec) -> int:
@@ -79,7 +85,8 @@ def _bonuses(
     scene: Scene, drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
 ) -> tuple[MaterialBonus, ...]:
     """Of each feature; none where no modifier asks for them."""
-    modifier = spec.modifier if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) else None
+    widened = InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec
+    modifier = spec.modifier if isinstance(spec, widened) else None
     if modifier is None:
         return ()
     found = (sized_by(scene, drawing, own, modifier).bonus for own in features)

@@ -8,7 +8,11 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
-from tol3d.assembly.grammar.measures.inspected import InspectedPatternSpec, InspectedPositionSpec
+from tol3d.assembly.grammar.measures.inspected import (
+    InspectedPatternSpec,
+    InspectedPositionSpec,
+    InspectedTogetherSpec,
+)
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
@@ -43,21 +47,23 @@ def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterat
     for k, datum in enumerate(spec.named_datums):
         if datum.mmb is None:
             continue
-        if not isinstance(spec, InspectedPositionSpec) or datum.mmb != "least":
-            yield place, "expected datums without mmb, or mmb: least of an inspected position"
+        if not isinstance(spec, InspectedPositionSpec | InspectedTogetherSpec) or datum.mmb != "least":
+            yield place, "expected datums without mmb, or mmb: least of what is inspected"
             continue
-        yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, place)
-        if spec.of in drawing.names and (wrong := _unread(drawing, spec)):
-            yield ("measures", name, "of"), wrong
+        yield from _unfit(drawing, part_of(spec.of_what[0]), spec.named_datums, k, place)
+        across = isinstance(spec, InspectedPositionSpec) and spec.across is not None
+        for path, own, _ in spec.named():
+            if own in drawing.names and (wrong := _unread(drawing, own, across)):
+                yield ("measures", name, *path), wrong
 
 
-def _unread(drawing: Drawing, spec: InspectedPositionSpec) -> str | None:
-    """What a position over the places of gauges cannot be of, in words."""
-    kind = drawing.kind(spec.of)
+def _unread(drawing: Drawing, of: str, across: bool) -> str | None:
+    """What a position over the places of gauges cannot be of, in words; of a point it must be `across` a direction."""
+    kind = drawing.kind(of)
     flat = kind.kind == "plane" and isinstance(kind.shape, Plane)
-    if kind.kind in ("cylinder", "axis", "slot") or flat or (kind.kind == "point" and spec.across is not None):
+    if kind.kind in ("cylinder", "axis", "slot") or flat or (kind.kind == "point" and across):
         return None
-    return f"expected a hole, pin, axis, slot, flat rectangle or a point with `across`, got {spec.of!r}"
+    return f"expected a hole, pin, axis, slot, flat rectangle or a point with `across`, got {of!r}"
 
 
 def is_square(normal: Array, axis: Array) -> bool:
@@ -137,7 +143,10 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
             yield from _of_tolerance(drawing, own, own.spec)
     sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are said already
     for name, spec in scene.measures.items():
-        if isinstance(spec, InspectedPositionSpec | InspectedPatternSpec) and spec.modifier is not None:
+        if (
+            isinstance(spec, InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec)
+            and spec.modifier is not None
+        ):
             for own in (feature for _, feature, _ in spec.named() if feature in sized):
                 yield from _unsized(drawing, own, ("measures", name, "modifier"), spec.modifier)
 

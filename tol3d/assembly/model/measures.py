@@ -87,6 +87,7 @@ class Measured:
             orientation is inspected; "" for the part's frame.
         after: index of the move after which it is read; -1 for the end.
         bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
+        zones: of several positions, the width of each [mm], which is subtracted.
         room: of a position, in which the gauge of its last datum takes the shift that makes it least.
         over_gauges: of a position, whether the gauges of its datum frame take the place that makes it least.
         gauge: how a pattern's gauge finds its best pose in the frame.
@@ -105,6 +106,7 @@ class Measured:
     frame: str = ""
     after: int = -1
     bonuses: tuple[MaterialBonus, ...] = ()
+    zones: tuple[float, ...] = ()
     gauge: Gauge = "shift"
     room: GaugeRoom | None = None
     over_gauges: bool = False

@@ -5,7 +5,8 @@ slack is concave in w and grows with it: Newton's steps from below, by the share
 pass the least w. Offsets are then read anew at that place, until nothing moves.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -57,7 +58,7 @@ class Inspected:
 
         Args:
             offsets: of the ends (ends, 2, n) [mm].
-            radii: r_e (n,) [mm].
+            radii: r_e (ends, n) [mm].
             its: offsets of the datum features (cones, 2, n) [mm].
             room: their clearances (cones, n) [mm].
         """
@@ -66,8 +67,8 @@ class Inspected:
         every = np.ascontiguousarray(np.concatenate([offsets, its]))
         clearances = np.concatenate([np.zeros((ends, trials)), room])
         still = np.abs(self.rows).max(axis=(1, 2)) < UNSEEN
-        nearest = np.sqrt((offsets[still] ** 2).sum(axis=1)).max(axis=0, initial=0.0)
-        least, steps, slacks = nearest - radii, np.zeros((rows.shape[2], trials)), np.zeros(trials)
+        nearest = np.sqrt((offsets * offsets).sum(axis=1)) * still[:, None]
+        least, steps, slacks = (nearest - radii).max(axis=0), np.zeros((rows.shape[2], trials)), np.zeros(trials)
         asked, found, deciding = np.ones(trials, bool), np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
         before = np.zeros((len(rows), trials)), np.zeros((len(rows), trials), dtype=np.int64)
         for _ in range(STEPS):
@@ -105,6 +106,39 @@ def inspected(measured: Measured, world: World) -> Inspected:
     return Inspected(gauged, directions, places, rows)
 
 
+def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Array:
+    """Twice the least by which any end lies off, over places of the gauges, less what its feature has (n,) [mm].
+
+    Not a number where the datums take no gauges.
+
+    Args:
+        measured: features, in a frame of gauges.
+        world: as it is read.
+        bonuses: what each feature has, its zone too if that counts, (n,) or (1,).
+    """
+    each = [inspected(replace(measured, features=(name,)), world) for name in measured.features]
+    found = replace(each[0], rows=np.concatenate([own.rows for own in each]))
+    gauged, own = found.gauged, world.own[world.part_of(measured.features[0])]
+    seats = own.seats(measured.frame).of(own.feature)
+    features = [own.feature(room.feature) for room in gauged.gauges.rooms]
+    room = gauged.clearances(features, world.columns)
+    radii = np.concatenate(
+        [np.broadcast_to(0.5 * has, (len(its.places), world.trials)) for its, has in zip(each, bonuses, strict=True)]
+    )
+    pose, _ = gauged.as_kept(seats, full(IDENTITY, world.trials))
+    least = np.full(world.trials, np.nan)
+    for _ in range(ROUNDS):
+        offsets = [
+            its.offsets(pose, world.on_part(name), world.trials)
+            for its, name in zip(each, measured.features, strict=True)
+        ]
+        least, steps = found.least(np.concatenate(offsets), radii, gauged.offsets(pose, features, world.trials), room)
+        if np.abs(steps).max(initial=0.0) < MET:
+            break
+        pose, _ = gauged.as_kept(seats, gauged.moved(pose, steps))
+    return 2.0 * least
+
+
 def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
     """Twice the least distance of the worse end, less the bonus (n,) [mm]; nan where the datums take no gauges.
 
@@ -113,18 +147,4 @@ def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
         world: as it is read.
         bonus: of its size (n,) or (1,).
     """
-    found, (name,) = inspected(measured, world), measured.features
-    gauged, own = found.gauged, world.own[world.part_of(name)]
-    seats = own.seats(measured.frame).of(own.feature)
-    features = [own.feature(room.feature) for room in gauged.gauges.rooms]
-    room = gauged.clearances(features, world.columns)
-    radii = np.broadcast_to(0.5 * bonus, (world.trials,)).copy()
-    pose, _ = gauged.as_kept(seats, full(IDENTITY, world.trials))
-    least = np.full(world.trials, np.nan)
-    for _ in range(ROUNDS):
-        its = gauged.offsets(pose, features, world.trials)
-        least, steps = found.least(found.offsets(pose, world.on_part(name), world.trials), radii, its, room)
-        if np.abs(steps).max(initial=0.0) < MET:
-            break
-        pose, _ = gauged.as_kept(seats, gauged.moved(pose, steps))
-    return 2.0 * least
+    return on_gauges(measured, world, [bonus])

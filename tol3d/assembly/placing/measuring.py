@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 from typing import Final
 
@@ -12,7 +13,7 @@ from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Sh
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.common_opening import common_openings
-from tol3d.assembly.placing.gauged_positions import position_on_gauges
+from tol3d.assembly.placing.gauged_positions import on_gauges, position_on_gauges
 from tol3d.assembly.placing.gauging import gauged_patterns, position_in_room
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
@@ -224,6 +225,23 @@ def position(measured: Measured, world: World) -> Array:
             aside = dot(aside, z) * z
         largest = np.maximum(largest, _length(aside))
     return 2.0 * largest - _bonus(measured, world)
+
+
+def together(measured: Measured, world: World) -> Array:
+    """The largest of several positions, each less its zone and its bonus (n,) or (1,) [mm].
+
+    Gauges of the frame take one place for all of them.
+    """
+    has = [np.full(1, zone) for zone in measured.zones]
+    if measured.bonuses:
+        has = [zone + own for zone, own in zip(has, bonuses(measured, world), strict=True)]
+    if measured.over_gauges:
+        return on_gauges(measured, world, has)
+    each = (replace(measured, features=(name,), bonuses=()) for name in measured.features)
+    largest = np.full(1, -np.inf)
+    for one, own in zip(each, has, strict=True):
+        largest = np.maximum(largest, position(one, world) - own)
+    return largest
 
 
 def _bonus(measured: Measured, world: World) -> Array:

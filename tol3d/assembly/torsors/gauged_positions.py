@@ -1,5 +1,6 @@
 """Positions in a frame of gauges, to first order: the least over all places of the gauges in their room."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -29,7 +30,7 @@ class LeastOnGauges:
     where it is least so.
 
     Args:
-        forms: offsets (ends * 2), radius (1), offsets of the room (places * 2), its clearances (places).
+        forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places).
         rows: change of all offsets by the freedoms (ends + places, 2, freedoms).
         ends: how many.
     """
@@ -43,13 +44,13 @@ class LeastOnGauges:
     def values(self, read: Array) -> Array:
         """(1, trials) [mm]."""
         ends, trials, places = self.ends, read.shape[1], len(self.rows) - self.ends
-        own, radius, its, room = np.split(read, [2 * ends, 2 * ends + 1, 2 * ends + 1 + 2 * places])
+        own, radii, its, room = np.split(read, [2 * ends, 3 * ends, 3 * ends + 2 * places])
         offsets = np.concatenate([own, its]).reshape(-1, 2, trials)
         clearances = np.concatenate([np.zeros((ends, trials)), room])
-        grown, steps, going = -radius[0], np.zeros((self.rows.shape[2], trials)), np.arange(trials)
+        grown, steps, going = (-radii).max(axis=0), np.zeros((self.rows.shape[2], trials)), np.arange(trials)
         closed = np.zeros((len(steps), len(steps), trials))
         for _ in range(STEPS):
-            clearances[:ends] = radius[0] + grown
+            clearances[:ends] = radii + grown
             now = Cones(offsets[:, :, going], clearances[:, going], self.rows)
             rows = self.rows[..., None] * np.ones(len(going))
             counts = np.ones(now.clearances.shape, dtype=bool)
@@ -62,30 +63,42 @@ class LeastOnGauges:
             if not len(going):
                 break
         at = Cones(offsets, clearances, self.rows).at(steps)[:ends]
-        far = np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2).max(axis=0) - radius[0]
+        far = (np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2) - radii).max(axis=0)
         return np.asarray(2.0 * np.maximum(grown, far)[None])
 
 
-def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
-    """As a row (columns,) [mm].
+def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Array:
+    """Twice the least by which any end lies off, less what its feature has, as a row (columns,) [mm].
 
     Args:
-        measured: what.
+        measured: features, in a frame of gauges.
         world: as it is read.
-        bonus: what the feature's size takes from it (columns,).
+        bonuses: what each feature has, its zone too if that counts (columns,).
     """
-    (name,) = measured.features
-    own, feature = world.own[world.part_of(name)], world.assembly.features[name]
-    gauges, shape = own.gauges(measured.frame), feature.shape
-    assert not isinstance(shape, RoundPlane)
-    if measured.direction is not None:
-        directions = perpendicular(measured.direction)
-    else:
-        directions = feature.frame[:3, :2].T if isinstance(shape, Axis) else feature.frame[:3, 2:3].T
-    directions = np.concatenate([directions, np.zeros((2 - len(directions), 3))])
-    torsor = own.feature(name) - gauges.rest
-    ways = [directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) for end in shape.ends]
-    forms = [*(way @ torsor for way in ways), 0.5 * bonus[None], gauges.offsets, gauges.clearances]
-    rows = np.concatenate([np.array(ways) @ gauges.motions, gauges.rows])
-    row: Array = world.columns.made_by(LeastOnGauges(without_rounding(np.concatenate(forms)), rows, len(ways)))[0]
+    gauges = world.own[world.part_of(measured.features[0])].gauges(measured.frame)
+    forms: list[Array] = []
+    radii: list[Array] = []
+    rows: list[Array] = []
+    for name, bonus in zip(measured.features, bonuses, strict=True):
+        feature = world.assembly.features[name]
+        shape = feature.shape
+        assert not isinstance(shape, RoundPlane)
+        if measured.direction is not None:
+            directions = perpendicular(measured.direction)
+        else:
+            directions = feature.frame[:3, :2].T if isinstance(shape, Axis) else feature.frame[:3, 2:3].T
+        directions = np.concatenate([directions, np.zeros((2 - len(directions), 3))])
+        torsor = world.own[feature.part].feature(name) - gauges.rest
+        ways = [directions @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) for end in shape.ends]
+        forms += [way @ torsor for way in ways]
+        radii += [0.5 * bonus[None]] * len(ways)
+        rows += [way @ gauges.motions for way in ways]
+    every = without_rounding(np.concatenate([*forms, *radii, gauges.offsets, gauges.clearances]))
+    term = LeastOnGauges(every, np.concatenate([np.array(rows), gauges.rows]), len(rows))
+    row: Array = world.columns.made_by(term)[0]
     return row
+
+
+def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
+    """Of one feature, whose size takes a bonus from it (columns,), as a row (columns,) [mm]."""
+    return on_gauges(measured, world, [bonus])

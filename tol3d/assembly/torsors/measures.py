@@ -11,9 +11,9 @@ from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
-from tol3d.assembly.torsors.gauged_positions import position_on_gauges
+from tol3d.assembly.torsors.gauged_positions import on_gauges, position_on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
-from tol3d.assembly.torsors.terms import Clipped, Width, balances
+from tol3d.assembly.torsors.terms import Clipped, Ends, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.import_path import named
@@ -203,6 +203,19 @@ def position(measured: Measured, world: World) -> Array:
             directions = rotation[:, 2:].T
     row: Array = 2.0 * world.columns.largest(_at_ends(measured, world, directions))
     return row - _clipped(measured.bonuses[0], measured.features[0], world) if measured.bonuses else row
+
+
+def together(measured: Measured, world: World) -> Array:
+    """The largest of several, each less its zone; over the room of gauges where datums leave one."""
+    bonuses = [_clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
+    has = [_constant(world, zone) for zone in measured.zones]
+    has = [zone + own for zone, own in zip(has, bonuses, strict=True)] if bonuses else has
+    if measured.over_gauges:
+        return on_gauges(measured, world, has)
+    each = (replace(measured, features=(name,), bonuses=()) for name in measured.features)
+    rows = np.array([position(one, world) - own for one, own in zip(each, has, strict=True)])
+    row: Array = world.columns.made_by(Ends(rows, is_largest=True))[0]
+    return row
 
 
 def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:

@@ -143,6 +143,50 @@ class InspectedPatternSpec(FeatureMeasureSpec):
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
 
 
+class InspectedTogetherSpec(FeatureMeasureSpec):
+    """The largest position less its zone of 2 to 8 features of one frame: together they are within their `zones` at 0.
+
+    Gauges of datums with `mmb: least` take one place for all of them, as simultaneous requirements say; with a
+    `modifier` each is less the bonus of its size as well.
+    """
+
+    reads: ClassVar[Reading] = Reading(
+        "together", f"{PLACING}:together", f"{TORSORS}:together", of_part=True, worse="high"
+    )
+
+    kind: Literal["inspected_together"]
+    features: Annotated[tuple[FeatureName, ...], listed("features", 2, MOST_HOLES)] = Field(
+        alias="of", description="holes, pins, slots and flat faces of one part"
+    )
+    zones: Annotated[tuple[Length, ...], listed("lengths", 2, MOST_HOLES)] = Field(
+        description="diameter or width of the zone of each, in their order"
+    )
+    datums: Datums | None = Field(default=None, description="of all of them; the part's frame if not given")
+    modifier: Modifier | None = Field(
+        default=None, description="mmc or lmc: each less the bonus of its size; regardless of sizes if not given"
+    )
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        return self.datums or ()
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        parts = sorted({part_of(name) for name in self.features})
+        if len(parts) > 1:
+            raise refused("of", "features of one part", f"features of {', '.join(map(repr, parts))}")
+        for k, name in enumerate(self.features):
+            if name in self.features[:k]:
+                raise refused("of", "each feature once", repr(name))
+        if len(self.zones) != len(self.features):
+            raise refused("zones", f"one of each feature, {len(self.features)}", len(self.zones))
+        return self
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        kinds = ("cylinder", "slot") if self.modifier is not None else ("cylinder", "axis", "slot", "plane")
+        return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
+
+
 class InspectedSizeSpec(FeatureMeasureSpec):
     """The diameter, or the width of a slot."""
 
