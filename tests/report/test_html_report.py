@@ -22,10 +22,14 @@ from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
 from tol3d.analyses.subject import SECTIONS, Subject
 from tol3d.notebook import write_report
+from tol3d.report.compare import comparison_report
+from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.convergence import running
+from tol3d.report.distribution import samples_of
 from tol3d.report.html import view_3d
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
+from tol3d.report.report_sections import report_sections
 from tol3d.runs.bare import MissingMechanismWarning
 from tol3d.runs.run import Run
 from tol3d.scene.bundled import bundled_scenes
@@ -184,8 +188,15 @@ def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run,
     together = _no_way_out(report_html([spur, bare]))
     assert {"spur", "bare"} <= set(together.inside("th"))
     other = run_scene("door", overrides=Overrides(trials=50), out=tmp_path / "door")
-    with pytest.raises(InputError, match="expected runs that share a measure"):
-        report_html([spur, other])
+    told = []
+    for shown in (report_html, report_sections, comparison_report, comparison_figure):
+        with pytest.raises(InputError) as refused:
+            shown([spur, other])
+        told.append(str(refused.value))
+    wanted = "expected a measure that another of these runs has too, got none; show each by itself"
+    assert set(told) == {f"spur, door: {wanted}"}, "the page, its tables and both of compare's say the same"
+    with pytest.raises(InputError, match=f"^door: {wanted}"):
+        report_html([spur, other, bare])
 
 
 @pytest.mark.slow
@@ -236,6 +247,16 @@ def test_a_run_without_limits_has_no_verdict_and_no_line_for_one(tmp_path: Path)
     text = report_html([run], in_3d=False)
     assert "no limits to judge" in [*_no_way_out(text).inside("p")]
     assert 'class="limit"' not in text
+
+
+def test_a_bar_across_a_limit_that_no_trial_is_beyond_is_not_out(tmp_path: Path) -> None:
+    run = run_scene("cover_on_base", overrides=Overrides(trials=100, witness=0), out=tmp_path / "run")
+    own = run.found.measures["flush"]
+    (leading, *_) = samples_of(own)
+    assert own.geometric is not None
+    assert own.geometric.sample_max is not None
+    assert own.geometric.sample_max < 150 < leading.bars.edges[-1], "um, the upper limit lies in the last bar"
+    assert not leading.outside.any()
 
 
 def test_curves_stand_over_their_positions(tmp_path: Path) -> None:

@@ -21,8 +21,11 @@ READY = "document.querySelector('figure.view').dataset.ready === 'yes'"
 STAGE = ".stage"
 LARGEST = 2_000_000
 """Bytes of the page of a bevel pair, and of gears in a housing."""
-SOON = 8.0
-"""s, until the parts can be turned, beside other work; alone it takes 1.3."""
+SOON = 3.0
+"""s, median of five, until the parts can be turned; alone on two cores it takes 1.3 of a bevel pair, 1.7 of gears in a
+housing."""
+ROUNDS = 4
+"""Medians of which one has to be soon: other work on the same cores makes a page late, never soon."""
 
 
 @pytest.fixture(scope="module")
@@ -163,9 +166,17 @@ def test_pages_are_small_and_soon_ready(name: str, page: Page, tmp_path: Path) -
     run = run_scene(name, overrides=Overrides(trials=100, witness=0), out=tmp_path / name)
     path = write_report(run, tmp_path / "report.html")
     assert path.stat().st_size < LARGEST
+    medians = list[float]()
+    while len(medians) < ROUNDS and (not medians or medians[-1] >= SOON):
+        medians.append(_median_wait(page, path))
+    assert min(medians) < SOON
+
+
+def _median_wait(page: Page, path: Path) -> float:
+    """s, of five times that a page is opened, until its parts are drawn."""
     waited = []
     for _ in range(5):
         page.open(path)
         page.wait(READY)
-        waited.append(page.ask("performance.getEntriesByName('seen')[0].startTime"))
-    assert sorted(waited)[2] < 1000 * SOON
+        waited.append(page.ask("performance.getEntriesByName('seen')[0].startTime") / 1000)
+    return sorted(waited)[2]

@@ -1,7 +1,9 @@
 """Runs beside each other as tables: mean, sigma and range of each run and road, and how far the roads differ."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -136,20 +138,36 @@ class Compared:
         return [(label, run) for label, run in labelled(runs) if self in measures_of([run])]
 
 
-def measures_of(runs: Sequence[Run]) -> list[Compared]:
-    """The measures of all runs, each once.
+def require_shared_measures(runs: Sequence[Run]) -> None:
+    """Refuse runs of which one has no measure, by its name, that another has too.
 
     Raises:
-        InputError: there are no runs.
+        InputError: there are no runs, or one shares nothing with the others.
     """
     if not runs:
         raise InputError("nothing to compare: give the folder of at least one run")
+    names = [set(run.found.measures) for run in runs]
+    shared = {name for name, count in Counter(chain.from_iterable(names)).items() if count > 1}
+    alone = [label for (label, _), own in zip(labelled(runs), names, strict=True) if not own & shared]
+    if len(runs) > 1 and alone:
+        raise InputError(
+            f"{', '.join(alone)}: expected a measure that another of these runs has too, got none; show each by itself"
+        )
+
+
+def measures_of(runs: Sequence[Run]) -> list[Compared]:
+    """The measures of all runs, each once."""
     found = (Compared.of(name, measure) for run in runs for name, measure in run.found.measures.items())
     return list(dict.fromkeys(found))
 
 
 def comparison_report(runs: Sequence[Run]) -> Page:
-    """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ."""
+    """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ.
+
+    Raises:
+        InputError: there are no runs, or they share no measure.
+    """
+    require_shared_measures(runs)
     blocks: list[PageItem] = []
     for measure in measures_of(runs):
         own = measure.found_in(runs)

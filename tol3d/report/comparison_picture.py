@@ -25,7 +25,7 @@ from tol3d.report.canvas import (
     title_axes,
 )
 from tol3d.report.column import seated_text
-from tol3d.report.compare import Compared, Difference, difference_of, labelled, measures_of
+from tol3d.report.compare import Compared, Difference, difference_of, labelled, measures_of, require_shared_measures
 from tol3d.report.curve import Stepped, position_label
 from tol3d.report.distribution import density_label, values_label
 from tol3d.report.drawn_sample import FILL_OPACITY, DrawnSample, Line, draw_samples
@@ -64,7 +64,7 @@ def draw_comparison(runs: Sequence[Run], path: Path) -> None:
     """Draw a row a measure: histograms of both roads, histogram of their differences, differences by position.
 
     Raises:
-        InputError: there are no runs, or the picture cannot be written.
+        InputError: there are no runs, they share no measure, or the picture cannot be written.
     """
     save_figure(comparison_figure(runs), path)
 
@@ -73,8 +73,9 @@ def comparison_figure(runs: Sequence[Run]) -> Figure:
     """The picture of `draw_comparison`, not yet written.
 
     Raises:
-        InputError: there are no runs.
+        InputError: there are no runs, or they share no measure.
     """
+    require_shared_measures(runs)
     measures = measures_of(runs)
     shown = _shown(runs)
     own = [[each for each in shown if measure in measures_of([each.run])] for measure in measures]

@@ -46,14 +46,17 @@ def samples_of(measure: MeasureSummary) -> list[DrawnSample]:
     bars, leading = bars_of(measure), measure.best_road
     if not bars:
         return []
-    own = leading_column(measure)
+    own, (lower, upper) = leading_column(measure), measure.limits
     filled = DrawnSample(
         label=None,
         colour=ROAD_COLOURS[leading],
         bars=bars[leading],
         mean=own.value("mean"),
         ends=Ends.of(own, bounded=is_bounded(measure)),
-        limits=measure.limits,
+        limits=(  # a bar across a limit that no trial is beyond is not out
+            None if lower is None or (own.value("sample_min") or -math.inf) >= lower else lower,
+            None if upper is None or (own.value("sample_max") or math.inf) <= upper else upper,
+        ),
     )
     beside = [DrawnSample(None, ROAD_COLOURS["analytic"], bars["analytic"], line="solid")]
     return [filled, *(beside if leading != "analytic" else [])]

@@ -108,14 +108,11 @@ def runs_blocks(runs: Sequence[Run]) -> list[PageItem]:
 
 
 def compared_blocks(runs: Sequence[Run]) -> list[PageItem]:
-    """The measures that runs share, beside each other.
+    """The measures of runs beside each other.
 
     Raises:
         InputError: they share none.
     """
-    if not set.intersection(*(set(run.found.measures) for run in runs)):
-        labels = ", ".join(label for label, _ in labelled(runs))
-        raise InputError(f"{labels}: expected runs that share a measure, got none; report each by itself")
     return [*comparison_report(runs).blocks]
 
 

@@ -16,8 +16,8 @@ from tol3d.gearing.presenting.shown_stage import (
     whole_ratio_text,
 )
 from tol3d.gearing.summary.types import TrainSummary
-from tol3d.report.number import percent_text, tip_mm, value_text
-from tol3d.report.page import BLANK, Heading, PageItem, Row, Table, line, note, title
+from tol3d.report.number import percent_text, tip_mm, value_cell
+from tol3d.report.page import BLANK, Heading, PageItem, Row, Shown, Table, line, note, title
 from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -68,12 +68,12 @@ def stages_table(train: TrainSummary, stages: list[ShownStage]) -> Table:
     """A row a stage, and the whole train below; angles in minutes and seconds of arc."""
     published = list(dict.fromkeys(name for stage in stages for name in stage.published))
     headings = [
-        *(Heading(word) for word in ("ratio", "sense", "low", "mean", "high")),
+        *(Heading(word, plain=word == "ratio") for word in ("ratio", "sense", "low", "mean", "high")),
         Heading(f"mean at {train.shaft}", "bold"),
         Heading("share of variance [%]"),
         *(Heading(f"{name}: high", "green") for name in published),
     ]
-    return Table("stage", headings, [Row(stage.link, _cells(stage, published)) for stage in stages])
+    return Table("stage", headings, [Row(stage.link, _cells(stage, published), unit="arcmin") for stage in stages])
 
 
 def _cells(stage: ShownStage, published: list[str]) -> list[str]:
@@ -87,8 +87,8 @@ def _cells(stage: ShownStage, published: list[str]) -> list[str]:
     ]
 
 
-def _angle(arcmin: float | None) -> str:
-    return value_text(arcmin, "arcmin")
+def _angle(arcmin: float | None) -> Shown:
+    return value_cell(arcmin, "arcmin")
 
 
 def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
@@ -97,17 +97,17 @@ def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
     columns = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
     columns = {name: columns[name] for name in (*ROAD_WORDS, *columns) if name in columns}
     rows = [
-        Row(f"sum of the stages' {word}", [_angle(own.by_word[word]) for own in columns.values()])
+        Row(f"sum of the stages' {word}", [_angle(own.by_word[word]) for own in columns.values()], unit="arcmin")
         for word in Range(None, None, None).by_word
     ]
     highs = [distributions[name].high if name in ROAD_WORDS and name in distributions else None for name in columns]
-    rows.append(Row("mean + 3 sigma of the sum", [_angle(high) for high in highs]))
+    rows.append(Row("mean + 3 sigma of the sum", [_angle(high) for high in highs], unit="arcmin"))
     lever = train.lever_mm
     if lever is not None:
         worst = [tip_mm(own.high, lever) for own in columns.values()]
-        rows.append(Row(f"{train.point}, sum of highs [mm]", [value_text(value, "mm") for value in worst]))
-        tips = [value_text(tip_mm(high, lever), "mm") for high in highs]
-        rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips))
+        rows.append(Row(f"{train.point}, sum of highs [mm]", [value_cell(value, "mm") for value in worst], unit="mm"))
+        tips = [value_cell(tip_mm(high, lever), "mm") for high in highs]
+        rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips, unit="mm"))
     styles = {"geometric": "bold", "analytic": ""}
     headings = [Heading(ROAD_WORDS.get(name, name), styles.get(name, "green")) for name in columns]
     return Table(f"at {train.shaft}", headings, rows)
