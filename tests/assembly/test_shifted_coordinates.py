@@ -11,6 +11,7 @@ from drafts import Draft, displacement, frame
 from framed_parts import FLAT, MOVES, base, cover, pairs, tolerances
 from numpy.typing import NDArray
 from places import SCENES
+from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 from shipped import shipped
 
@@ -143,6 +144,9 @@ SHAPES: Mapping[str, tuple[Array, Shape]] = {
     "seat": (frame((110, 40, 25), X, Z), Axis(24.0, 12.0)),
     "slot": (frame((100, 25, 10), Y, X), Slot((30.0, 20.0), 8.0)),
     "ball": (frame((15, 70, 22)), Point()),
+    "pin1": (frame((20, 25, 30), Z, X), Axis(20.0, 12.0)),
+    "pin2": (frame((50, 39, 30), Z, X), Axis(10.0, 6.0)),
+    "pin3": (frame((95, 60, 30), Z, X), Axis(15.0, 8.0)),
 }
 FRAMES: Sequence[Sequence[str]] = [
     ["floor"],
@@ -160,6 +164,9 @@ FRAMES: Sequence[Sequence[str]] = [
     ["floor", "bore", "hole"],
     ["floor", "bore-hole"],
     ["floor", "bore-hole", "side fitted"],
+    ["pin1-pin2-pin3"],
+    ["floor", "pin1-pin2-pin3"],
+    ["floor", "pin3-pin1-pin2", "side fitted"],
     ["floor", "slot"],
     ["seat", "floor"],
     ["seat", "slot"],
@@ -217,7 +224,7 @@ def test_both_methods_differ_by_second_order_in_every_datum_frame(names: Sequenc
     assert apart[1] < apart[0] / 10
 
 
-@pytest.mark.parametrize("name", ["floor", "bore", "slot", "bore-hole"])
+@pytest.mark.parametrize("name", ["floor", "bore", "slot", "bore-hole", "pin1-pin2-pin3"])
 def test_the_centre_of_a_first_datum_moves_along_what_it_holds_and_is_not_twisted(name: str) -> None:
     """Half a millimetre in 120, finite: the frame takes the nominal centre to that of the trial by the least turn."""
     assembly, _ = datums_in([name])
@@ -226,12 +233,38 @@ def test_the_centre_of_a_first_datum_moves_along_what_it_holds_and_is_not_twiste
     tips = np.array([[read[f"{k}{axis}"][0][0] for axis in "xyz"] for k in range(4)])
     turn = (tips[1:] - tips[0]).T / 100
     centres = [SHAPES[own][0][:3, 3] for own in name.split("-")]
-    z = centres[1] - centres[0] if len(centres) == 2 else SHAPES[name][0][:3, 2]
+    z = centres[-1] - centres[0] if len(centres) > 1 else SHAPES[name][0][:3, 2]
     centre, off, z = np.mean(centres, axis=0), middle_off(assembly, name, row), z / np.linalg.norm(z)
-    slid = off @ z * z if len(centres) == 2 else np.zeros(3)  # along the line of two nothing is held
+    slid = off @ z * z if len(centres) > 1 else np.zeros(3)  # along a line of several nothing is held
     np.testing.assert_allclose(turn @ (centre + slid) + tips[0], centre + off, atol=1e-12)
     spin = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
     assert spin @ z == pytest.approx(0, abs=1e-12)
+
+
+def test_a_common_datum_of_several_is_the_line_of_least_squares_through_their_centres() -> None:
+    """Oracle: the sum of squared distances of the places from a line, made least by a search over four numbers."""
+    names = ["pin1", "pin2", "pin3"]
+    assembly, _ = datums_in(["-".join(names)])
+    rows = np.random.default_rng(8).normal(0.0, 0.5, (5, assembly.width))
+    read = placing.values(assembly, rows, list(assembly.measures))
+    for k, row in enumerate(rows):
+        tips = np.array([[read[f"{n}{axis}"][0][k] for axis in "xyz"] for n in range(4)])
+        turn = (tips[1:] - tips[0]).T / 100
+        nominal = np.array([SHAPES[own][0][:3, 3] for own in names])
+        places = nominal + [middle_off(assembly, own, row[None]) for own in names]
+
+        def distances(line: Array, places: Array = places) -> Array:
+            """From the line y = a + b x, z = c + d x."""
+            way = np.array([1.0, line[1], line[3]]) / np.sqrt(1 + line[1] ** 2 + line[3] ** 2)
+            off = places - [0.0, line[0], line[2]]
+            return np.asarray((off - np.outer(off @ way, way)).ravel())
+
+        best = least_squares(distances, [0.0, 0.5, 30.0, 0.0], xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+        way = np.array([1.0, best[1], best[3]])
+        along = turn @ (nominal[2] - nominal[0])
+        np.testing.assert_allclose(np.cross(along / np.linalg.norm(along), way / np.linalg.norm(way)), 0, atol=1e-7)
+        middle = turn @ nominal.mean(axis=0) + tips[0]
+        assert np.abs(distances(best, middle[None])).max() < 1e-5  # the search ends at a sum that is flat within 1e-14
 
 
 def middle_off(assembly: Assembly, name: str, row: Array) -> Array:

@@ -167,7 +167,7 @@ class Meanings:
 
     def datum_obstacle(self, compartment: Compartment) -> str:
         """Why a compartment of a datum system cannot be said; empty where it can."""
-        if len(compartment.references) > 2:
+        if len(compartment.references) > 2 and not self.in_line(compartment):
             return f"the common datum {compartment.letters} of {len(compartment.references)} features"
         for each in compartment.references:
             datum = self.datum(each)
@@ -178,13 +178,23 @@ class Meanings:
             shape = self.datum_shapes.get(datum.id)
             if shape is None or shape.kind not in DATUM_SHAPES:
                 return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
-            if len(compartment.references) == 2 and shape.kind != "cylinder":
+            if len(compartment.references) > 1 and shape.kind != "cylinder":
                 return f"the common datum {compartment.letters} of {shape.words}"
             if set(each.modifiers) - MATERIAL:
                 return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
             if any("least" in word for word in each.modifiers):
                 return f"datum {each.letter} at its least material boundary"
         return ""
+
+    def in_line(self, compartment: Compartment) -> bool:
+        """Whether a common datum is of holes or pins on one axis, regardless of their sizes."""
+        known = [self.datum(each) for each in compartment.references]
+        shapes = [self.datum_shapes.get(own.id) for own in known if own is not None]
+        surfaces = [own.surfaces[0] for own in shapes if own is not None and own.kind == "cylinder"]
+        if len(surfaces) < len(known) or any(each.modifiers for each in compartment.references):
+            return False
+        first, *others = surfaces
+        return all(first.is_coaxial_with(own) for own in others)
 
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
         """The kind in the scene, and what is lost by it; empty where nothing is."""

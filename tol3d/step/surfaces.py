@@ -44,6 +44,13 @@ class Surface:
     radius: float = 0.0
     same_sense: bool = True
 
+    def is_coaxial_with(self, other: "Surface") -> bool:
+        """Whether two round surfaces have one axis, whichever way each points."""
+        between = tuple(b - a for a, b in zip(self.at, other.at, strict=True))
+        along = dot(between, self.direction)
+        across = math.sqrt(sum((b - along * d) ** 2 for b, d in zip(between, self.direction, strict=True)))
+        return aligned(self.direction, other.direction) != 0 and across < SAME_PLACE
+
     def is_one_with(self, other: "Surface") -> bool:
         """Whether two faces lie on one surface, with the material on the same side."""
         if (self.kind, self.same_sense if self.radius else True) != (

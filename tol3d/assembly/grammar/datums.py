@@ -23,15 +23,15 @@ def _joined(value: Any) -> Any:
 
 
 class DatumSpec(Strict):
-    """A datum: a feature of the part, or two as a common datum, and how it lies on what holds it."""
+    """A datum: a feature of the part, or several as a common datum, and how it lies on what holds it."""
 
     words: ClassVar[str] = "a datum"
 
     features: Annotated[
         tuple[OwnName, ...],
-        listed("features", 1, 2),
+        listed("features", 1, 10),
         BeforeValidator(_joined, json_schema_input_type=str | tuple[OwnName, ...]),
-    ] = Field(alias="feature", description="its name; of a common datum both, such as bore 1-bore 2")
+    ] = Field(alias="feature", description="its name; of a common datum all, such as bore 1-bore 2")
     simulator: Simulator = Field(default="contact", description="how a later plane lies in the orientation left to it")
     targets: Annotated[tuple[Vector, ...], listed("points", 1, 3)] = Field(
         default=(), description="points of the part that touch, for simulator: targets"

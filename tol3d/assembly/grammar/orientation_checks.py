@@ -128,7 +128,7 @@ def _without_axis(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     features = drawing.features[part_of(own.feature)]
     named = [features[name] for datum in own.spec.named_datums for name in datum.features if name in features]
     if named and not any(feature.kind in ("axis", "cylinder") for feature in named):
-        common = any(len(datum.features) == 2 for datum in own.spec.named_datums)
+        common = any(len(datum.features) > 1 for datum in own.spec.named_datums)
         if not common:
             yield ("tolerances", own.entry, "datums"), "expected an axis among them, such as a bore or a shaft's seat"
 

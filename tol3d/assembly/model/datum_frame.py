@@ -47,10 +47,10 @@ touches, its centre lies on it, or its stated points do."""
 
 @dataclass(frozen=True, eq=False)
 class Datum:
-    """A datum: a feature, or two as a common datum A-B.
+    """A datum: a feature, or several as a common datum A-B-C.
 
     Args:
-        features: names; of two the line through both centres counts.
+        features: names; of several the line through their centres counts, of three or more by least squares.
         simulator: how it lies on what holds it.
         targets: (points, 3) in the frame of the feature [mm], for "targets".
     """
@@ -87,7 +87,7 @@ class DatumFrame:
     second hole turns the frame until its centre lies in the right direction from the first, whatever their distance.
 
     Each turns the part by the least rotation that meets what it asks, about its own centre in the trial where shifts
-    are still free (of a common datum the midpoint of both centres), and shifts it along the nominal directions that it
+    are still free (of a common datum the middle of all centres), and shifts it along the nominal directions that it
     holds. The frame's pose is the inverse of that: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's frame;
     nominally it is the part's frame itself. Where the part's origin lies makes no difference.
 

@@ -10,7 +10,7 @@ from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, 
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
-from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, unit
+from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, dot, unit
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
@@ -71,6 +71,7 @@ def datum_seats(part: Part) -> dict[str, DatumSeats]:
 
 def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
     _refuse_few_targets(frame)
+    _refuse_scattered(frame, nominal)
     datums, ties, seats = zip(*_asked(frame, nominal.__getitem__, nominal), strict=True)
     alignment = aligned(ties, seats, IDENTITY)
     taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
@@ -96,6 +97,26 @@ def _refuse_few_targets(frame: DatumFrame) -> None:
         )
 
 
+def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> None:
+    """Refuse a common datum of several whose centres lie on no line, or two of them in one place, nominally."""
+    for datum in frame.datums:
+        if len(datum.features) < 2:
+            continue
+        places = np.concatenate([nominal[name].origin.reshape(3, -1)[:, :1] for name in datum.features], axis=1).T
+        name = "-".join(own.partition(".")[2] for own in datum.features)
+        _, spread, ways = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
+        if len(places) > 2 and spread[1] > ABREAST:
+            raise InputError(
+                f"datum frame {frame.name}: the centres of the common datum {name} lie off a line nominally, by "
+                f"{spread[1]:.3g} mm: expected them on one; name two of them, or single ones in order"
+            )
+        along = np.sort(places @ ways[0])
+        if len(places) > 2 and np.diff(along).min() < ABREAST:
+            raise InputError(
+                f"datum frame {frame.name}: two features of the common datum {name} have one centre: name one"
+            )
+
+
 def _nominal(feature: Feature) -> ActualFeature:
     bare = Feature(feature.name, feature.part, feature.shape, feature.frame)
     return actual(bare, Pose.of(feature.frame), np.zeros((0, 1)))
@@ -113,11 +134,28 @@ def _asked(
 
 
 def _line(own: Sequence[ActualFeature], simulators: Sequence[ActualFeature]) -> Iterator[tuple[Asks, Seat]]:
-    """The line through the centres of two features."""
-    (start, end), (its_start, its_end) = own, simulators
+    """The line through the centres of two features, or of more by least squares of their distances from it."""
+    (start, *_, end), (its_start, *_, its_end) = own, simulators
     direction, toward = unit(end.origin - start.origin), unit(its_end.origin - its_start.origin)
     middle, target = (start.origin + end.origin) / 2, (its_start.origin + its_end.origin) / 2
+    if len(own) > 2:
+        (middle, direction), (target, toward) = (
+            fitted_line([each.origin for each in some]) for some in (own, simulators)
+        )
     yield ("across", "direction"), Seat(middle, target, direction, toward)
+
+
+def fitted_line(places: Sequence[Array]) -> tuple[Array, Array]:
+    """Middle and direction (3, n) of the line of least squares through points, each (3, n), from the first to the last.
+
+    The direction is that of their largest spread, the eigenvector of their scatter (Pearson 1901).
+    """
+    points = np.stack(np.broadcast_arrays(*places))
+    middle = points.mean(axis=0)
+    off = points - middle
+    _, vectors = np.linalg.eigh(np.einsum("kin,kjn->nij", off, off))
+    direction = vectors[:, :, -1].T
+    return middle, np.where(dot(direction, points[-1] - points[0]) < 0.0, -direction, direction)
 
 
 def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) -> Iterator[tuple[Asks, Seat]]:

@@ -185,7 +185,7 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
     frame = features[0].frame
     at, z = frame[:3, 3], frame[:3, 2]
     if len(features) > 1:
-        line = features[1].frame[:3, 3] - at
+        line = features[-1].frame[:3, 3] - at
         return _line(at, line / np.linalg.norm(line))
     if isinstance(features[0].shape, Axis):
         return _line(at, z)

@@ -57,10 +57,10 @@ def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Fre
 
 
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
-    """What a datum holds, and the turn to it, about its centre: of two the middle between them."""
+    """What a datum holds, and the turn to it, about its centre: of several the middle of theirs."""
     (feature, torsor), *others = features
     if others:
-        _take_line(freedoms, (feature, torsor), others[0])
+        _take_line(freedoms, features)
     else:
         _take_one(freedoms, datum, feature, torsor, columns)
     freedoms.settle(np.mean([own.frame[:3, 3] for own, _ in features], axis=0))
@@ -137,11 +137,22 @@ def _take_axis(freedoms: Freedoms, centre: Array, across: Array, torsor: Array) 
     freedoms.take(turns, turns @ torsor)
 
 
-def _take_line(freedoms: Freedoms, first: Displaced, second: Displaced) -> None:
-    """A common datum: the line through the centres of two features."""
-    ends = [feature.frame[:3, 3] for feature, _ in (first, second)]
-    shifts = [shift_at(end) @ torsor for end, (_, torsor) in zip(ends, (first, second), strict=True)]
-    middle, apart = (ends[0] + ends[1]) / 2.0, ends[1] - ends[0]
+def _take_line(freedoms: Freedoms, features: Sequence[Displaced]) -> None:
+    """A common datum: the line through the centres of two features, or of more by least squares.
+
+    Of more, the turn is the slope of the regression of their shifts across the line on their places along it.
+    """
+    ends = [feature.frame[:3, 3] for feature, _ in features]
+    shifts = [shift_at(end) @ torsor for end, (_, torsor) in zip(ends, features, strict=True)]
+    middle, apart = (ends[0] + ends[-1]) / 2.0, ends[-1] - ends[0]
+    if len(features) > 2:
+        middle = np.mean(ends, axis=0)
+        arms = [end - middle for end in ends]
+        turns = [np.cross(arm, shift, axisb=0, axisc=0) for arm, shift in zip(arms, shifts, strict=True)]
+        turn = np.sum(turns, axis=0) / sum(float(arm @ arm) for arm in arms)
+        torsor = torsor_of(middle, np.mean(shifts, axis=0), turn)
+        _take_axis(freedoms, middle, perpendicular(apart / np.linalg.norm(apart)), torsor)
+        return
     turn = np.cross(apart, shifts[1] - shifts[0], axisb=0, axisc=0) / (apart @ apart)
     torsor = torsor_of(middle, (shifts[0] + shifts[1]) / 2.0, turn)
     _take_axis(freedoms, middle, perpendicular(apart / np.linalg.norm(apart)), torsor)
