@@ -4,10 +4,10 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal, Protocol, Self
+from typing import Any, Literal, Protocol, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import PrivateAttr, SerializerFunctionWrapHandler, model_serializer, model_validator
 
 from tol3d.errors import InputError
 from tol3d.files import Files
@@ -192,6 +192,30 @@ class DistributionSpec(Strict, ABC):
     """A distribution as a scene writes it; the tolerance that holds it fixes the dimension. `kind` is a literal."""
 
     kind: str
+
+    _drawn: Any = PrivateAttr(default=None)
+
+    @property
+    def drawn(self) -> Any:
+        """The limits as a drawing writes them, of which the law was made: text, a list or keys; None of others."""
+        return self._drawn
+
+    def as_drawn(self, written: Any) -> Self:
+        """The law that is dumped as limits on a drawing; another law made of it is dumped as it is."""
+        law = self.model_copy()
+        law._drawn = written
+        return law
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy; one that says something else is no longer as it was drawn."""
+        copied = super().model_copy(update=update, deep=deep)
+        if update:
+            copied._drawn = None
+        return copied
+
+    @model_serializer(mode="wrap")
+    def _as_written(self, handler: SerializerFunctionWrapHandler) -> Any:
+        return handler(self) if self._drawn is None else self._drawn
 
     def quantities(self) -> dict[str, Quantity]:
         """Every dimensioned number that was given, by its field, for the tolerance to check."""

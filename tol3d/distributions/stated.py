@@ -14,6 +14,7 @@ from pydantic_core import CoreSchema, core_schema
 from tol3d.distributions.arcsine import ArcsineSpec
 from tol3d.distributions.base import DistributionSpec
 from tol3d.distributions.constant import ConstantSpec
+from tol3d.distributions.drawn import DRAWN, drawn_law, is_drawn
 from tol3d.distributions.empirical import EmpiricalSpec
 from tol3d.distributions.normal import NormalSpec
 from tol3d.distributions.rayleigh import RayleighSpec
@@ -63,7 +64,9 @@ def _one_of(laws: Laws) -> TypeAdapter[DistributionSpec]:
 
 
 def _read(value: Any) -> DistributionSpec:
-    return value if isinstance(value, DistributionSpec) else _one_of(_laws.get()).validate_python(value)
+    if isinstance(value, DistributionSpec):
+        return value
+    return drawn_law(value) if is_drawn(value) else _one_of(_laws.get()).validate_python(value)
 
 
 class _OfTheScene:
@@ -73,7 +76,7 @@ class _OfTheScene:
         return core_schema.no_info_plain_validator_function(_read)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return handler(_one_of(_laws.get()).core_schema)
+        return {"anyOf": [handler(_one_of(_laws.get()).core_schema), handler(DRAWN.core_schema)]}
 
 
 StatedDistribution = Annotated[DistributionSpec, _OfTheScene()]

@@ -22,8 +22,10 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from tol3d.distributions.default_law import StatedLimitLaw
+from tol3d.distributions.drawn import DEFAULT_LAW, default_law
 from tol3d.distributions.stated import SHIPPED, Laws, stating
-from tol3d.errors import SceneError
+from tol3d.errors import InputError, SceneError
 from tol3d.files import Files
 from tol3d.import_path import named
 from tol3d.samplers.replicates import REPLICATES, SamplerKind, uneven
@@ -206,6 +208,9 @@ class Scene(Strict):
 
     scene: Name = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
+    default_law: StatedLimitLaw | None = Field(
+        default=None, description="of deviations of which limits alone are stated, as a drawing writes them"
+    )
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
     correlations: Annotated[tuple[CorrelationSpec, ...], listed("correlations", 0)] = Field(
@@ -224,7 +229,7 @@ class Scene(Strict):
         """With the laws that its tolerances may have; what is wrong is said in the user's words, also from Python."""
         origin = info.context if isinstance(info.context, Origin) else Origin()
         try:
-            with stating(cls.laws):
+            with stating(cls.laws), default_law(data.get(DEFAULT_LAW) if isinstance(data, Mapping) else None):
                 return handler(data)
         except ValidationError as error:
             raise SceneError(*cls.grammar.messages(error, data, origin)) from None
@@ -288,6 +293,8 @@ class Scene(Strict):
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """A copy; one that says something else than its file, but for the study, has no text of it any more."""
+        if update and DEFAULT_LAW in update:
+            raise InputError(f"expected {DEFAULT_LAW} to be changed by scene.with_, which reads the limits anew")
         copied = super().model_copy(update=update, deep=deep)
         if update and update.keys() - {"study"}:
             copied._origin = replace(self._origin, text="")

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from tol3d.distributions.drawn import DEFAULT_LAW
 from tol3d.errors import InputError
 from tol3d.scene.edit import flow, leave_out, loaded_yaml, written
 from tol3d.scene.include import Includes
@@ -25,7 +26,7 @@ from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.text import scene_text
 from tol3d.units import BARE_NUMBER, NUMBER_UNIT, Quantity
 
-TOP: Final = ("scene", "description", *SECTIONS, "study", "published")
+TOP: Final = ("scene", "description", DEFAULT_LAW, *SECTIONS, "study", "published")
 INDEX: Final = re.compile(r"(.*)\[(\d+)\]")
 
 

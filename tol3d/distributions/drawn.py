@@ -1,0 +1,177 @@
+"""A law by its limits as a drawing writes them: `±0.1 mm`, `40.1 mm +0.12/0`, `{fit: H7, of: 32 mm}`.
+
+What is written becomes one of the kinds of law, by the law that is named beside it or by the default law of the scene;
+it is kept as `drawn` of that law, so that the scene is dumped as it was written.
+"""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Annotated, Any, Final
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from tol3d.distributions.base import DistributionSpec
+from tol3d.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
+from tol3d.errors import InputError
+from tol3d.standards import iso_286, iso_2768
+from tol3d.strict import Strict, refused
+from tol3d.units import Of, Positive, Quantity, shown
+
+DEFAULT_LAW: Final = "default_law"
+"""The key of a scene that names it."""
+KEYS: Final = ("fit", "general", "limits")
+"""Of which one says how limits are written, where no kind of law is stated."""
+PLUS_MINUS: Final = ("±", "+-", "+/-")
+MINUS: Final = str.maketrans({"−": "-"})  # noqa: RUF001  # as drawings are copied
+NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+UNIT: Final = r"[^\s\d.,+±/-][^\s,+±/-]*(?:/[^\s\d,+±/-]+)*"
+NOMINAL: Final = rf"(?:(?P<nominal>{NUMBER})\s*(?P<nominal_unit>{UNIT})?\s*)?"
+SYMMETRIC: Final = re.compile(rf"\s*{NOMINAL}(?:±|\+-|\+/-)\s*(?P<size>{NUMBER})\s*(?P<unit>{UNIT})?\s*")
+TWO: Final = re.compile(
+    rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
+)
+WRITTEN: Final = 'limits such as "±0.1 mm", "40.1 mm +0.12/0" or [-19 um, -30 um]'
+LONGEST: Final = 100  # characters
+
+_default: ContextVar[LimitLaw | None] = ContextVar("default_law", default=None)
+
+
+class FitSpec(Strict):
+    """`{fit: H7, of: 32 mm}`: limits of ISO 286."""
+
+    fit: str = Field(description="tolerance class of ISO 286, such as H7 of a hole or g6 of a shaft")
+    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
+    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+
+
+class GeneralSpec(Strict):
+    """`{general: m, of: 60 mm}`: limits of ISO 2768-1."""
+
+    general: str = Field(description="class f, m, c or v of ISO 2768-1")
+    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
+    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+
+
+class LimitsSpec(Strict):
+    """`{limits: ±0.1 mm, law: {kind: uniform}}`: limits with a law of their own."""
+
+    limits: str | list[str] = Field(description=WRITTEN.replace('"', ""))
+    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+
+
+DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(
+    FitSpec | GeneralSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
+)
+"""For the JSON Schema of what may be written."""
+_SPECS: Final = {"fit": FitSpec, "general": GeneralSpec, "limits": LimitsSpec}
+_LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
+
+
+@contextmanager
+def default_law(given: Any) -> Iterator[None]:
+    """Within it limits without a law of their own have this one: what a scene says of it, or a LimitLaw."""
+    token = _default.set(_read(given))
+    try:
+        yield
+    finally:
+        _default.reset(token)
+
+
+def _read(given: Any) -> LimitLaw | None:
+    if given is None or isinstance(given, LimitLaw):
+        return given
+    try:
+        law: LimitLaw = _LAW.validate_python(given)
+    except ValidationError:  # which the scene's own field reports
+        return UniformBetween(kind="uniform")
+    return law
+
+
+def is_drawn(value: Any) -> bool:
+    """Whether a value is limits as a drawing writes them, right or wrong."""
+    if isinstance(value, str):
+        return any(sign in value for sign in PLUS_MINUS) or "/" in value
+    if isinstance(value, dict):
+        return "kind" not in value and any(key in value for key in KEYS)
+    return isinstance(value, list | tuple)
+
+
+def drawn_law(value: Any) -> DistributionSpec:
+    """The law that limits on a drawing stand for.
+
+    Raises:
+        PydanticCustomError, ValidationError: they make no sense, or no law is named; for pydantic to pass on.
+    """
+    law = _default.get()
+    if isinstance(value, dict):
+        key = next(key for key in KEYS if key in value)
+        stated = _SPECS[key].model_validate(value)
+        law = stated.law or law
+        lower, upper = _limits(stated)
+    else:
+        lower, upper = _written(value, "")
+    if law is None:
+        words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
+        raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
+    return law.between(lower, upper).as_drawn(list(value) if isinstance(value, tuple) else value)
+
+
+def _limits(stated: FitSpec | GeneralSpec | LimitsSpec) -> tuple[Quantity, Quantity]:
+    if isinstance(stated, LimitsSpec):
+        return _written(stated.limits, "limits")
+    field = "fit" if isinstance(stated, FitSpec) else "general"
+    try:
+        if isinstance(stated, FitSpec):
+            lower, upper = iso_286.limits(stated.fit, stated.of.internal)
+            return Quantity(float(lower), "um"), Quantity(float(upper), "um")
+        size = iso_2768.linear(stated.general, stated.of.internal)
+        return Quantity(-size, "mm"), Quantity(size, "mm")
+    except InputError as error:
+        expected, _, got = str(error).removeprefix("expected ").partition(", got ")
+        raise refused(field, expected, got) from None
+
+
+def _written(value: Any, field: str) -> tuple[Quantity, Quantity]:
+    """Lower and upper limit of text or of a list of two."""
+    pair = _of_list(value, field) if isinstance(value, list | tuple) else _of_text(value, field)
+    dimensions = {own.dimension for own in pair}
+    if len(dimensions) > 1:
+        raise refused(field, "limits of one dimension", " and ".join(str(own) for own in pair))
+    lower, upper = sorted(pair, key=lambda own: own.internal)
+    if lower.internal == upper.internal:
+        raise refused(field, "two different limits (for no spread at all write kind: constant)", shown(value))
+    return lower, upper
+
+
+def _of_list(value: Any, field: str) -> tuple[Quantity, Quantity]:
+    if len(value) != 2:
+        raise refused(field, "a lower and an upper limit, such as [-30 um, -19 um]", f"{len(value)} values")
+    return _quantity(value[0], field), _quantity(value[1], field)
+
+
+def _of_text(value: str, field: str) -> tuple[Quantity, Quantity]:
+    text = value.translate(MINUS) if len(value) <= LONGEST else ""
+    if match := SYMMETRIC.fullmatch(text):
+        unit = match["unit"] or match["nominal_unit"]
+        size = _with_unit(match["size"], unit, value, field)
+        return Quantity(-size.number, size.unit), size
+    if match := TWO.fullmatch(text):
+        unit = match["unit"] or match["one_unit"] or match["nominal_unit"]
+        one = _with_unit(match["one"], match["one_unit"] or unit, value, field)
+        return one, _with_unit(match["other"], unit, value, field)
+    raise refused(field, WRITTEN, shown(value))
+
+
+def _with_unit(number: str, unit: str | None, value: str, field: str) -> Quantity:
+    if unit is None:
+        raise refused(field, "a unit in it, such as ±0.1 mm", shown(value))
+    return _quantity(f"{number} {unit}", field)
+
+
+def _quantity(text: Any, field: str) -> Quantity:
+    try:
+        return Quantity.parse(text)
+    except ValueError as error:
+        raise refused(field, WRITTEN, str(error).removeprefix("got ")) from None

@@ -1,0 +1,71 @@
+"""ISO 2768-1: general tolerances of linear sizes and of broken edges, by the class f, m, c or v of a drawing."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from tol3d.errors import InputError
+
+SIZES: Final = (3.0, 6.0, 30.0, 120.0, 400.0, 1000.0, 2000.0, 4000.0)
+"""Upper ends of the ranges [mm]; the first begins at 0.5 mm."""
+LEAST_SIZE: Final = 0.5  # mm; under it the standard wants the deviations beside the size
+LINEAR: Final[Mapping[str, tuple[float | None, ...]]] = {
+    "f": (0.05, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, None),
+    "m": (0.1, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0),
+    "c": (0.2, 0.3, 0.5, 0.8, 1.2, 2.0, 3.0, 4.0),
+    "v": (None, 0.5, 1.0, 1.5, 2.5, 4.0, 6.0, 8.0),
+}
+"""Table 1: plus and minus [mm]; None where the standard has none."""
+EDGE_SIZES: Final = (3.0, 6.0)
+"""Upper ends of the ranges of radii and chamfers [mm]; a third one has no end."""
+EDGES: Final[Mapping[str, tuple[float, float, float]]] = {
+    "f": (0.2, 0.5, 1.0),
+    "m": (0.2, 0.5, 1.0),
+    "c": (0.4, 1.0, 2.0),
+    "v": (0.4, 1.0, 2.0),
+}
+"""Table 2: plus and minus of radii and chamfers [mm]."""
+
+
+def linear(tolerance_class: str, size: float) -> float:
+    """Plus and minus [mm] of a linear size [mm] without a tolerance of its own.
+
+    >>> linear("m", 60.0)
+    0.3
+
+    Raises:
+        InputError: no such class, or it has no value for the size; the text says what to write.
+    """
+    _refuse_class(tolerance_class)
+    _refuse_small(size)
+    if size > SIZES[-1]:
+        raise InputError(f"expected a size up to {SIZES[-1]:g} mm, got {size:g} mm; ISO 2768-1 has none above")
+    found = LINEAR[tolerance_class][next(k for k, end in enumerate(SIZES) if size <= end)]
+    if found is None:
+        words = f"expected a class that ISO 2768-1 has for {size:g} mm, got {tolerance_class!r}"
+        raise InputError(f"{words}; write the limits, or {'f, m or c' if tolerance_class == 'v' else 'm, c or v'}")
+    return found
+
+
+def broken_edge(tolerance_class: str, size: float) -> float:
+    """Plus and minus [mm] of an external radius or a chamfer's height [mm].
+
+    Raises:
+        InputError: no such class, or a size under 0.5 mm.
+    """
+    _refuse_class(tolerance_class)
+    _refuse_small(size)
+    return EDGES[tolerance_class][sum(size > end for end in EDGE_SIZES)]
+
+
+def _refuse_class(tolerance_class: str) -> None:
+    if tolerance_class in LINEAR:
+        return
+    if len(tolerance_class) == 2 and tolerance_class[0] in LINEAR and tolerance_class[1] in "HKL":
+        words = f"expected a class of ISO 2768-1 alone, got {tolerance_class!r}; write {tolerance_class[0]!r}"
+        raise InputError(f"{words}, for {tolerance_class[1]} is of part 2: form and position, not sizes")
+    raise InputError(f"expected a class f, m, c or v of ISO 2768-1, got {tolerance_class!r}")
+
+
+def _refuse_small(size: float) -> None:
+    if not size >= LEAST_SIZE:
+        raise InputError(f"expected a size of at least 0.5 mm, got {size:g} mm; write its limits, as ISO 2768-1 asks")
