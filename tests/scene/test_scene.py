@@ -146,6 +146,13 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     heights = ", ".join(f"{name}: {{kind: tooth_thickness, of: {name[0]}, {TIGHT}}}" for name in ("a1", "b1"))
     both = "{between: [a1, b1], rho: 0.5}, {between: [a1, b1], matrix: [[1, 0.5], [0.5, 1]]}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}tolerances: {{{heights}}}\ncorrelations: [{both}]\n", GEARS)))
+    for default in (
+        "{kind: normal, sigmas: 3}",
+        "{kind: truncated_normal, sigmas: 3}",
+        "{kind: uniform}",
+        "{kind: triangular}",
+    ):
+        said |= set(fields_said(load(tmp_path, f"{SMALL}default_law: {default}\n", GEARS)))
     said |= {use for text in shoulders() for use in fields_said(load(tmp_path, text, GEARS))}
     assert unsaid(known, said) == set()
 

@@ -43,6 +43,7 @@ def check(
     load_when_used()
 
     from tol3d.report.check import check_report, parts_report
+    from tol3d.report.drawn_limits import drawn_limits
     from tol3d.runs.atomic_write import write_whole
     from tol3d.simulate import load, simulation_of
 
@@ -52,7 +53,7 @@ def check(
     spent = {"to read the scene": seconds()}
     simulation = simulation_of(loaded)
     spent["to build its system"] = seconds() - sum(spent.values())
-    report = parts_report(simulation) if parts else check_report(simulation)
+    report = parts_report(simulation) if parts else check_report(simulation, drawn_limits(loaded))
     spent["for what it shows"] = seconds() - sum(spent.values())
     out_console.print(report)
     if out is not None:

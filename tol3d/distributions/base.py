@@ -200,6 +200,11 @@ class DistributionSpec(Strict, ABC):
         """The limits as a drawing writes them, of which the law was made: text, a list or keys; None of others."""
         return self._drawn
 
+    @property
+    def by_default_law(self) -> bool:
+        """Whether the default law of the scene decided what kind of law it is."""
+        return self._drawn is not None and not (isinstance(self._drawn, dict) and "law" in self._drawn)
+
     def as_drawn(self, written: Any) -> Self:
         """The law that is dumped as limits on a drawing; another law made of it is dumped as it is."""
         law = self.model_copy()

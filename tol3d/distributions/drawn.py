@@ -24,7 +24,7 @@ DEFAULT_LAW: Final = "default_law"
 KEYS: Final = ("fit", "general", "limits")
 """Of which one says how limits are written, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
-MINUS: Final = str.maketrans({"−": "-"})  # noqa: RUF001  # as drawings are copied
+MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
 NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 UNIT: Final = r"[^\s\d.,+±/-][^\s,+±/-]*(?:/[^\s\d,+±/-]+)*"
 NOMINAL: Final = rf"(?:(?P<nominal>{NUMBER})\s*(?P<nominal_unit>{UNIT})?\s*)?"
@@ -65,7 +65,11 @@ DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(
     FitSpec | GeneralSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
 )
 """For the JSON Schema of what may be written."""
-_SPECS: Final = {"fit": FitSpec, "general": GeneralSpec, "limits": LimitsSpec}
+_SPECS: Final[dict[str, type[FitSpec | GeneralSpec | LimitsSpec]]] = {
+    "fit": FitSpec,
+    "general": GeneralSpec,
+    "limits": LimitsSpec,
+}
 _LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
 
 
@@ -115,7 +119,18 @@ def drawn_law(value: Any) -> DistributionSpec:
     if law is None:
         words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
         raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
-    return law.between(lower, upper).as_drawn(list(value) if isinstance(value, tuple) else value)
+    return law.between(lower, upper).as_drawn(_as_text(value))
+
+
+def _as_text(value: Any) -> Any:
+    """As YAML writes it; from Python it may hold quantities and a LimitLaw."""
+    if isinstance(value, dict):
+        return {key: _as_text(own) for key, own in value.items()}
+    if isinstance(value, list | tuple):
+        return [_as_text(own) for own in value]
+    if isinstance(value, LimitLaw):
+        return value.model_dump(exclude_unset=True)
+    return str(value) if isinstance(value, Quantity) else value
 
 
 def _limits(stated: FitSpec | GeneralSpec | LimitsSpec) -> tuple[Quantity, Quantity]:

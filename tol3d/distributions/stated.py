@@ -76,7 +76,8 @@ class _OfTheScene:
         return core_schema.no_info_plain_validator_function(_read)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        return {"anyOf": [handler(_one_of(_laws.get()).core_schema), handler(DRAWN.core_schema)]}
+        laws = handler(_one_of(_laws.get()).core_schema)
+        return {**laws, "oneOf": [*laws["oneOf"], *handler(DRAWN.core_schema)["anyOf"]]}
 
 
 StatedDistribution = Annotated[DistributionSpec, _OfTheScene()]

@@ -22,8 +22,12 @@ class ShowsParts(Protocol):
         ...
 
 
-def check_report(simulation: Simulation) -> Page:
+def check_report(simulation: Simulation, drawn: Sequence[PageItem] = ()) -> Page:
     """Everything that a scene says, with what follows from it; nothing is drawn at random.
+
+    Args:
+        simulation: of the scene.
+        drawn: its limits as a drawing writes them, see drawn_limits.
 
     Raises:
         MechanismError: a mechanism of another package is at fault.
@@ -35,7 +39,7 @@ def check_report(simulation: Simulation) -> Page:
     words += [f"{value} {name.replace('_', ' ')}" for name, value in study.options.items()]
     whole = page(
         line(simulation.system.name, "bold"),
-        *(block.shortened(MOST_ROWS) if isinstance(block, Table) else block for block in shown),
+        *(block.shortened(MOST_ROWS) if isinstance(block, Table) else block for block in [*shown, *drawn]),
         line(f"\nstudy: {', '.join(words)}"),
         *map(warning, some([*simulation.warnings, *correlation_warnings(simulation)])),
     )

@@ -25,8 +25,7 @@ from tol3d.scene.problems import messages
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.measure import published_column_class
 from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, study_spec_class
-from tol3d.scene.tolerance import ToleranceEntry
-from tol3d.strict import Strict
+from tol3d.scene.tolerance import ToleranceEntry, laws_in
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 """What does not hold together across entries whose names all exist: key path and finished sentence."""
@@ -246,7 +245,7 @@ class Grammar:
 
     def lawgivers_of(self, scene: Scene) -> tuple[Vocabulary, ...]:
         """The vocabularies whose distributions a scene states."""
-        used = {type(law) for entry in scene.tolerances.values() for law in _laws_in(entry)}
+        used = {type(law) for entry in scene.tolerances.values() for law in laws_in(entry)}
         return tuple(each for each in self.vocabularies if used & set(each.distributions))
 
     def options_of(self, scene: Scene) -> Mapping[str, Option]:
@@ -318,15 +317,6 @@ def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[
 
 def _said_of(word: object, pairs: Iterable[tuple[tuple[str, str], ...]]) -> str:
     return next((advice for own in pairs for other, advice in own if other == word), "")
-
-
-def _laws_in(value: Any) -> Iterator[DistributionSpec]:
-    """The distributions that an entry states, however deep."""
-    if isinstance(value, DistributionSpec):
-        yield value
-    elif isinstance(value, Strict):
-        for each in vars(value).values():
-            yield from _laws_in(each)
 
 
 def _refuse_ambiguity(expected: str, owners: Mapping[str, str], words: Mapping[str, Sequence[str]]) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
+from tol3d.distributions.drawn import DEFAULT_LAW
 from tol3d.errors import SceneError
 from tol3d.files import FileContent, Files, UnreadableFileError, contained, read_contained
 from tol3d.scene.correlation import CORRELATIONS
@@ -23,6 +24,7 @@ from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.references import bad_names, refuse
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.text import MAX_BYTES, MAX_NODES, near_file, scene_text
+from tol3d.scene.tolerance import laws_in
 from tol3d.scene.vector import Vector
 from tol3d.units import Quantity, shown, summed
 
@@ -73,6 +75,8 @@ class Includes:
     files: dict[str, FileContent] = field(default_factory=dict)
     """What was read, by names from the scene's folder."""
     _read: dict[str, _Read] = field(default_factory=dict)
+    _law: Any = None
+    """What the scene itself says of its default law, which is that of its files too."""
 
     def expanded(self, top: Node, origin: Origin, chain: tuple[str, ...] = ()) -> Node:
         """A scene's values, or those of a file that it includes, with the entries of what it includes.
@@ -86,6 +90,8 @@ class Includes:
             SceneError: one or several messages.
         """
         _refuse_many(len(top.held("parts")), 0, origin, ("parts",))
+        if not chain and DEFAULT_LAW in top.children:
+            self._law = plain(top.children[DEFAULT_LAW][1])
         if INCLUDE not in top.children:
             return top
         own: Sections = {section: dict(top.held(section)) for section in SECTIONS}
@@ -147,8 +153,11 @@ class Includes:
         top = self.expanded(top, origin, chain)
         own = replace(origin, places=Places(top))
         data = {key: plain(child) for key, (_, child) in top.children.items() if key not in LEFT_OUT}
+        law = data.setdefault(DEFAULT_LAW, self._law)
         part: Scene = self.kinds.whole().fragment.model_validate(data, context=own)
         refuse(part, bad_names(part))
+        if law != self._law:
+            _refuse_other_law(part, own, name)
         for path, entry in part.entries().items():
             for place, _ in entry.file_names():
                 top = _changed(top, (*path, *place), partial(posixpath.join, posixpath.dirname(name)))
@@ -156,6 +165,14 @@ class Includes:
         return _Read(
             name, {section: top.held(section) for section in SECTIONS}, uses, part.parts, top.held(CORRELATIONS)
         )
+
+
+def _refuse_other_law(part: Scene, origin: Origin, name: str) -> None:
+    """Refuse a file's own default law, for the scene has another or none, if it decides what a tolerance means."""
+    for path, entry in part.entries().items():
+        if any(law.by_default_law for law in laws_in(entry)):
+            words = f"expected limits of {name} to be read by the scene's own {DEFAULT_LAW}, got another"
+            raise origin.error(path, f"{words}; state the same {DEFAULT_LAW} in both, or laws in {name}")
 
 
 # limits -------------------------------------------------------------------------------------------

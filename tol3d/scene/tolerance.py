@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
@@ -13,6 +13,7 @@ from tol3d.files import Files
 from tol3d.scene.entry import Entry
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
+from tol3d.strict import Strict
 from tol3d.units import Dimension, refuse_dimension
 
 
@@ -23,6 +24,18 @@ def scaled_law(spec: DistributionSpec, factor: float, stays: Stays, files: Files
         InputError: it cannot be scaled, or no numbers state it.
     """
     return spec.stating(spec.resolve(files).scaled_at(factor, stays))
+
+
+def laws_in(value: Any) -> Iterator[DistributionSpec]:
+    """The distributions that an entry states, however deep."""
+    if isinstance(value, DistributionSpec):
+        yield value
+    elif isinstance(value, Strict):
+        for each in vars(value).values():
+            yield from laws_in(each)
+    elif isinstance(value, list | tuple):
+        for each in value:
+            yield from laws_in(each)
 
 
 class ToleranceEntry(Entry):

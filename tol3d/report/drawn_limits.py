@@ -1,0 +1,47 @@
+"""Limits that a scene writes as a drawing does, and what they mean."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from tol3d.distributions.base import DistributionSpec
+from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.system_check import law_name
+from tol3d.scene.schema import Scene
+from tol3d.scene.tolerance import laws_in
+
+NOMINAL_NOTE = (
+    "a number in front of limits, such as 40.1 mm +0.12/0, is not compared with the part: its size is the part's"
+)
+
+
+def drawn_limits(scene: Scene) -> list[PageItem]:
+    """Every limit that stands as on a drawing, with its numbers; nothing where there are none."""
+    rows = [
+        Row(name, (_told(law.drawn), *_numbers(law), law_name(law.resolve(scene.files)))) for name, law in _drawn(scene)
+    ]
+    if not rows:
+        return []
+    words = (Heading("as drawn", words=True), Heading("lower"), Heading("upper"), Heading("law", words=True))
+    return [*titled("limits as drawn", Table("", words, rows)), note(NOMINAL_NOTE)]
+
+
+def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
+    for (_, name), entry in scene.entries().items():
+        for law in laws_in(entry):
+            if law.drawn is not None:
+                yield str(name), law
+
+
+def _numbers(law: DistributionSpec) -> tuple[str, str]:
+    given = law.quantities()
+    return str(given["lower"]), str(given["upper"])
+
+
+def _told(written: Any) -> str:
+    """As a drawing has it: H7 of 32 mm, ISO 2768-m of 60 mm, ±0.1 mm."""
+    if isinstance(written, dict):
+        if "limits" in written:
+            return _told(written["limits"])
+        word = written["fit"] if "fit" in written else f"ISO 2768-{written['general']}"
+        return f"{word} of {written['of']}"
+    return " to ".join(str(own) for own in written) if isinstance(written, list) else str(written)
