@@ -1,16 +1,20 @@
 """Limits as a drawing writes them: what they mean, with which law, and what is refused."""
 
 import pickle
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 
 from tol3d import Scene, load_scene
 from tol3d.distributions import Normal
 from tol3d.distributions.normal import NormalSpec
 from tol3d.errors import InputError, SceneError
+from tol3d.report.drawn_limits import drawn_limits
+from tol3d.report.page import Table
 from tol3d.scene.tolerance import ToleranceSpec
 
 SMALL = """scene: small
@@ -185,3 +189,19 @@ def test_included_limits_are_read_by_the_scenes_law(tmp_path: Path) -> None:
     assert included.distribution.kind == "uniform"
     (tmp_path / "inner.yaml").write_text(NORMAL + part, encoding="utf-8")
     assert "state the same default_law in both" in refusal(lambda: load(tmp_path, outer))
+
+
+def test_the_page_shows_a_scene_that_loads_and_what_check_lists_of_it(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "dimensions.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    scene = load(tmp_path, text)
+    assert all(own.distribution.drawn is not None for own in scene.distributed.values())
+    table = next(own for own in drawn_limits(scene) if isinstance(own, Table))
+    assert {row.label: tuple(str(cell) for cell in row.cells) for row in table.rows} == {
+        "pinion tooth thickness": ("-19 um to -30 um", "-30 um", "-19 um", "normal"),
+        "wheel tooth thickness": ("-21/-32 um", "-32 um", "-21 um", "uniform"),
+        "centre distance": ("js7 of 60.2 mm", "-15 um", "15 um", "normal"),
+        "wheel bearing clearance": ("+16/+4 um", "4 um", "16 um", "normal"),
+        "wheel axial shift": ("ISO 2768-m of 60 mm", "-0.3 mm", "0.3 mm", "normal"),
+        "axis in plane": ("±0.0002 in", "-0.0002 in", "0.0002 in", "normal"),
+    }
