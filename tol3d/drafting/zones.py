@@ -7,13 +7,14 @@ import numpy as np
 from tol3d.drafting.features import Group
 from tol3d.drafting.words import direction, length
 from tol3d.numerics.arrays import Array
-from tol3d.step.meaning import MATERIAL, Meanings
+from tol3d.step.meaning import MATERIAL, ORIENTATIONS, Meanings
 from tol3d.step.refused import StepError
 from tol3d.step.tolerance import Tolerance
 
 SMALLEST_ZONE: Final = 1e-6  # mm; a zone of 0 at MMC is written so
 SQUARE: Final = 1e-6  # cosine between directions that are square
-FORMS: Final = frozenset(("flatness", "straightness"))
+FORMS: Final = frozenset(("flatness", "straightness", "roundness", "cylindricity"))
+PROJECTED: Final = frozenset(("position", *ORIENTATIONS))
 
 
 def zone(meanings: Meanings, tolerance: Tolerance, kind: str, group: Group) -> str:
@@ -25,7 +26,7 @@ def zone(meanings: Meanings, tolerance: Tolerance, kind: str, group: Group) -> s
     assert tolerance.magnitude is not None
     size = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
     projected = ""
-    if tolerance.projected is not None and group.kind == "cylinder" and kind == "position":
+    if tolerance.projected is not None and group.kind == "cylinder" and kind in PROJECTED:
         projected = f", projected: {length(tolerance.projected.length.value)}"
     if group.kind in ("plane", "slot") or kind in ("circular_run_out", "total_run_out", *FORMS):
         outward = f", outward: {length(tolerance.unequal.value)}" if tolerance.unequal and kind == "profile" else ""

@@ -148,12 +148,13 @@ class Meanings:
             return "a zone that is not as wide everywhere"
         if tolerance.per_unit is not None:
             return "a zone per unit of length or area"
-        if tolerance.kind in ("roundness", "cylindricity", "line profile") or tolerance.kind == "straightness":
-            return f"{tolerance.kind} is form of lines or round surfaces"
+        if tolerance.kind in ("line profile", "straightness"):
+            return f"{tolerance.kind} is form of lines"
         allowed = {
             "position": ("plane", "slot", "cylinder", "cylinders", "sphere", "spheres"),
             "surface profile": ("plane", "planes", "slot"),
             "flatness": ("plane",),
+            **dict.fromkeys(("roundness", "cylindricity"), ("cylinder", "cylinders")),
             "circular runout": ("cylinder", "plane"),
             "total runout": ("cylinder", "plane"),
             "concentricity": ("cylinder", "cylinders"),
@@ -206,14 +207,10 @@ class Meanings:
         if tolerance.kind in ("circular runout", "total runout"):
             if shape.kind == "plane":
                 return "perpendicularity", "axial run-out is a perpendicularity: its form is lost"
-            return tolerance.kind.replace("runout", "run-out").replace("-", "_").replace(
-                " ", "_"
-            ), "the form that is in a run-out is lost"
+            return tolerance.kind.replace("runout", "run_out").replace(" ", "_"), ""
         if tolerance.kind in ("concentricity", "symmetry"):
             kind = "coaxiality" if tolerance.kind == "concentricity" else "symmetry"
             return kind, f"{tolerance.kind} of median points is taken of the axis or median plane"
-        if tolerance.kind in ORIENTATIONS and tolerance.projected is not None:
-            return tolerance.kind, "the zone of an orientation is not projected"
         return tolerance.kind, ""
 
     def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:
