@@ -8,6 +8,7 @@ from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Mode
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
 from tol3d.gearing.model.trains import gravity_torque
 from tol3d.gearing.presenting.coefficient_tables import coefficients_tables
+from tol3d.gearing.presenting.drawing_sizes import drawing_sizes
 from tol3d.gearing.presenting.shown_train import link_blocks
 from tol3d.gearing.summary.measure_words import QUANTITY_WORDS, TAKE_WORDS, Reading, readings_words
 from tol3d.gearing.system import gear_model
@@ -119,9 +120,9 @@ def check_blocks(simulation: Simulation) -> list[PageItem]:
 
 
 def mechanics_blocks(model: Model) -> list[PageItem]:
-    """Gears, meshes and trains."""
+    """Gears, what shops measure of them, meshes and trains."""
     housings = [housings_line(model)] if model.housings else []
-    return [*gears_table(model), *housings, *meshes_table(model), *train_blocks(model)]
+    return [*gears_table(model), *housings, *drawing_sizes(model), *meshes_table(model), *train_blocks(model)]
 
 
 def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[PageItem]:
