@@ -1,0 +1,66 @@
+"""What the page of drawings says, on a part drawn elsewhere: origin, names and order of its features change nothing."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from tol3d.analyses.response import response_of
+from tol3d.simulate import load, simulation_of
+
+PAGE = Path(__file__).parents[2] / "docs" / "drawings.md"
+SCENES: Mapping[str, str] = {
+    re.findall(r"scene: (.*)", own)[0]: own
+    for own in re.findall(r"```yaml\n(scene: .*?)```", PAGE.read_text(), flags=re.DOTALL)
+}
+FAR = (-2000.0, 700.0, -900.0)
+TRIALS = 40
+REFERENCES = {"of", "datums", "feature"}
+
+
+def elsewhere(scene: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The same drawing about another origin, its features in reverse order under other names."""
+    parts, names = {}, dict[str, str]()
+    for part, own in scene["parts"].items():
+        names |= {feature: f"f{len(own['features']) - k}x" for k, feature in enumerate(own["features"])}
+        moved = {names[feature]: {**what, "at": shifted(what["at"])} for feature, what in own["features"].items()}
+        parts[part] = {**own, "features": dict(reversed(moved.items()))}
+    longest_first = sorted(names, key=len, reverse=True)
+    pattern = re.compile(rf"(?<![\w ])({'|'.join(map(re.escape, longest_first))})(?![\w])")
+
+    def renamed(value: Any, key: str = "") -> Any:
+        if isinstance(value, dict):
+            return {own: renamed(what, own) for own, what in value.items()}
+        if isinstance(value, list):
+            return [renamed(own, key) for own in value]
+        return pattern.sub(lambda found: names[found[1]], value) if key in REFERENCES else value
+
+    return {**scene, "parts": parts} | {key: renamed(scene[key]) for key in ("tolerances", "measures")}
+
+
+def shifted(at: list[str]) -> list[str]:
+    return [f"{float(own.removesuffix(' mm')) + by} mm" for own, by in zip(at, FAR, strict=True)]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_drawing_means_the_same_elsewhere_under_other_names(name: str, tmp_path: Path) -> None:
+    scene = yaml.safe_load(SCENES[name])
+    found = []
+    for own in (scene, elsewhere(scene)):
+        path = tmp_path / f"{len(found)}.yaml"
+        path.write_text(yaml.safe_dump(own, sort_keys=False))
+        simulation = simulation_of(load(path))
+        for analytic in (False, True):
+            response = response_of(simulation, analytic=analytic)
+            deviations, positions = response.drawn(TRIALS, seed=5)
+            found.append((response.names, deviations, response.values(deviations, positions)))
+    for (names, deviations, here), (others, moved, there) in zip(found[:2], found[2:], strict=True):
+        assert names == others
+        np.testing.assert_allclose(moved, deviations, atol=1e-12, rtol=0)
+        np.testing.assert_array_equal(there.codes, here.codes)
+        np.testing.assert_allclose(there.values, here.values, atol=1e-6, rtol=0)
+        assert np.nanstd(here.values, axis=0).max() > 0.0
