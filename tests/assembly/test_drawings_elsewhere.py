@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from numpy.typing import NDArray
 
-from tol3d.analyses.response import response_of
+from tol3d.analyses.response import Values, response_of
 from tol3d.simulate import load, simulation_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "drawings.md"
@@ -49,7 +50,7 @@ def shifted(at: list[str]) -> list[str]:
 @pytest.mark.parametrize("name", SCENES)
 def test_a_drawing_means_the_same_elsewhere_under_other_names(name: str, tmp_path: Path) -> None:
     scene = yaml.safe_load(SCENES[name])
-    found = []
+    found = list[tuple[tuple[str, ...], NDArray[np.float64], Values]]()
     for own in (scene, elsewhere(scene)):
         path = tmp_path / f"{len(found)}.yaml"
         path.write_text(yaml.safe_dump(own, sort_keys=False))

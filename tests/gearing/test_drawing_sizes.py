@@ -3,15 +3,21 @@
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+import tol3d
 from tol3d import check_scene
+from tol3d.errors import SceneError
 from tol3d.gearing.effects import ToothThickness
+from tol3d.gearing.grammar.tolerances.gears import ToothThicknessSpec
 from tol3d.gearing.model import Contributor
-from tol3d.gearing.presenting.drawing_sizes import drawing_sizes
+from tol3d.gearing.presenting.drawing_sizes import drawing_sizes, thickness_limits
 from tol3d.gears import InternalGear, SpurGear
-from tol3d.gears.tooth_measures import pins_of, span_of
+from tol3d.gears.tooth_measures import Span, pins_of, span_of
 from tol3d.report.page import Shown, Table
+from tol3d.scene import Scene
+from tol3d.simulate import load
 
 
 def _thickens(contributor: Contributor, part: str) -> bool:
@@ -41,6 +47,62 @@ def test_check_prints_sizes_nominal_and_at_the_limits(scene: str) -> None:
         cosine = math.cos(gear.pressure_angle) * (-1 if isinstance(gear, InternalGear) else 1)
         assert span.size(gears[1]) - span.size(gears[0]) == pytest.approx(ends[1] * cosine, abs=1e-12)
     assert next(rows, None) is None
+
+
+THIN = {"kind": "uniform", "lower": "-70 um", "upper": "-40 um"}
+SPANS = [("spur_pair", "pinion", 4), ("internal_pair", "pinion", 3), ("internal_pair", "ring", 7)]
+
+
+def said(scene: Scene, part: str, measured: object, law: object) -> Scene:
+    """A scene whose tooth thickness of a part is measured otherwise, and has another law."""
+    (name,) = (name for name, spec in scene.of(ToothThicknessSpec).items() if spec.of == part)
+    return scene.with_({f"tolerances.{name}.measured": measured, f"tolerances.{name}.distribution": law})
+
+
+@pytest.mark.parametrize(("name", "part", "teeth"), SPANS)
+def test_limits_of_a_span_are_those_of_the_gear_s_own_span(name: str, part: str, teeth: int) -> None:
+    """A gear as thick as one limit says has a span that is off by that limit, and so it says in `tol3d check`."""
+    low, high = (-0.07, -0.04) if part != "ring" else (0.04, 0.07)  # over spaces, which get wider
+    law = {"kind": "uniform", "lower": f"{low} mm", "upper": f"{high} mm"}
+    model = check_scene(said(load(name), part, {"span": teeth}, law)).model
+    gear = next(own.gear for own in model.gears if own.name == part)
+    assert isinstance(gear, SpurGear | InternalGear)
+    (found,) = (own for own in model.contributors if _thickens(own, part))
+    assert isinstance(found.effect, ToothThickness)
+    for deviation in (low, high):
+        arc = 2 * found.effect.turn * gear.reference_radius * deviation
+        moved = replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc)
+        assert Span(teeth).size(moved) - Span(teeth).size(gear) == pytest.approx(deviation, abs=1e-12)
+    thinnest, thickest = thickness_limits(model, part, gear)
+    assert thinnest < thickest < 0.0
+
+
+def test_a_span_is_a_deviation_along_the_normals_also_in_planetary_sets() -> None:
+    """Bit for bit: of a sun the same, of a ring with the other sign."""
+    law, turned = ({"kind": "constant", "value": value} for value in ("-40 um", "40 um"))
+    sets = [("sun", 3, law, law), ("ring 1", 9, turned, law)]
+    here = there = load("reducer_3k")
+    for part, teeth, by_span, by_normal in sets:
+        here, there = said(here, part, {"span": teeth}, by_span), said(there, part, "normal", by_normal)
+    found = []
+    for scene in (here, there):
+        response = tol3d.response(scene).of("lost motion")
+        found.append(response.values(*response.drawn(20, seed=3)).values)
+    np.testing.assert_array_equal(found[0], found[1])
+
+
+@pytest.mark.parametrize(
+    ("name", "part", "teeth", "words"),
+    [
+        ("spur_pair", "pinion", 9, "over 9 teeth touch .* outside the involute .* expected "),
+        ("reducer_3k", "sun", 12, "outside the involute"),
+        ("bevel_pair", "driver", 3, "expected arc or normal, got a span: 'driver' is a bevel gear"),
+    ],
+)
+def test_a_span_that_touches_no_flank_is_refused(name: str, part: str, teeth: int, words: str) -> None:
+    with pytest.raises(SceneError, match=words) as refused:
+        check_scene(said(load(name), part, {"span": teeth}, THIN))
+    assert "measured" in str(refused.value)
 
 
 def test_bevel_gears_have_their_arc_alone() -> None:

@@ -81,7 +81,7 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | E
             words = "expected random: how a gear's teeth are turned on its shaft is not stated, got {at: ...}"
             raise scene.refuse(("tolerances", name, "direction"), words)
         return Acts("sun offset" if of_sun else "planet offset")
-    counted = 1 / math.cos(first.pair.pinion.pressure_angle) if spec.measured == "normal" else 1.0
+    counted = 1 / math.cos(first.pair.pinion.pressure_angle) if spec.is_normal else 1.0
     return Acts("sun thickness" if of_sun else "planet thickness", counted)
 
 

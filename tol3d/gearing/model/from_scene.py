@@ -5,11 +5,11 @@ from dataclasses import replace
 from typing import Final
 
 import tol3d.gearing.model.train_measures  # noqa: F401  (registers its kinds)
-from tol3d.errors import SceneError
+from tol3d.errors import GeometryError, SceneError
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
-from tol3d.gearing.grammar.tolerances.gears import ToothThicknessSpec
+from tol3d.gearing.grammar.tolerances.gears import SpanOverSpec, ToothThicknessSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.brought import NOTHING, Brought, brought_into, with_shared_shafts
 from tol3d.gearing.model.layout import Layout, layout_of
@@ -33,7 +33,8 @@ from tol3d.gearing.model.trains import (
     stated_links_of,
     trains_of,
 )
-from tol3d.gears import LEFT, RIGHT, Gear
+from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
+from tol3d.gears.tooth_measures import Span
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, farthest, warned
 from tol3d.scene.place import KeyPath
@@ -54,16 +55,35 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
     for name, spec in scene.of(ToothThicknessSpec).items():
         if (gear := gears.get(spec.of)) is None:
             continue
+        refuse_other_span(scene, name, spec, gear)
         law = spec.distribution.resolve(scene.files)
-        arc = gear.thickness_radius / gear.section_arm if spec.measured == "normal" else 1.0
+        arc = gear.thickness_radius / gear.section_arm if spec.is_normal else 1.0
         path: KeyPath = ("tolerances", name, "distribution")
-        thinnest, left = law.extremes[0] * arc, gear.section_thickness
+        sign = spec.sign_in(ring=isinstance(gear, InternalGear))
+        thinnest, left = min(sign * own for own in law.extremes) * arc, gear.section_thickness
         if -thinnest >= gear.section_tip:
             words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
             words += f"{gear.section_tip:.4g} mm, where their flanks meet at the tip, got {thinnest:.4g} mm"
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
         if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, farthest(law) * arc):
             yield warned(path, sentence)
+
+
+def refuse_other_span(scene: Scene, name: str, spec: ToothThicknessSpec, gear: Gear) -> None:
+    """Refuse a span of a gear that has none, or whose faces touch outside the flanks.
+
+    Raises:
+        SceneError: with the numbers of teeth that would do.
+    """
+    if not isinstance(spec.measured, SpanOverSpec):
+        return
+    path: KeyPath = ("tolerances", name, "measured")
+    if not isinstance(gear, SpurGear | InternalGear):
+        raise scene.refuse(path, f"expected arc or normal, got a span: {spec.of!r} is a bevel gear")
+    try:
+        Span(spec.measured.span).require_reach(gear)
+    except GeometryError as error:
+        raise scene.refuse((*path, "span"), str(error)) from None
 
 
 def model_from_scene(scene: Scene) -> Model:

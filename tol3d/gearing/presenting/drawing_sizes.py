@@ -34,7 +34,8 @@ def thickness_limits(model: Model, name: str, gear: Gear) -> tuple[float, float]
         effect = contributor.effect
         if isinstance(effect, ToothThickness) and effect.part == name:
             arc = 2 * (effect.turn * gear.thickness_radius + effect.offset * gear.thickness_radius / gear.section_arm)
-            low, high = low + arc * contributor.distribution.low, high + arc * contributor.distribution.high
+            ends = sorted((arc * contributor.distribution.low, arc * contributor.distribution.high))
+            low, high = low + ends[0], high + ends[1]
     return low, high
 
 

@@ -12,7 +12,7 @@ from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
 from tol3d.distributions import DeviationLaw, Distribution
-from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
 from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
@@ -134,8 +134,8 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
     if isinstance(spec, ToothThicknessSpec):
         part = scene.parts[spec.of]
         assert isinstance(part, GearSpec)
-        counted = 1 / math.cos(part.pressure_angle.internal) if spec.measured == "normal" else 1.0
-        return Acts("thickness", spec.of, factor=counted)
+        counted = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
+        return Acts("thickness", spec.of, factor=spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted)
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
 
 

@@ -7,9 +7,11 @@ from pydantic import Field
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction
+from tol3d.gears import InternalGear
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
+from tol3d.strict import Strict
 from tol3d.units import Dimension
 
 if TYPE_CHECKING:
@@ -109,16 +111,26 @@ class RunOutSpec(GearToleranceSpec):
         return in_direction(offsets, self.direction)
 
 
+class SpanOverSpec(Strict):
+    """`{span: 4}`: a span over so many teeth of a spur gear, of a ring over so many spaces."""
+
+    span: int = Field(ge=1, description="number of teeth, of a ring of spaces")
+
+
 class ToothThicknessSpec(GearToleranceSpec):
     """E_s, a length: positive is thicker, half on each flank.
 
     `arc` counts it on the reference circle, of a bevel gear in the middle of the face; `normal` along the normals
-    of the flanks, which is 1/cos(alpha) as much. A bevel tooth is thinned in proportion along its face (the flank
-    is turned), or by the same normal offset everywhere; on a spur gear that is the same.
+    of the flanks, which is 1/cos(alpha) as much; `{span: 4}` by the span over so many teeth, which grows by what the
+    tooth grows along its normals, and that of a ring, over spaces, shrinks by it. A bevel tooth is thinned in
+    proportion along its face (the flank is turned), or by the same normal offset everywhere; on a spur gear that is
+    the same.
     """
 
     kind: Literal["tooth_thickness"]
-    measured: Literal["arc", "normal"] = Field(default="arc", description="along the reference circle, or the normals")
+    measured: Literal["arc", "normal"] | SpanOverSpec = Field(
+        default="arc", description="along the reference circle or the normals, or by the span over teeth"
+    )
     along_face: Literal["proportional", "constant"] = Field(
         default="proportional", description="how a bevel tooth's deviation goes along the face"
     )
@@ -126,9 +138,19 @@ class ToothThicknessSpec(GearToleranceSpec):
     def meaning(self, nominal: "Nominal") -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
         gear = nominal.mesh_of(self.of).gear(self.of)
-        cosine = gear.section_arm / gear.thickness_radius
-        normal = 0.5 if self.measured == "normal" else 0.5 * cosine
+        half = 0.5 * self.sign_in(ring=isinstance(gear, InternalGear))
         if self.along_face == "constant":
-            return Meaning(ToothThickness(self.of, turn=0.0, offset=normal))
-        turn = 0.5 / (gear.section_arm if self.measured == "normal" else gear.thickness_radius)
-        return Meaning(ToothThickness(self.of, turn=turn))
+            cosine = gear.section_arm / gear.thickness_radius
+            return Meaning(ToothThickness(self.of, turn=0.0, offset=half if self.is_normal else half * cosine))
+        return Meaning(
+            ToothThickness(self.of, turn=half / (gear.section_arm if self.is_normal else gear.thickness_radius))
+        )
+
+    @property
+    def is_normal(self) -> bool:
+        """Whether its size is that along the normals of the flanks."""
+        return self.measured != "arc"
+
+    def sign_in(self, *, ring: bool) -> float:
+        """-1 where what is measured grows as the teeth get thinner: the span of a ring, over its spaces."""
+        return -1.0 if ring and isinstance(self.measured, SpanOverSpec) else 1.0
