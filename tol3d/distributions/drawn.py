@@ -33,6 +33,7 @@ TWO: Final = re.compile(
     rf"\s*{NOMINAL}(?P<one>[+-]{NUMBER}|0)\s*(?P<one_unit>{UNIT})?\s*/\s*(?P<other>[+-]{NUMBER}|0)\s*(?P<unit>{UNIT})?\s*"
 )
 WRITTEN: Final = 'limits such as "±0.1 mm", "40.1 mm +0.12/0" or [-19 um, -30 um]'
+DIN_3967: Final = re.compile(r"(?:a|ab|b|bc|c|cd|d|e|f|g|h)(?:2[1-9]|30)")
 LONGEST: Final = 100  # characters
 
 _default: ContextVar[LimitLaw | None] = ContextVar("default_law", default=None)
@@ -96,7 +97,7 @@ def _read(given: Any) -> LimitLaw | None:
 def is_drawn(value: Any) -> bool:
     """Whether a value is limits as a drawing writes them, right or wrong."""
     if isinstance(value, str):
-        return any(sign in value for sign in PLUS_MINUS) or "/" in value
+        return any(sign in value for sign in PLUS_MINUS) or "/" in value or bool(DIN_3967.fullmatch(value))
     if isinstance(value, dict):
         return "kind" not in value and any(key in value for key in KEYS)
     return isinstance(value, list | tuple)
@@ -167,6 +168,8 @@ def _of_list(value: Any, field: str) -> tuple[Quantity, Quantity]:
 
 
 def _of_text(value: str, field: str) -> tuple[Quantity, Quantity]:
+    if DIN_3967.fullmatch(value):
+        raise refused(field, "both limits, as in -42/-70 um, for the tables of DIN 3967 are not in tol3d", value)
     text = value.translate(MINUS) if len(value) <= LONGEST else ""
     if match := SYMMETRIC.fullmatch(text):
         unit = match["unit"] or match["nominal_unit"]

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
@@ -11,7 +11,7 @@ from tol3d.gears import InternalGear
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
-from tol3d.strict import Strict
+from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 
 if TYPE_CHECKING:
@@ -134,6 +134,13 @@ class ToothThicknessSpec(GearToleranceSpec):
     along_face: Literal["proportional", "constant"] = Field(
         default="proportional", description="how a bevel tooth's deviation goes along the face"
     )
+
+    @field_validator("measured", mode="before")
+    @classmethod
+    def _refuse_other_words(cls, value: object) -> object:
+        if isinstance(value, str) and value not in ("arc", "normal"):
+            raise refused("", "arc, normal, or a span such as {span: 4}", value)
+        return value
 
     def meaning(self, nominal: "Nominal") -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
