@@ -155,6 +155,7 @@ def test_changed_limits_are_written_anew(tmp_path: Path) -> None:
     [
         ("±0.1", "expected a unit in it, such as ±0.1 mm, got '±0.1'"),
         ("±0.1 furlong", "unknown unit 'furlong'"),
+        ("cd25", "the tables of DIN 3967 are not in tol3d"),
         ("±0.1 K", "expected a length with its unit"),
         ("+0.1/+0.1 mm", "expected two different limits"),
         ("[1 um]", "expected a lower and an upper limit, such as [-30 um, -19 um], got 1 values"),
