@@ -236,7 +236,7 @@ def test_sizes_of_an_assembly_may_be_classes_too(tmp_path: Path) -> None:
     """H7/k6 of 32 mm, +25/0 and +18/+2 um: a mean clearance of 2.5 um, sigma 4.95 um by ±3 sigma of each."""
     own = tol3d.response(load(tmp_path, SEAT))
     sizes = own.values(*own.drawn(4000, seed=2)).values
-    clearance = 1e3 * (sizes[:, 0] - sizes[:, 1])
+    clearance = sizes[:, 0] - sizes[:, 1]
     sigma = math.hypot(25 / 6, 16 / 6)
     assert clearance.mean() == pytest.approx(2.5, abs=4 * sigma / math.sqrt(4000))
     assert clearance.std() == pytest.approx(sigma, rel=4 / math.sqrt(8000))
