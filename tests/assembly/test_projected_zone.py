@@ -102,14 +102,19 @@ def test_an_orientation_holds_an_axis_over_the_length_that_it_states(
 ) -> None:
     """The lean over the own length is that of a straight line over the stated one; it fills it, by both methods."""
     own = LEAN.replace("HOLE", hole).replace("DATUM", datum)
-    path = written(tmp_path, *edits, ("\nmeasures:\n", "\nmeasures:\n" + own))
+    longer = own.replace("lean:", "over 24 mm:").replace("]}", "], projected: 24 mm}")
+    path = written(tmp_path, *edits, ("\nmeasures:\n", "\nmeasures:\n" + own + longer))
     simulation = simulation_of(load_scene(path), Overrides())
     trials = drawn(simulation, 0, 8000)
+    over = next(each for each in simulation.system.measures if each.name == "over 24 mm")
+    length = {"cover.hole 1": 8.0, "base.hole 1": 10.0, "base.stud hole": 10.0}[hole]
     (measure,) = (each for each in simulation.system.measures if each.name == "lean")
     read = {}
     for road in ("exact", "analytic"):
         read[road] = simulation.system.road(road, None).answers(trials, [measure]).values["lean"][:, 0]
         assert 0.97 * lean < read[road].max() <= lean * (1 + 1e-5)
+        stretched = simulation.system.road(road, None).answers(trials, [over]).values[over.name][:, 0]
+        np.testing.assert_allclose(stretched, 24.0 / length * read[road], rtol=1e-9)
     np.testing.assert_allclose(read["exact"], read["analytic"], rtol=0, atol=2e-7)
     scaled = simulation.system.road("exact", None).answers(trials.scaled(0.25), [measure]).values["lean"][:, 0]
     np.testing.assert_allclose(scaled, 0.25 * read["analytic"], rtol=0, atol=2e-8)  # of order 2

@@ -24,12 +24,18 @@ from tol3d.study.draws import drawn
 TRIALS = 2000
 MANY = 100_000
 BLOCK = 10_000
+FORMS = {"flatness", "roundness", "cylindricity"}
 REACHED = 0.8
 """Share of its zone that a tolerance which is said reaches in MANY uniform trials."""
 CHEAPEST = "ctc_01"
 MODELS = ("ctc_01", "ctc_05", "ftc_07", "ftc_10", "stc_06", "stc_07")
+IN_A_DRAFT = {
+    "948": "approximately",  # a second run-out of one pin of CTC-05, by faces of it that the file names apart: inspected
+    "19760": "left out",  # form beside a position of 0 at MMC on FTC-10, from which it cannot take its width
+}
+"""What stands otherwise in a drafted scene than each tolerance by itself means."""
 with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
-    ROWS = list(csv.DictReader(opened))
+    ROWS = [{**row, "class": IN_A_DRAFT.get(row["id"], row["class"])} for row in csv.DictReader(opened)]
 WITHIN = 1e-6
 """mm; of the draws themselves nothing leaves a zone, of what is inspected no more than terms of second order: a turn of
 1e-3 rad over 1 mm."""
@@ -42,7 +48,6 @@ FORM = {10068: 10128, 10426: 10369}
 
 
 DOUBLED = 948
-"""A second run-out of one pin of CTC-05, by faces of it that the file names apart."""
 
 
 @dataclass(frozen=True)
@@ -160,7 +165,7 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     said = {int(row["id"]): row["kind"] for row in ROWS if row["class"] == "said" and row["model"] == named(model)}
     sources = {own.name: own.needs[0].source or 0 for own in draft.entries if own.section == "measures" and own.needs}
     inspected = {name: number for name, number in sources.items() if number in said}
-    assert {*inspected.values()} == {number for number, kind in said.items() if kind != "flatness"}
+    assert {*inspected.values()} == {number for number, kind in said.items() if kind not in FORMS}
     reached = dict.fromkeys(inspected, 0.0)
     for first in range(0, MANY, BLOCK):
         values = road.answers(drawn(simulation, first, BLOCK), system.measures).values

@@ -308,7 +308,7 @@ class Drawing:
         measured = "inspected_orientation" if turned else "inspected_position"
         modifier = modifier_of(tolerance) if group.name in self.sizes and not turned else ""
         projected = ""
-        if tolerance.projected is not None and group.kind == "cylinder" and not turned:
+        if tolerance.projected is not None and group.kind == "cylinder":
             projected = f", projected: {length(tolerance.projected.length.value)}"
         limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
         label = tolerance.name or kind.replace("_", " ")

@@ -13,6 +13,7 @@ from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, FeatureMeasureSpec, TimedSpec
 from tol3d.assembly.grammar.measures.inspected import (
+    InspectedOrientationSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
     InspectedTogetherSpec,
@@ -47,7 +48,7 @@ def _inspected(
     """A measure of features with its datum frame, its bonuses, and what gauges may do."""
     features = found.features
     bonuses = _bonuses(scene, drawing, spec, features)
-    if isinstance(spec, InspectedPositionSpec) and spec.projected is not None:
+    if isinstance(spec, InspectedPositionSpec | InspectedOrientationSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
     frame = frames.named(part_of(features[0]), spec.named_datums)
     several = spec if isinstance(spec, InspectedTogetherSpec) else None
@@ -75,7 +76,11 @@ def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Ar
 
 def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
     """Add the projected parts of axes that measures inspect."""
-    for spec in scene.of(InspectedPositionSpec).values():
+    inspected: list[InspectedPositionSpec | InspectedOrientationSpec] = [
+        *scene.of(InspectedPositionSpec).values(),
+        *scene.of(InspectedOrientationSpec).values(),
+    ]
+    for spec in inspected:
         if spec.projected is not None:
             own = projected(features[spec.of], spec.projected.internal)
             features[own.name] = own

@@ -64,16 +64,18 @@ class InspectedPositionSpec(InspectedSpec):
 
 
 class InspectedOrientationSpec(InspectedSpec):
-    """Width of the narrowest zone, oriented as drawn, that holds the feature."""
+    """Width of the narrowest zone, oriented as drawn, that holds the feature; `projected` over such a length."""
 
     reads: ClassVar[Reading] = Reading(
         "orientation", f"{PLACING}:orientation", f"{TORSORS}:orientation", of_part=True, worse="high"
     )
 
     kind: Literal["inspected_orientation"]
+    projected: Length | None = Field(default=None, description="of an axis: over such a length instead of its own")
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        return ((("of",), self.of, ("plane", "slot", "cylinder", "axis")),)
+        kinds = ("plane", "slot", "cylinder", "axis") if self.projected is None else ("axis", "cylinder")
+        return ((("of",), self.of, kinds),)
 
 
 class InspectedFlatnessSpec(FeatureMeasureSpec):
