@@ -307,7 +307,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "a key that is a word elsewhere": (
         [changed(BASE_HOLE, "kind: position", "kind: position, width: 1 mm")],
         "tolerances.base hole position.width",
-        'unknown key "width"; known here: kind, description, of, zone, law, datums, modifier',
+        'unknown key "width"; known here: kind, description, of, zone, law, datums, lower_segment, modifier',
     ),
     "a word of another kind of feature": (
         [("      rim:   {kind: point", "      rim:   {kind: cone")],
