@@ -13,7 +13,7 @@ from tol3d.assembly.torsors import road as torsors
 from tol3d.errors import InputError
 
 PLACES = (0.0, 30.0, 70.0, 120.0)
-"""Of four centres along z [mm]."""
+"""Places of four centres along z [mm]."""
 TIP = 200.0
 
 

@@ -1,4 +1,4 @@
-"""What the page of drawings says, on a part drawn elsewhere: origin, names and order of its features change nothing."""
+"""The page of drawings on a part drawn elsewhere: origin, names and order of its features change nothing."""
 
 import re
 from collections.abc import Mapping

@@ -58,7 +58,7 @@ def made_of(text: str, folder: Path) -> Assembled:
 
 
 def left(made: Assembled) -> float:
-    """What is left of a width [mm]: twice the half width of the first zone."""
+    """The rest of a width [mm]: twice the half width of the first zone."""
     (draw, *_) = (own.draw for own in made.system.contributors if isinstance(own.draw, ZoneDraw))
     return 2.0 * draw.zone.half
 

@@ -102,7 +102,7 @@ def test_draws_have_the_law_that_rejection_has_and_its_closed_moments(name: str,
 
 @pytest.mark.parametrize("name", ZONES)
 def test_the_support_is_that_of_a_linear_programme(name: str) -> None:
-    """Of polygons about round limits: the cylinder's zone lies between them and these shrunk into it."""
+    """Polygons stand for round limits: the cylinder's zone lies between them and these shrunk into it."""
     zone, count = ZONES[name](T), 180
     turns = 2 * math.pi * np.arange(count) / count
     if name == "cylinder":
@@ -208,7 +208,7 @@ def test_coordinates_of_the_part_change_nothing(seed: int, tmp_path: Path) -> No
 
 
 def sigma_of(made: Assembled) -> float:
-    """Of the distance of the bore, by its closed form."""
+    """Sigma of the distance of the bore, by its closed form."""
     form = made.system.closed_form(next(own for own in made.system.measures if own.name == "x"))
     assert form is not None
     return form.sigma

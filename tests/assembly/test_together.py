@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 ON_GAUGE = "[floor, {feature: bore, mmb: least}]"
 ROOM, WIDTHS = (0.06 + 0.02) / 2, (0.2, 0.1)
-"""Of a bore 0.06 mm over its least size, upright within 0.02 mm there: a gauge of 9.98 mm; zones of the holes."""
+"""A bore 0.06 mm over its least size, upright within 0.02 mm there: a gauge of 9.98 mm; zones of the holes."""
 
 
 def plate(

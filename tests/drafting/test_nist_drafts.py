@@ -33,7 +33,7 @@ IN_A_DRAFT = {
     "948": "approximately",  # a second run-out of one pin of CTC-05, by faces that the file names apart: inspected
     "19760": "left out",  # form beside a position of 0 at MMC on FTC-10, from which it cannot take its width
 }
-"""What stands otherwise in a drafted scene than each tolerance by itself means."""
+"""Classes in a drafted scene that are not those of each tolerance by itself."""
 with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
     ROWS = [{**row, "class": IN_A_DRAFT.get(row["id"], row["class"])} for row in csv.DictReader(opened)]
 WITHIN = 1e-6

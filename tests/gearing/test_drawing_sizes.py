@@ -1,4 +1,4 @@
-"""What `tol3d check` says of spans and pins, against gears that are as thick as the limits say."""
+"""The table of `tol3d check` of spans and pins, against gears that are as thick as the limits say."""
 
 import math
 from dataclasses import replace

@@ -57,7 +57,7 @@ def convex_half(gear: CylindricalGear) -> Callable[[float], float]:
 
 
 def farthest(gear: CylindricalGear, azimuth: float, direction: float) -> float:
-    """How far the left flank of what bulges at an azimuth reaches in a direction [mm]; inside the involute alone."""
+    """Reach of the left flank of what bulges at an azimuth in a direction [mm]; inside the involute alone."""
     half, base = convex_half(gear), gear.base_radius
 
     def reach(radius: float) -> float:
@@ -74,7 +74,7 @@ def span_by_search(gear: CylindricalGear, teeth: int) -> float:
 
 
 def over_pins_by_search(gear: CylindricalGear, diameter: float) -> float:
-    """Of pins whose least distance to a flank of their space is half their diameter."""
+    """Size over pins whose least distance to a flank of their space is half their diameter."""
     half, base, inside = convex_half(gear), gear.base_radius, isinstance(gear, InternalGear)
     azimuth = 0.0 if inside else math.pi / gear.teeth
 

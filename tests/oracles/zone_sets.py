@@ -127,7 +127,7 @@ def _about(middle: Array, half: Array) -> Array:
 
 
 def _motion(shifts: int) -> Inside:
-    """Of a pattern as a whole: the length of its shift, so many numbers, and that of its turn add up."""
+    """Motion of a pattern as a whole: the length of its shift, so many numbers, and that of its turn add up."""
 
     def inside(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
         squares = points**2

@@ -45,7 +45,7 @@ class KeptBatches:
 
     @classmethod
     def of(cls, fingerprint: Fingerprint) -> "KeptBatches":
-        """Of a scene's fingerprint; what others left long ago goes."""
+        """Those that belong to a fingerprint; what others left long ago goes."""
         _delete(PREFIX, older_than=OLD)
         return cls(_digest(json.dumps(fingerprint, sort_keys=True).encode()))
 

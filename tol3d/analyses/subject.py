@@ -69,7 +69,7 @@ class Subject:
 
     @cached_property
     def batches(self) -> KeptBatches:
-        """What an interrupted analysis of it evaluated."""
+        """Batches that an interrupted analysis of it evaluated."""
         return KeptBatches.of(fingerprint_of(self.scene, self.simulation, Execution()))
 
     def keep(self, name: str, found: Section) -> Path | None:

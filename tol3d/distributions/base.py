@@ -202,7 +202,7 @@ class DistributionSpec(Strict, ABC):
 
     @property
     def by_default_law(self) -> bool:
-        """Whether the default law of the scene decided what kind of law it is."""
+        """True if the default law of the scene decided what kind of law it is."""
         return self._drawn is not None and not (isinstance(self._drawn, dict) and "law" in self._drawn)
 
     def as_drawn(self, written: Any) -> Self:

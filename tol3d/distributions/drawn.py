@@ -22,7 +22,7 @@ from tol3d.units import Of, Positive, Quantity, shown
 DEFAULT_LAW: Final = "default_law"
 """The key of a scene that names it."""
 KEYS: Final = ("fit", "general", "limits")
-"""Of which one says how limits are written, where no kind of law is stated."""
+"""Keys of which one says how limits are written, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
 MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
 NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -95,7 +95,7 @@ def _read(given: Any) -> LimitLaw | None:
 
 
 def is_drawn(value: Any) -> bool:
-    """Whether a value is limits as a drawing writes them, right or wrong."""
+    """True if a value is limits as a drawing writes them, right or wrong."""
     if isinstance(value, str):
         return any(sign in value for sign in PLUS_MINUS) or "/" in value or bool(DIN_3967.fullmatch(value))
     if isinstance(value, dict):

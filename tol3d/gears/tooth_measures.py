@@ -30,7 +30,7 @@ class Span:
 
     @property
     def words(self) -> str:
-        """What it is called."""
+        """Its name."""
         return f"span over {self.teeth} teeth"
 
     def size(self, gear: CylindricalGear) -> float:
@@ -77,7 +77,7 @@ class OverPins:
 
     @property
     def words(self) -> str:
-        """What it is called."""
+        """Its name."""
         return f"size over pins of {self.diameter:g} mm"
 
     def size(self, gear: CylindricalGear) -> float:

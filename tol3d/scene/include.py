@@ -76,7 +76,7 @@ class Includes:
     """What was read, by names from the scene's folder."""
     _read: dict[str, _Read] = field(default_factory=dict)
     _law: Any = None
-    """What the scene itself says of its default law, which is that of its files too."""
+    """The default law that the scene itself states, which is that of its files too."""
 
     def expanded(self, top: Node, origin: Origin, chain: tuple[str, ...] = ()) -> Node:
         """A scene's values, or those of a file that it includes, with the entries of what it includes.

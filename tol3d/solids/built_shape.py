@@ -49,7 +49,7 @@ class MeshedShape(BuiltShape):
 
     @abstractmethod
     def colours(self, deflection: float) -> Sequence[str]:
-        """Of each triangle of `mesh` its colour "#RRGGBB", empty where it has that of its part.
+        """The colour of each triangle of `mesh`, "#RRGGBB", empty where it has that of its part.
 
         Raises:
             InputError: the mesh cannot be made.

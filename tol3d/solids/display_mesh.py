@@ -53,7 +53,7 @@ def surface_of(shape: BuiltShape, deflection: float) -> tuple[Array, NDArray[np.
 
 
 def paint_of(shape: BuiltShape, deflection: float) -> Sequence[str]:
-    """Of each triangle of a shape's display mesh its colour "#RRGGBB", empty where it has none; () if none has one."""
+    """The colour of each triangle of a shape's display mesh, "#RRGGBB", empty where it has none; () if none has one."""
     return shape.colours(deflection) if isinstance(shape, MeshedShape) else ()
 
 

@@ -25,7 +25,7 @@ LARGEST_SIZE: Final = 500.0  # mm
 LEAST_OF_ALL_CLASSES: Final = 1.0  # mm; a, b, N above IT8 and IT14 to IT18 begin above it
 
 MULTIPLES: Final[Mapping[int, int]] = {5: 7, 6: 10, 7: 16, 8: 25, 9: 40, 10: 64}
-"""Of the tolerance unit i, by grade; a grade five higher is ten times as wide."""
+"""Multiples of the tolerance unit i, by grade; a grade five higher is ten times as wide."""
 TABULATED_GRADES: Final[Mapping[tuple[int, int], float]] = {
     **{(3, 6): 6, (3, 7): 10, (3, 9): 25, (3, 10): 40},
     **{(6, 6): 8, (6, 9): 30, (6, 10): 48, (6, 11): 75},

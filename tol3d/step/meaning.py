@@ -188,7 +188,7 @@ class Meanings:
         return ""
 
     def in_line(self, compartment: Compartment) -> bool:
-        """Whether a common datum is of holes or pins on one axis, regardless of their sizes."""
+        """True if a common datum is of holes or pins on one axis, regardless of their sizes."""
         known = [self.datum(each) for each in compartment.references]
         shapes = [self.datum_shapes.get(own.id) for own in known if own is not None]
         surfaces = [own.surfaces[0] for own in shapes if own is not None and own.kind == "cylinder"]

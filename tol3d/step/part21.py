@@ -28,7 +28,7 @@ BLANK = rf"(?:\s++|{COMMENT})*+"
 BODY = rf"(?:[^';\"/]++|'(?:[^']|'')*+'|\"[^\"]*+\"|{COMMENT}|/)*+"
 START = re.compile(rf"{BLANK}ISO-10303-21{BLANK};")
 COMPRESSED: Final = ("\x1f\x8b", "PK\x03\x04")
-"""How files of gzip and zip begin."""
+"""First characters of files of gzip and zip."""
 STATEMENT = re.compile(rf"{BLANK}({BODY});")
 INSTANCE = re.compile(rf"{BLANK}#([0-9]{{1,15}}+){BLANK}={BLANK}({BODY});")
 FIRST_KEYWORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*+")

@@ -45,7 +45,7 @@ class Surface:
     same_sense: bool = True
 
     def is_coaxial_with(self, other: "Surface") -> bool:
-        """Whether two round surfaces have one axis, whichever way each points."""
+        """True if two round surfaces have one axis, whichever way each points."""
         between = tuple(b - a for a, b in zip(self.at, other.at, strict=True))
         along = dot(between, self.direction)
         across = math.sqrt(sum((b - along * d) ** 2 for b, d in zip(between, self.direction, strict=True)))

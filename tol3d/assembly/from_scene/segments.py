@@ -54,7 +54,7 @@ class Member:
 
     @cached_property
     def judged(self) -> Array:
-        """Where its zone holds it (points, 3), from its middle [mm]; of a disc a square about its rim's ends."""
+        """Points where its zone holds it (points, 3), from its middle [mm]; of a disc a square about its rim's ends."""
         shape, axes = self.feature.shape, self.feature.frame[:3, :3].T
         match shape:
             case Axis() if self.reach is not None:
@@ -101,7 +101,7 @@ class Member:
 
 
 def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tuple[ZoneDraw, dict[str, Array], str]:
-    """How a pattern moves as a whole: what is drawn, what it does to each feature, and its word.
+    """The motion of a pattern as a whole: its draw, its effect on each feature, and its word.
 
     Args:
         scene: the scene.

@@ -58,7 +58,7 @@ def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterat
 
 
 def _unread(drawing: Drawing, of: str, across: bool) -> str | None:
-    """What a position over the places of gauges cannot be of, in words; of a point it must be `across` a direction."""
+    """A feature that a position over places of gauges cannot be of, in words; of a point it is `across` a direction."""
     kind = drawing.kind(of)
     flat = kind.kind == "plane" and isinstance(kind.shape, Plane)
     if kind.kind in ("cylinder", "axis", "slot") or flat or (kind.kind == "point" and across):

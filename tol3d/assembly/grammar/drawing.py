@@ -189,7 +189,7 @@ class Drawing:
         return found
 
     def form(self, feature: str, located: FeatureTolerance | None = None) -> float:
-        """What its form takes of the width of a zone [mm]: that of a location, or of an axial run-out, if not given."""
+        """The part of a zone's width that its form takes [mm]: that of a location, or of an axial run-out, if not given."""
         forms = [own.spec for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec)]
         match located:
             case CircularRunOutSpec():
@@ -230,7 +230,7 @@ class Drawing:
         return shape.length if isinstance(shape, Axis) else 1.0
 
     def is_sized(self, feature: str) -> bool:
-        """Whether a tolerance says how large it is: of its size, or a profile of a round surface."""
+        """True if a tolerance says how large it is: of its size, or a profile of a round surface."""
         kind = self.kind(feature).kind
         surfaces = (own for own in self.of(feature, LocationSpec) if is_of_round_surface(own.spec, kind))
         return bool(self.of(feature, SizeSpec)) or any(surfaces)

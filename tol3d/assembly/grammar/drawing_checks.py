@@ -34,7 +34,7 @@ Problem = tuple[KeyPath, str]
 
 ROUNDING = 1e-9  # mm, of a sum of widths; cosine of a right angle
 MOTIONS = ("shift", "shift and turn")
-"""What the motion of a pattern as a whole is called, after the tolerance's own name."""
+"""Names of the motion of a pattern as a whole, after the tolerance's own."""
 REFINED = "a tilt that it refines is an orientation tolerance beside the other"
 
 
@@ -171,7 +171,7 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
 
 
 def _held_otherwise(drawing: Drawing, feature: str, spec: OrientationSpec, located: Stated) -> bool:
-    """Whether a zone of orientation holds a feature over another length than that of its location."""
+    """True if a zone of orientation holds a feature over another length than that of its location."""
     other = located.spec
     assert isinstance(other, LocationSpec)
     return drawing.held_over(feature, spec.zone) != drawing.held_over(feature, other.zone)
@@ -201,7 +201,7 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
 
 
 def _surface_problems(here: KeyPath, own: Stated, drawing: Drawing) -> Iterator[Problem]:
-    """What stands beside the profile of a round surface, which holds its size and how it is turned too."""
+    """Refuse tolerances beside the profile of a round surface, which holds its size and how it is turned too."""
     kind = drawing.kind(own.feature).kind
     for other in drawing.of(own.feature, SizeSpec):
         words = f"expected no size of {own.feature!r} beside a profile, which holds the {kind}'s diameter too"

@@ -1,4 +1,4 @@
-"""What the form of a feature takes of the zones in which it lies.
+"""The part of its zones that the form of a feature takes.
 
 An axis' zone holds its bend, so it loses the straightness of the axis or of the lines of its surface, or the
 cylindricity; roundness moves no axis. A run-out is read on the surface: at one section it loses the roundness, over the
@@ -39,7 +39,7 @@ def units(spec: FormSpec, shape: Shape) -> Sequence[tuple[float, float]]:
 
 
 def _length(spec: StraightnessSpec, shape: Shape) -> float:
-    """Of an axis, or of the line of a plane through its middle [mm]; of a plane `lines` are told in its own frame."""
+    """Length of an axis, or of the line of a plane through its middle [mm]; of a plane `lines` are told in its own frame."""
     match shape:
         case Axis():
             return shape.length
@@ -52,7 +52,7 @@ def _length(spec: StraightnessSpec, shape: Shape) -> float:
 
 
 def of_location(forms: Forms, shape: Shape) -> float:
-    """What form takes of a zone in which an axis, a median plane or a face lies [mm]."""
+    """The part that form takes of a zone in which an axis, a median plane or a face lies [mm]."""
     if isinstance(shape, Axis):
         return _least(forms, shape, lambda own: isinstance(own, StraightnessSpec | CylindricitySpec))
     flat = _least(forms, shape, lambda own: isinstance(own, FlatnessSpec))
@@ -60,12 +60,12 @@ def of_location(forms: Forms, shape: Shape) -> float:
 
 
 def of_section(forms: Forms, shape: Shape) -> float:
-    """What form takes of a run-out at one section [mm]."""
+    """The part that form takes of a run-out at one section [mm]."""
     return _least(forms, shape, lambda own: isinstance(own, RoundnessSpec | CylindricitySpec))
 
 
 def of_total_run_out(forms: Forms, shape: Shape) -> float:
-    """What form takes of a run-out over the whole length [mm]: the cylindricity, or what makes it up."""
+    """The part that form takes of a run-out over the whole length [mm]: the cylindricity, or what makes it up."""
     whole = _least(forms, shape, lambda own: isinstance(own, CylindricitySpec))
     parts = (RoundnessSpec, StraightnessSpec)
     return whole or sum(_least(forms, shape, lambda own, kind=kind: isinstance(own, kind)) for kind in parts)

@@ -57,7 +57,7 @@ def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Fre
 
 
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
-    """What a datum holds, and the turn to it, about its centre: of several the middle of theirs."""
+    """Take what a datum holds, and the turn to it, about its centre: of several the middle of theirs."""
     (feature, torsor), *others = features
     if others:
         _take_line(freedoms, features)

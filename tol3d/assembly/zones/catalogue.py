@@ -93,7 +93,7 @@ def point_between_planes(
 
 
 def pattern_motion(width: float, shifts: int, turns: int) -> Zone:
-    """Of a pattern as a whole: |shift| + |turn| <= t/2, a turn as the way of the feature that it moves most.
+    """Motion of a pattern as a whole: |shift| + |turn| <= t/2, a turn as the way of the feature that it moves most.
 
     Args:
         width: t.
@@ -108,13 +108,13 @@ def pattern_motion(width: float, shifts: int, turns: int) -> Zone:
 
 
 def cylinder_surface(width: float, outward: float | None = None, form: float = 0.0) -> Zone:
-    """Of a cylinder's surface: |outward| + the farther end of its axis <= t/2, outward by the radius."""
+    """Zone of a cylinder's surface: |outward| + the farther end of its axis <= t/2, outward by the radius."""
     axis = tuple((0.0, *row) for row in FOUR)
     return Zone(Shape(RoundSurface(), ("outward", *AXIS), axis, (0.0, 0.5, 0.0, 0.5, 0.0)), width, None, outward, form)
 
 
 def sphere_surface(width: float, outward: float | None = None) -> Zone:
-    """Of a ball's surface: |outward| + the offset of its centre <= t/2, outward by the radius."""
+    """Zone of a ball's surface: |outward| + the offset of its centre <= t/2, outward by the radius."""
     centre = tuple((0.0, *row) for row in THREE)
     return Zone(Shape(BallSurface(), ("outward", *POINT), centre, (0.0, 1.0, 0.0, 0.0)), width, None, outward)
 

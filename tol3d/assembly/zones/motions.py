@@ -30,7 +30,7 @@ class Motions(Domain):
 
     @property
     def coordinates(self) -> int:
-        """Of both."""
+        """Number of both."""
         return self.shifts + self.turns
 
     @property
@@ -161,7 +161,7 @@ def _tail(uniforms: tuple[Array, ...]) -> Array:
 
 
 def _directed(length: Array, uniforms: tuple[Array, ...]) -> tuple[Array, ...]:
-    """Of a length by the uniforms of its direction: a sign, an angle, or azimuth and height."""
+    """Coordinates of a length by the uniforms of its direction: a sign, an angle, or azimuth and height."""
     if len(uniforms) == 1:
         return (np.copysign(length, uniforms[0] - 0.5),)
     angle = 2.0 * math.pi * uniforms[1]

@@ -57,7 +57,7 @@ def _words(measure: ToothMeasure, gear: SpurGear | InternalGear) -> str:
 
 
 def _size(measure: ToothMeasure, gear: SpurGear | InternalGear, deviation: float) -> float | None:
-    """Of a gear whose teeth are so much thicker; None where there is none."""
+    """Size of a gear whose teeth are so much thicker; None where there is none."""
     if not math.isfinite(deviation):
         return None
     try:

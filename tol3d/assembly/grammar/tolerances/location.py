@@ -211,7 +211,7 @@ class FormSpec(FeatureTolerance):
 
 
 class FlatnessSpec(FormSpec):
-    """Of a plane, or of every piece of it `per` an area."""
+    """Flatness of a plane, or of every piece of it `per` an area."""
 
     words: ClassVar[str] = "a flatness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("plane",)
@@ -223,7 +223,7 @@ class FlatnessSpec(FormSpec):
 
 
 class StraightnessSpec(FormSpec):
-    """Of an axis in a diameter, of the lines of a surface in a width; of the whole or of every piece `per` a length."""
+    """Straightness of an axis in a diameter, of surface lines in a width; of the whole, or of pieces `per` a length."""
 
     words: ClassVar[str] = "a straightness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis", "plane")
@@ -234,7 +234,7 @@ class StraightnessSpec(FormSpec):
 
 
 class RoundnessSpec(FormSpec):
-    """Of every section of a cylinder, between two circles with one centre."""
+    """Roundness of every section of a cylinder, between two circles with one centre."""
 
     words: ClassVar[str] = "a roundness tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
@@ -243,7 +243,7 @@ class RoundnessSpec(FormSpec):
 
 
 class CylindricitySpec(FormSpec):
-    """Of a cylinder, between two cylinders with one axis."""
+    """Cylindricity: a cylinder lies between two cylinders with one axis."""
 
     words: ClassVar[str] = "a cylindricity tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
@@ -272,5 +272,5 @@ class TotalRunOutSpec(LocationSpec):
 
 
 def is_of_round_surface(spec: FeatureTolerance, kind: str) -> bool:
-    """Whether a tolerance of a kind of feature holds a size and a place together: a profile of what is round."""
+    """True if a tolerance of a kind of feature holds a size and a place together: a profile of what is round."""
     return isinstance(spec, ProfileSpec) and kind in ("cylinder", "sphere")

@@ -155,7 +155,7 @@ class ToothThicknessSpec(GearToleranceSpec):
 
     @property
     def is_normal(self) -> bool:
-        """Whether its size is that along the normals of the flanks."""
+        """True if its size is that along the normals of the flanks."""
         return self.measured != "arc"
 
     def sign_in(self, *, ring: bool) -> float:
