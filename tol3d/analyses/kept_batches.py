@@ -6,11 +6,13 @@ cache as they are evaluated, by the digest of all that decides them, and read in
 
 import contextlib
 import hashlib
+import importlib.util
 import io
 import json
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -44,10 +46,16 @@ class KeptBatches:
     written: bool = False
 
     @classmethod
-    def of(cls, fingerprint: Fingerprint) -> "KeptBatches":
-        """Those that belong to a fingerprint; what others left long ago goes."""
+    def of(cls, fingerprint: Fingerprint, *packages: str) -> "KeptBatches":
+        """Those that belong to a fingerprint; what others left long ago goes.
+
+        Args:
+            fingerprint: of the scene.
+            packages: whose modules decide values, as they stand on the disk.
+        """
         _delete(PREFIX, older_than=OLD)
-        return cls(_digest(json.dumps(fingerprint, sort_keys=True).encode()))
+        programs = [_program(own) for own in sorted(set(packages))]
+        return cls(_digest(json.dumps([fingerprint, programs], sort_keys=True).encode()))
 
     def evaluated(self, asked: str, builds: Mapping[str, Array], evaluate: Callable[[], Batch]) -> Batch:
         """A batch as it is kept, else as it is evaluated, and kept if that took long.
@@ -77,6 +85,17 @@ class KeptBatches:
         """Delete them."""
         _delete(f"{PREFIX}{self.owner}-")
         self.written = False
+
+
+def _program(package: str) -> list[tuple[str, int, int]]:
+    """Names, sizes and times of the modules of a package."""
+    spec = importlib.util.find_spec(package)
+    if spec is None or spec.origin is None:
+        return []
+    folder = Path(spec.origin).parent
+    files = sorted(folder.rglob("*.py")) if spec.submodule_search_locations is not None else [Path(spec.origin)]
+    stated = [(str(own), own.stat()) for own in files]
+    return [(name, own.st_size, own.st_mtime_ns) for name, own in stated]
 
 
 def _digest(*content: bytes) -> str:

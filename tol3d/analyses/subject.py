@@ -23,6 +23,7 @@ from tol3d.simulate import load, simulation_again, simulation_of
 from tol3d.study.fingerprint import fingerprint_of
 from tol3d.study.simulation import Simulation
 
+PACKAGE: Final = __name__.partition(".")[0]
 FOLDER: Final = "analyses"
 SECTIONS: Final[Mapping[str, str]] = {
     "effects": "tol3d.analyses.effects:Effects",
@@ -70,7 +71,9 @@ class Subject:
     @cached_property
     def batches(self) -> KeptBatches:
         """Batches that an interrupted analysis of it evaluated."""
-        return KeptBatches.of(fingerprint_of(self.scene, self.simulation, Execution()))
+        origin = self.simulation.mechanism
+        packages = [PACKAGE] if origin is None else [PACKAGE, origin.package]
+        return KeptBatches.of(fingerprint_of(self.scene, self.simulation, Execution()), *packages)
 
     def keep(self, name: str, found: Section) -> Path | None:
         """Keep a section in the run; its file, None of a scene.

@@ -41,6 +41,12 @@ def density_label(unit: str) -> str:
     return f"% of trials per {UNIT_SIGNS[unit]}"
 
 
+def _passed(limit: float | None, farthest: float | None, sense: float) -> float | None:
+    """A limit, if any trial is beyond it: a bar across one that none is beyond is not out."""
+    kept = limit is None or (farthest is not None and sense * (farthest - limit) <= 0.0)
+    return None if kept else limit
+
+
 def samples_of(measure: MeasureSummary) -> list[DrawnSample]:
     """Both roads' samples of a measure: the leading one filled, with its ends and limits, a stack-up's as outline."""
     bars, leading = bars_of(measure), measure.best_road
@@ -53,10 +59,7 @@ def samples_of(measure: MeasureSummary) -> list[DrawnSample]:
         bars=bars[leading],
         mean=own.value("mean"),
         ends=Ends.of(own, bounded=is_bounded(measure)),
-        limits=(  # a bar across a limit that no trial is beyond is not out
-            None if lower is None or (own.value("sample_min") or -math.inf) >= lower else lower,
-            None if upper is None or (own.value("sample_max") or math.inf) <= upper else upper,
-        ),
+        limits=(_passed(lower, own.value("sample_min"), -1.0), _passed(upper, own.value("sample_max"), 1.0)),
     )
     beside = [DrawnSample(None, ROAD_COLOURS["analytic"], bars["analytic"], line="solid")]
     return [filled, *(beside if leading != "analytic" else [])]

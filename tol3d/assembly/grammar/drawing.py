@@ -189,7 +189,7 @@ class Drawing:
         return found
 
     def form(self, feature: str, located: FeatureTolerance | None = None) -> float:
-        """The part of a zone's width that its form takes [mm]: that of a location, or of an axial run-out, if not given."""
+        """The part of a zone's width that its form takes [mm]: of a location or an axial run-out, if not given."""
         forms = [own.spec for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec)]
         match located:
             case CircularRunOutSpec():

@@ -39,7 +39,7 @@ def units(spec: FormSpec, shape: Shape) -> Sequence[tuple[float, float]]:
 
 
 def _length(spec: StraightnessSpec, shape: Shape) -> float:
-    """Length of an axis, or of the line of a plane through its middle [mm]; of a plane `lines` are told in its own frame."""
+    """Length of an axis, or of the line of a plane through its middle [mm]; `lines` of a plane are in its frame."""
     match shape:
         case Axis():
             return shape.length

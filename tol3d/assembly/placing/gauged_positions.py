@@ -137,14 +137,3 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
             break
         pose, _ = gauged.as_kept(seats, gauged.moved(pose, steps))
     return 2.0 * least
-
-
-def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
-    """Twice the least distance of the worse end, less the bonus (n,) [mm]; nan where the datums take no gauges.
-
-    Args:
-        measured: what.
-        world: as it is read.
-        bonus: of its size (n,) or (1,).
-    """
-    return on_gauges(measured, world, [bonus])

@@ -13,7 +13,7 @@ from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Sh
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.common_opening import common_openings
-from tol3d.assembly.placing.gauged_positions import on_gauges, position_on_gauges
+from tol3d.assembly.placing.gauged_positions import on_gauges
 from tol3d.assembly.placing.gauging import gauged_patterns, position_in_room
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
@@ -209,7 +209,7 @@ def position(measured: Measured, world: World) -> Array:
         into = world.own[world.part_of(measured.features[0])].displacement(measured.frame).inverse
         return position_in_room(measured, world, actual, into, _bonus(measured, world))
     if measured.over_gauges:
-        return position_on_gauges(measured, world, _bonus(measured, world))
+        return on_gauges(measured, world, [_bonus(measured, world)])
     shape, z = actual.feature.shape, column(frame[:3, 2])
     if isinstance(shape, RoundPlane) and measured.direction is None:
         return 2.0 * (np.abs(dot(z, actual.origin - column(frame[:3, 3]))) + actual.rise(z))

@@ -97,8 +97,3 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     term = LeastOnGauges(every, np.concatenate([np.array(rows), gauges.rows]), len(rows))
     row: Array = world.columns.made_by(term)[0]
     return row
-
-
-def position_on_gauges(measured: Measured, world: World, bonus: Array) -> Array:
-    """Of one feature, whose size takes a bonus from it (columns,), as a row (columns,) [mm]."""
-    return on_gauges(measured, world, [bonus])

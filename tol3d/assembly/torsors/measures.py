@@ -11,7 +11,7 @@ from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.common_opening import CommonOpening, LeastInRoom, TurnedOpening
-from tol3d.assembly.torsors.gauged_positions import on_gauges, position_on_gauges
+from tol3d.assembly.torsors.gauged_positions import on_gauges
 from tol3d.assembly.torsors.surfaces import Surfaces
 from tol3d.assembly.torsors.terms import Clipped, Ends, Width, balances
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at
@@ -186,7 +186,7 @@ def position(measured: Measured, world: World) -> Array:
     if measured.over_gauges:
         (name,) = measured.features
         own = _clipped(measured.bonuses[0], name, world) if measured.bonuses else _constant(world, 0.0)
-        return position_on_gauges(measured, world, own)
+        return on_gauges(measured, world, [own])
     feature = world.assembly.features[measured.features[0]]
     rotation = feature.frame[:3, :3]
     match feature.shape:

@@ -104,6 +104,16 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
         return tuple((("points", k), name, ("point",)) for k, name in enumerate(self.points))
 
 
+def _refuse_other_features(names: Sequence[str]) -> None:
+    """Refuse features of several parts, or one that is named twice."""
+    parts = sorted({part_of(name) for name in names})
+    if len(parts) > 1:
+        raise refused("of", "features of one part", f"features of {', '.join(map(repr, parts))}")
+    for k, name in enumerate(names):
+        if name in names[:k]:
+            raise refused("of", "each feature once", repr(name))
+
+
 class InspectedPatternSpec(FeatureMeasureSpec):
     """The largest position of 2 to 8 parallel features, where nominal places may move to make it least.
 
@@ -130,12 +140,7 @@ class InspectedPatternSpec(FeatureMeasureSpec):
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
-        parts = sorted({part_of(name) for name in self.features})
-        if len(parts) > 1:
-            raise refused("of", "features of one part", f"features of {', '.join(map(repr, parts))}")
-        for k, name in enumerate(self.features):
-            if name in self.features[:k]:
-                raise refused("of", "each feature once", repr(name))
+        _refuse_other_features(self.features)
         if len(self.named_datums) > 1:
             raise refused("datums", "one at most, which orients the gauge: it finds its place by the features", "more")
         return self
@@ -174,12 +179,7 @@ class InspectedTogetherSpec(FeatureMeasureSpec):
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
-        parts = sorted({part_of(name) for name in self.features})
-        if len(parts) > 1:
-            raise refused("of", "features of one part", f"features of {', '.join(map(repr, parts))}")
-        for k, name in enumerate(self.features):
-            if name in self.features[:k]:
-                raise refused("of", "each feature once", repr(name))
+        _refuse_other_features(self.features)
         if len(self.zones) != len(self.features):
             raise refused("zones", f"one of each feature, {len(self.features)}", len(self.zones))
         return self
