@@ -3,7 +3,7 @@
     python benchmarks/assemblies.py [--trials 2000000] [--rounds 3] [--systems NAME …]
 
 Each row is a process of its own with one worker, from the scene to the run on disk, without its trials kept. Rates are
-those of the simulation stage (draws, both roads, statistics), by the clock and by the processor's own time, which
+those of the simulation stage (draws, both methods, statistics), by the clock and by the processor's own time, which
 leaves out what others took of a shared machine; the best of several rounds.
 """
 

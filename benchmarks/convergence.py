@@ -2,7 +2,7 @@
 
     python benchmarks/convergence.py [--studies 100] [--largest 65536] [--out docs/convergence.png]
 
-The spur pair's normal backlash on the analytic road, which is linear in the deviations: its closed form gives the true
+The spur pair's normal backlash by the analytic method, linear in the deviations: its closed form gives the true
 mean and sigma. Many studies of each size, each from a seed of its own; the rms of their errors stands beside the rms of
 the standard errors that the studies state of themselves. Three minutes on one core.
 """
@@ -19,8 +19,8 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
 from tol3d import load_scene
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Measure, Model, Positions, model_from_scene
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, new_figure, plain_axes, save_figure

@@ -4,7 +4,7 @@
     python benchmarks/curves.py --memory 1000 100000 [--long 640] [--workers 2]
 
 A contact is a position of one side of the teeth. Each row is a process of its own, from the scene to the run on disk;
-contacts/s are those of the whole simulation stage (draws, builds, contact, both roads, statistics), the median of
+contacts/s are those of the whole simulation stage (draws, builds, contact, both methods, statistics), the median of
 `--rounds` rounds; asked for are 1.7 million on two cores. Ranges go over `--long` positions a turn, 10 240 in the long
 period: curves of all trials would show in the memory, which is that of the process and all of its threads. `--memory`
 measures nothing but these, once for each number of trials: it must be the same for all of them. 10^5 trials are 2 x

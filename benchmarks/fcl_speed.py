@@ -1,4 +1,4 @@
-"""How fast the geometric road is by FCL, and how much faster than the obvious program.
+"""How fast the geometric method is by FCL, and how much faster than the obvious program.
 
     python benchmarks/fcl_speed.py [--trials 2000] [--naive 20] [--rounds 5]
 
@@ -29,7 +29,7 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 WARM_UP_TRIALS = 50  # the first use builds the BVHs
@@ -45,10 +45,10 @@ READINGS: Mapping[str, Reading] = {
 def strips_rate(model: Model, trials: int) -> float:
     """Trials/s from seed to columns."""
     simulation = Simulation(GearSystem(model), Study(engine="fcl"))
-    system, road = simulation.system, road_of(simulation, materials_of(simulation))
-    columns_of(system, road, drawn(simulation, 0, WARM_UP_TRIALS))
+    system, method = simulation.system, method_of(simulation, materials_of(simulation))
+    columns_of(system, method, drawn(simulation, 0, WARM_UP_TRIALS))
     started = time.perf_counter()
-    columns_of(system, road, drawn(simulation, 0, trials))
+    columns_of(system, method, drawn(simulation, 0, trials))
     return trials / (time.perf_counter() - started)
 
 

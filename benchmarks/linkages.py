@@ -1,9 +1,9 @@
-"""Closed loops a second: the kernel alone, a road that reads one pose, and a path of many poses.
+"""Closed loops a second: the kernel alone, a method that reads one pose, and a path of many poses.
 
     python benchmarks/linkages.py [--trials 20000] [--rounds 3] [--poses 2000] [--along 50] [--scene spherical_drive]
 
-By the clock and by the processor's own time of one core, least of several rounds. The kernel gets what the finite road
-hands it for one pose: frames of all joints, the nominal pose and the inputs of each trial. A road also makes frames of
+By the clock and by the processor's own time of one core, least of several rounds. The kernel gets what the exact method
+hands it for one pose: frames of all joints, the nominal pose and the inputs of each trial. A method makes frames of
 deviations and reads the measure. A path is read in all its poses in a few trials; making its system, which looks for
 the nominal pose of each, is timed by itself; a read is one pose of one trial.
 """
@@ -48,7 +48,7 @@ def least(rounds: int, what: Callable[[], object]) -> tuple[float, float]:
 
 
 def kernel_calls(answering: Callable[[], object]) -> list[tuple[Any, ...]]:
-    """Arguments that the road hands the kernel as it answers."""
+    """Arguments that the method hands the kernel as it answers."""
     found = list[tuple[Any, ...]]()
 
     def noted(*arguments: Any) -> None:
@@ -97,15 +97,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     def row(what: str, of: str, count: int, spent: tuple[float, float]) -> None:
         table.add_row(what, of, *(f"{count / seconds:,.0f}" for seconds in spent))
 
-    roads = {name: system.road(name, system.materials(name)) for name in ("exact", "analytic")}
+    methods = {name: system.method(name, system.materials(name)) for name in ("exact", "analytic")}
     for measure in [own for own in system.measures if own.take == "value"]:
-        made = roads["exact"]
+        made = methods["exact"]
         calls = kernel_calls(lambda: made.answers(trials, [measure]))  # noqa: B023
         count = sum(len(call[POSES]) for call in calls)
         row(f"kernel, {measure.name}", "loops", count, least(given.rounds, lambda: closing(calls)))  # noqa: B023
-        for name, road in roads.items():
-            spent = least(given.rounds, lambda: road.answers(trials, [measure]))  # noqa: B023
-            row(f"{name} road, {measure.name}", "trials", given.trials, spent)
+        for name, method in methods.items():
+            spent = least(given.rounds, lambda: method.answers(trials, [measure]))  # noqa: B023
+            row(f"{name} method, {measure.name}", "trials", given.trials, spent)
 
     with tempfile.TemporaryDirectory() as folder:
         scene = load_scene(with_poses(path, given.poses, Path(folder)))
@@ -115,10 +115,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         row(f"system of paths of {given.poses} poses", "poses", given.poses, (time.perf_counter() - clock, used))
         few: Trials = drawn(along, 0, given.along)
         for measure in over_paths(along.system.measures)[:1]:
-            for name in roads:
-                road = along.system.road(name, along.system.materials(name))
-                spent = least(1, lambda: road.answers(few, [measure]))  # noqa: B023
-                row(f"{name} road, {measure.name}", "reads", given.poses * given.along, spent)
+            for name in methods:
+                method = along.system.method(name, along.system.materials(name))
+                spent = least(1, lambda: method.answers(few, [measure]))  # noqa: B023
+                row(f"{name} method, {measure.name}", "reads", given.poses * given.along, spent)
     Console().print(table)
 
 

@@ -3,7 +3,7 @@
     python benchmarks/planetary.py [--trials 200000] [--rounds 3] [--workers 2]
 
 By the clock and by the processor's own time, least of several rounds. A train of `reducer_3k` has 24 flanks; both ends
-of the output's turn are two linear programmes over six turns. The study draws 45 deviations, goes both roads of both
+of the output's turn are two linear programmes over six turns. The study draws 45 deviations, goes both methods of both
 lost motions, and takes its statistics; errors over a turn are counted by themselves, in positions a second.
 """
 
@@ -69,11 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     count = max(1, given.trials // POSITIONS)
     around, some = np.arange(POSITIONS) / POSITIONS, system.deviated(trials.part(0, count))
-    for name, road in (
+    for name, method in (
         ("a turn's positions, first order", StackUp(own)),
         ("the same, placed", Contact(own)),
     ):
-        clock, used = least(given.rounds, lambda: road.followed(some, around, own.output, own.input, 0))  # noqa: B023
+        clock, used = least(given.rounds, lambda: method.followed(some, around, own.output, own.input, 0))  # noqa: B023
         table.add_row(name, "1", f"{count * POSITIONS / clock:,.0f}", f"{count * POSITIONS / used:,.0f}")
 
     def study() -> None:
@@ -85,7 +85,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     clock, used = least(given.rounds, study)
     table.add_row(
-        "whole study, both roads", str(given.workers), f"{given.trials / clock:,.0f}", f"{given.trials / used:,.0f}"
+        "whole study, both methods", str(given.workers), f"{given.trials / clock:,.0f}", f"{given.trials / used:,.0f}"
     )
     Console().print(table)
 

@@ -29,7 +29,7 @@ from tol3d import open_run
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.blocks import block_trials
 from tol3d.study.draws import drawn
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 
 Array = NDArray[np.float64]
 
@@ -249,7 +249,7 @@ def growth_table(trials: int, folder: Path) -> Table:
 
 
 def placing_table(sizes: Sequence[str], rounds: int, folder: Path) -> Table:
-    """Placements a second of one core, of `Road.answers`."""
+    """Placements a second of one core, of `Method.answers`."""
     table = Table(title="Placing alone: part placements a second and core, best of several rounds")
     for heading in ("parts x measures", "block", "million/s", "file to system [s]"):
         table.add_column(heading, justify="right")
@@ -257,14 +257,14 @@ def placing_table(sizes: Sequence[str], rounds: int, folder: Path) -> Table:
         started = time.perf_counter()
         simulation = simulation_of(load(sized(name, folder)), Overrides())
         taken = time.perf_counter() - started
-        road, trials = road_of(simulation, materials_of(simulation)), block_trials(simulation)
-        assert road is not None
+        method, trials = method_of(simulation, materials_of(simulation)), block_trials(simulation)
+        assert method is not None
         block, measures = drawn(simulation, 0, trials), simulation.system.measures
-        road.answers(block.part(0, 64), measures)  # what is found once
+        method.answers(block.part(0, 64), measures)  # what is found once
         times = []
         for _ in range(rounds):
             started = time.perf_counter()
-            road.answers(block, measures)
+            method.answers(block, measures)
             times.append(time.perf_counter() - started)
         parts = int(name.split("x")[0])
         table.add_row(name, str(trials), f"{parts * trials / min(times) / 1e6:.2f}", f"{taken:.1f}")

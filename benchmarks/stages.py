@@ -17,15 +17,15 @@ from rich.table import Table
 from tol3d import load_scene
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.meshing.backlash import turning_gear
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Backlash
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import gear_model
 from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.regressors import regressors
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SYSTEMS = ("spur_pair", "bevel_pair")
@@ -47,13 +47,13 @@ def stages(scene: Path, trials: int, rounds: int) -> dict[str, float]:
     simulation = simulation_of(load_scene(scene), Overrides(engine="exact", witness=0))
     system, model = simulation.system, gear_model(simulation.system)
     engine, mesh = exact_engine(model), model.meshes[0]
-    road = road_of(simulation, materials_of(simulation))
+    method = method_of(simulation, materials_of(simulation))
     block = drawn(simulation, 0, trials)
     made, angles = engine.build(block.deviations), block.positions[mesh.name]
     kinds = [measure.kind for measure in model.measures if isinstance(measure.kind, Backlash)]
     turning = frozenset(gear for kind in kinds if (gear := turning_gear(kind, mesh)))
-    columns = columns_of(system, road, block)
-    grids = grids_of(system, columns_of(system, road, block.part(0, PILOT_TRIALS)))
+    columns = columns_of(system, method, block)
+    grids = grids_of(system, columns_of(system, method, block.part(0, PILOT_TRIALS)))
     measure = model.measures[0]
     reading = kinds[0].reading
     work: dict[str, Callable[[], object]] = {
@@ -61,7 +61,7 @@ def stages(scene: Path, trials: int, rounds: int) -> dict[str, float]:
         "builds": lambda: engine.build(block.deviations),
         "contact, gap and free turn": lambda: engine.read(made, mesh, reading, angles, turning),
         "stack-up": lambda: analytic_values(model, measure, block),
-        "all columns, without draws": lambda: columns_of(system, road, block),
+        "all columns, without draws": lambda: columns_of(system, method, block),
         "regressors of the contributors": lambda: regressors(system, measure, columns),
         "statistics, regressors included": lambda: Tally.of(simulation, grids, columns),
     }

@@ -3,7 +3,7 @@
     python benchmarks/studies.py [--quick] [--hundred-million] [--systems NAME …] [--rounds N] [--most TRIALS] [--warm]
 
 Each row is a process of its own, from the scene to the run on disk. Trials/s are those of the whole simulation stage
-(draws, builds, contact, both roads, statistics, writing), as in summary.json; seconds are those of the process;
+(draws, builds, contact, both methods, statistics, writing), as in summary.json; seconds are those of the process;
 memory is its peak. "Cold" has an empty cache: kernels are compiled and solids built. The naive way turns whole
 tessellated gears in FCL, see whole_gears.py; its rate and FCL's are measured in the same run, so that ratios hold on a
 noisy machine. Medians of `--rounds` rounds; the range beside them shows how noisy the machine was.

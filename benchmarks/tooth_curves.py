@@ -3,7 +3,7 @@
     python benchmarks/tooth_curves.py [--trials 1000] [--rounds 3] [--workers 1 2]
 
 A contact is a position of one side of the teeth, 1152 a side and trial. Each row is a process of its own, from the
-scene to the run on disk; contacts/s are those of the whole simulation stage (draws, builds, contact, both roads,
+scene to the run on disk; contacts/s are those of the whole simulation stage (draws, builds, contact, both methods,
 statistics), the median of `--rounds` rounds; asked for are 0.6 million on two cores. Ranges have shares of the
 variance: each group of deviations goes once more through the stack-up for them. Several workers need several blocks:
 2048 trials of a curve each, 8192 of a range.

@@ -2,7 +2,7 @@
 
     python benchmarks/trains.py [--quick] [--rounds N] [--trains NAME …] [--contacts N]
 
-A trial is a whole train: all of its meshes brought to contact and read, every measure on both roads. Trials/s are those
+A trial is a whole train: all of its meshes brought to contact and read, every measure by both methods. Trials/s are
 of the whole simulation stage (draws, builds, contact, statistics, writing), as in summary.json; contacts/s are
 those times the contacts of a trial, a mesh at a position each. Each row is a process of its own; medians of the rounds,
 their range beside them.

@@ -1,4 +1,4 @@
-"""Scenes of assemblies as texts, and what both roads make of their trials."""
+"""Scenes of assemblies as texts, and what both methods make of their trials."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -35,17 +35,17 @@ class Assembled:
         assert isinstance(system, AssemblySystem)
         return system
 
-    def values(self, trials: Trials, road: str = "exact") -> Mapping[str, Array]:
+    def values(self, trials: Trials, method: str = "exact") -> Mapping[str, Array]:
         """Measures (trials,) [mm or rad]; every one is built."""
-        made = self.system.road(road, self.system.materials(road))
+        made = self.system.method(method, self.system.materials(method))
         answers = made.answers(trials, self.system.measures)
         assert all((codes == OK).all() for codes in answers.status.values())
         return {name: own[:, 0] for name, own in answers.values.items()}
 
-    def drawn(self, count: int, road: str = "exact") -> Mapping[str, Array]:
+    def drawn(self, count: int, method: str = "exact") -> Mapping[str, Array]:
         """Measures of the scene's first trials (count,) [mm or rad]."""
         pieces = [
-            self.values(drawn(self.simulation, first, min(BLOCK, count - first)), road)
+            self.values(drawn(self.simulation, first, min(BLOCK, count - first)), method)
             for first in range(0, count, BLOCK)
         ]
         return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}

@@ -36,17 +36,17 @@ def assert_met(
     Args:
         found: of summary.json.
         own: of the file.
-        geometric, analytic: how far each road may be off; closed forms as they are printed, shares by 0.01 %.
+        geometric, analytic: how far each method may be off; closed forms as they are printed, shares by 0.01 %.
         at: places of a curve that the file has.
     """
     is_curve = found["take"] == "curve"
-    for road, bound in (("analytic", analytic), ("geometric", geometric)):
-        moments = (found["curve"] if is_curve else found)[road]
-        pairs = [(moments[key], wanted) for key, wanted in own[road].items()]
-        pairs += [(found[build][road], own[build][road]) for build in ("nominal", "mean_build") if build in own]
+    for method, bound in (("analytic", analytic), ("geometric", geometric)):
+        moments = (found["curve"] if is_curve else found)[method]
+        pairs = [(moments[key], wanted) for key, wanted in own[method].items()]
+        pairs += [(found[build][method], own[build][method]) for build in ("nominal", "mean_build") if build in own]
         for value, wanted in pairs:
             seen = np.array(value)[at].tolist() if is_curve else value
-            assert seen == pytest.approx(wanted, abs=bound), road
+            assert seen == pytest.approx(wanted, abs=bound), method
     if "closed_form" in own:
         form = {key: found["analytic_closed_form"][key] for key in own["closed_form"]}
         assert form == pytest.approx(own["closed_form"], abs=PRINTED)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tol3d import Scene
 from tol3d.gearing.engines import Engine
+from tol3d.gearing.methods.geometric import GeometricMethod
 from tol3d.gearing.model import Model
-from tol3d.gearing.roads.geometric import GeometricRoad
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.columns import columns_of
@@ -41,8 +41,8 @@ def gear_columns(
     model: Model, engine: Engine | None, trials: Trials, measures: Sequence[Measure] | None = None
 ) -> Mapping[str, NDArray[Any]]:
     """All columns of some trials, by an engine and the stack-up."""
-    road = None if engine is None else GeometricRoad(model, engine)
-    return columns_of(GearSystem(model), road, trials, measures)
+    method = None if engine is None else GeometricMethod(model, engine)
+    return columns_of(GearSystem(model), method, trials, measures)
 
 
 def first_shafts_at(model: Model, angle: float, count: int) -> Mapping[str, NDArray[np.float64]]:

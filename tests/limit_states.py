@@ -18,8 +18,8 @@ from tol3d.distributions.uniform import Uniform
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
 from tol3d.system.draw import Draw, Scalar
+from tol3d.system.method import Answers, Method, MethodKind
 from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
-from tol3d.system.road import Answers, Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import StreamKey
 
@@ -28,8 +28,8 @@ Value = Callable[[Array, Array], Array]
 """Of deviations (n, components) and the position [rad] (n,); not a number where a build does not seat."""
 
 
-class FormulaRoad:
-    """A function of deviations and the position as a road; not a number does not seat."""
+class FormulaMethod:
+    """A function of deviations and the position as a method; not a number does not seat."""
 
     chord_error: ClassVar[float] = 0.0
 
@@ -50,11 +50,11 @@ class Formula(PlainSystem):
     value: Value = len  # type: ignore[assignment]
     turns: bool = False
 
-    roads: ClassVar[Mapping[str, RoadKind]] = {"analytic": RoadKind("model"), "exact": RoadKind("model")}
+    methods: ClassVar[Mapping[str, MethodKind]] = {"analytic": MethodKind("model"), "exact": MethodKind("model")}
     statuses: ClassVar[Statuses] = Statuses(("ok", "no build"))
 
-    def road(self, name: str, materials: Any) -> Road:
-        return FormulaRoad(self.value)
+    def method(self, name: str, materials: Any) -> Method:
+        return FormulaMethod(self.value)
 
     @property
     def streams(self) -> Sequence[StreamKey]:

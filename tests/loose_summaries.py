@@ -36,7 +36,7 @@ def typed_measure(stated: Any) -> MeasureSummary:
 
 
 def valid(stated: Json) -> dict[str, Any]:
-    """The JSON of a whole summary that is valid, of some of its keys and measures with both roads."""
+    """The JSON of a whole summary that is valid, of some of its keys and measures with both methods."""
     engine, trials, seed = stated.get("engine", "exact"), stated["trials"], stated["seed"]
     study = {"trials": trials, "seed": seed, "engine": engine, "replicates": 1, "profile_steps": 8}
     known = {"study": study, "files": {"scene.yaml": "0" * 64}, "blocks": {"trials": 1}, "engine": engine}

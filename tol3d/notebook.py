@@ -136,7 +136,7 @@ class Check(Report):
 
     @cached_property
     def coefficients(self) -> Mapping[str, Sequence[Coefficient]]:
-        """What each contributor does to each measure of gears by its name, by either road, with its share.
+        """What each contributor does to each measure of gears by its name, by either method, with its share.
 
         Raises:
             InputError: it is a system of something else.

@@ -4,18 +4,18 @@
     system       what it means, mm and rad  system/, */system.py        mechanism_of
     simulation   system, study, published   study/simulation.py         Simulation
     draws        seed -> trials             study/draws.py              drawn
-    roads        trials -> answers          each mechanism's own        Road.answers
-    columns      both roads, in units       study/columns.py            columns_of
+    methods        trials -> answers          each mechanism's own        Method.answers
+    columns      both methods, in units       study/columns.py            columns_of
     outcome      which trials seated        system/outcome.py           outcome_of
-    statistics   of one block, or several   study/tally.py              Tally             (sample.py: one road's)
+    statistics   of one block, or several   study/tally.py              Tally             (sample.py: one method's)
     task         what workers run           study/task.py               Task              (execution/pools.py: who runs)
     blocks       run, kept, folded in order execution/folding.py        run_blocks
     findings     tally -> summary           study/findings.py           findings
     witness      some trials again          study/witness.py            witness_summary
-    explanation  why both roads differ      study/agreement/            explanations
+    explanation  why both methods differ      study/agreement/            explanations
     result       the run on disk            runs/run.py                 Run               (writer.py, occupant.py)
 
-A study knows a system by `system/` alone: contributors, measures, statuses, roads. Gears are one such system. Theirs:
+A study knows a system by `system/` alone: contributors, measures, statuses, methods. Gears are one such system. Theirs:
 
     model        parts, meshes, measures    gearing/model/              model_from_scene
     layout       shafts in trees, one world gearing/model/layout.py     Model.layout
@@ -23,7 +23,7 @@ A study knows a system by `system/` alone: contributors, measures, statuses, roa
     build        deviations -> poses        gearing/builds/             build
     meshing      gaps -> seated meshes      gearing/meshing/            Meshing.seat      (engines/ give the gaps)
     measures     seated meshes -> values    gearing/meshing/backlash.py measure_backlash
-    stack-up     the second road            gearing/stack_up/           analytic_backlash
+    stack-up     the second method            gearing/stack_up/           analytic_backlash
     play         backlashes, together       gearing/play/               Play              (load_paths.py: in parallel)
 
 The exact engine goes from builds to readings in one compiled kernel (engines/exact/: foot -> nearest -> seating ->
@@ -32,7 +32,7 @@ through the contact.
 
 A gear has a seat in each mesh that it is in, and builds have a place for each seat, in that mesh's own world; shafts
 turn together (`layout.py`), so one position of the first shaft of a tree is that of all. A measure is a weighted sum of
-backlashes, one of a mesh, several of a train, or what that sum moves; both roads go through `play/`, with what they
+backlashes, one of a mesh, several of a train, or what that sum moves; both methods go through `play/`, with what they
 read of single meshes. Spur and bevel pairs go the same way: `gears/pair.py` says what every pair offers.
 
 Assemblies are another. Theirs:
@@ -41,8 +41,8 @@ Assemblies are another. Theirs:
     drawing      tolerances, by feature     assembly/grammar/           Drawing
     assembly     parts, frames, moves       assembly/from_scene/        understood        (model/: what they are)
     zones        uniforms -> deviations     assembly/zones/             Confined          (catalogue.py: all zones)
-    placing      deviations -> finite poses assembly/placing/road.py    values
-    torsors      the second road            assembly/torsors/road.py    values
+    placing      deviations -> finite poses assembly/placing/method.py    values
+    torsors      the second method            assembly/torsors/method.py    values
 
 A feature lies in the datum frame that its location is toleranced to, made of the features of the same trial; moves
 place bodies in order, measures read them at the end or after a move. The torsors are worked out from the nominal
@@ -54,9 +54,9 @@ Machines are both in one world (`machine/`): shafts lie in bores of parts, and t
     displaced    deviations -> axes         machine/bores.py            Bores.exactly     (and to first order)
     chains       links, joints, poses       machine/chain.py            Chain
     drives       which train turns which    machine/drives.py           drives_of
-    all          placed, meshed, turned     machine/roads.py            MachineRoad
+    all          placed, meshed, turned     machine/methods.py            MachineMethod
 
-Each road of the assembly hands the axes of the trial to the same road of the gears, and this one hands back how far its
+Each method of the assembly hands the axes of the trial to the same method of the gears, which hands back how far its
 trains turn the joints, pose by pose: both as deviations that nobody draws.
 
 Linkages bring one move into an assembly, `close_loop`, which places several bodies at once (`linkage/`).
@@ -64,11 +64,11 @@ Linkages bring one move into an assembly, `close_loop`, which places several bod
     structure    a tree of joints, loops    linkage/structure.py        structured
     kinematics   where it stands in a pose  linkage/kinematics.py       Kinematics
     closing      deviations -> poses        linkage/closing.py          loops_closed
-    first order  the second road            linkage/first_order.py      Displaced
+    first order  the second method            linkage/first_order.py      Displaced
     poses, paths an assembly in several     assembly/posed.py           PosedSystem
 
 `analyses/` asks any scene what an engineer decides from, by `analyses/response.py` alone; `adjustment/` finds shims and
-corrections of gears by several studies; `report/` and `cli/` show what is there. The analytic road gets the same
+corrections of gears by several studies; `report/` and `cli/` show what is there. The analytic method gets the same
 deviations and the same positions as the geometric one and never sees a mesh, a pose or an engine. A trial is a pure
 function of (system, seed, trial index): `replay` makes any of them again.
 """
@@ -181,7 +181,7 @@ def _run(order: "_Order", watch: Watch, *, force: bool) -> Run:
     with order.writing(force=force) as writer:
         task = order.task(watch)
         outcome = order.run(task, writer, watch)
-        found = findings(order.simulation, task.road, outcome.statistics, watch.activity)
+        found = findings(order.simulation, task.method, outcome.statistics, watch.activity)
         order.clock.end_findings()
         return order.finished(writer, found, outcome, watch)
 
@@ -232,7 +232,7 @@ class _Order:
     def task(self, watch: Watch) -> Task:
         """What workers run; kernels that this machine has not compiled yet take ten seconds."""
         compiled = self.simulation.system.is_compiled(self.simulation.study.engine)
-        watch.activity(self.simulation.road.setup if compiled else COMPILING)
+        watch.activity(self.simulation.method.setup if compiled else COMPILING)
         return task_of(self.simulation, str(self.fingerprint), keep_trials=self.execution.keep_trials)
 
     def run(self, task: Task, writer: RunWriter, watch: Watch) -> StudyOutcome[Tally]:

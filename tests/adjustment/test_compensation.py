@@ -110,12 +110,12 @@ def test_the_closed_forms_correction_follows_by_hand() -> None:
     assert found.motor == pytest.approx(RATIO * sum(means.values()), rel=1e-9)
 
 
-def test_a_roads_correction_is_that_of_the_stage_means_of_a_run(tmp_path: Path) -> None:
+def test_a_methods_correction_is_that_of_the_stage_means_of_a_run(tmp_path: Path) -> None:
     run = run_scene(SHIMMED, overrides=Overrides(trials=100, witness=0), out=tmp_path / "run")
     stages = run.summary["trains"]["shoulder swing"]["stages"]
-    for road, turns in (("analytic", (RATIO, RATIO)), ("geometric", (RATIO, RATIO))):
-        means = [stage["roads"][road]["mean"] for stage in stages if stage["link"] != "planetary reducer"]
-        assert of(SHIMMED, 100).corrections[road].motor == pytest.approx(np.dot(means, turns), rel=1e-12)
+    for method, turns in (("analytic", (RATIO, RATIO)), ("geometric", (RATIO, RATIO))):
+        means = [stage["methods"][method]["mean"] for stage in stages if stage["link"] != "planetary reducer"]
+        assert of(SHIMMED, 100).corrections[method].motor == pytest.approx(np.dot(means, turns), rel=1e-12)
 
 
 # what is left -------------------------------------------------------------------------------------
@@ -124,17 +124,17 @@ def test_a_roads_correction_is_that_of_the_stage_means_of_a_run(tmp_path: Path) 
 def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
     own = of(SHIMMED, 100)
     columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
-    for road, remaining in own.remaining.items():
-        assert remaining.angles["before"] == pytest.approx(columns[f"{road}:lost motion"], rel=1e-12)
-        assert remaining.tips["before"] == pytest.approx(columns[f"{road}:tip displacement"], rel=1e-12)
+    for method, remaining in own.remaining.items():
+        assert remaining.angles["before"] == pytest.approx(columns[f"{method}:lost motion"], rel=1e-12)
+        assert remaining.tips["before"] == pytest.approx(columns[f"{method}:tip displacement"], rel=1e-12)
 
 
 def test_a_scenes_own_swing_is_that_of_its_trials() -> None:
     own = of(SWING, 100)
     columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
     assert known(own.swing).output == pytest.approx(np.radians(np.linspace(-60, 60, 25)))
-    for road, curves in known(own.swing).curves.items():
-        assert curves["before"] == pytest.approx(columns[f"{road}:tip error over the swing"], rel=1e-12)
+    for method, curves in known(own.swing).curves.items():
+        assert curves["before"] == pytest.approx(columns[f"{method}:tip error over the swing"], rel=1e-12)
 
 
 def test_without_a_swing_in_the_scene_it_goes_as_far_to_both_sides_of_where_the_load_changes() -> None:
@@ -143,9 +143,9 @@ def test_without_a_swing_in_the_scene_it_goes_as_far_to_both_sides_of_where_the_
     assert (shown[0], shown[-1], len(shown)) == pytest.approx((change - 60, change + 60, 25))
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_the_batchs_mean_moves_the_errors_and_leaves_their_spread(road: str) -> None:
-    angles = of(SHIMMED).remaining[road].angles
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_the_batchs_mean_moves_the_errors_and_leaves_their_spread(method: str) -> None:
+    angles = of(SHIMMED).remaining[method].angles
     shift = angles["before"] - angles["batch"]
     assert np.ptp(shift) < ROUNDING
     assert Spread(angles["batch"]).moments.sigma == pytest.approx(Spread(angles["before"]).moments.sigma, rel=1e-12)
@@ -187,9 +187,9 @@ def turning_variance(positions: int) -> float:
 def test_the_own_mean_leaves_what_turns_with_gears_and_its_own_error(positions: int) -> None:
     own, sigma = of(SHIMMED, None, positions), math.sqrt(turning_variance(positions))
     assert own.form_sigmas["robot"] == pytest.approx(sigma * ARCMIN, rel=1e-6)
-    for road, more in (("analytic", 0.0), ("geometric", 0.01)):  # 3D: squares, and where in its pitch a tooth stands
-        moments = Spread(own.remaining[road].angles["robot"]).moments
-        tips = Spread(own.remaining[road].tips["robot"]).moments
+    for method, more in (("analytic", 0.0), ("geometric", 0.01)):  # 3D: squares, and where in its pitch a tooth stands
+        moments = Spread(own.remaining[method].angles["robot"]).moments
+        tips = Spread(own.remaining[method].tips["robot"]).moments
         assert moments.count == 2000
         assert abs(moments.sigma - sigma * ARCMIN) < 4 * moments.sigma_se + more * sigma * ARCMIN
         assert abs(tips.sigma - sigma * LEVER) < 4 * tips.sigma_se + more * sigma * LEVER
@@ -243,21 +243,21 @@ def test_a_robot_depends_neither_on_their_number_nor_on_blocks(monkeypatch: pyte
         assert np.array_equal(whole[state], in_pieces[state])
 
 
-def test_robots_that_interfere_are_counted_and_left_out_of_both_roads(tmp_path: Path) -> None:
+def test_robots_that_interfere_are_counted_and_left_out_of_both_methods(tmp_path: Path) -> None:
     """Shims of 80 um leave a mean of 12 um, with a sigma of 6.7 um and the least of 17 positions."""
     tight = of(changed(tmp_path, ("value: 0.048 mm", "value: 0.08 mm")), 400)
     assert 10 < tight.failed < 200
-    for road in ("analytic", "geometric"):
-        angles = tight.remaining[road].angles
+    for method in ("analytic", "geometric"):
+        angles = tight.remaining[method].angles
         assert {len(angles[state]) for state in STATES} == {400 - tight.failed}
         assert not np.isnan(angles["robot"]).any()
-        assert len(known(tight.swing).curves[road]["robot"]) <= 400 - tight.failed
+        assert len(known(tight.swing).curves[method]["robot"]) <= 400 - tight.failed
     assert f"{tight.failed} of them not seated and left out" in " ".join(shown(tight).split())
 
 
-def test_an_analytic_study_has_the_analytic_road_alone(tmp_path: Path) -> None:
+def test_an_analytic_study_has_the_analytic_method_alone(tmp_path: Path) -> None:
     own = of(changed(tmp_path, ("engine: exact, witness: 10,", "engine: analytic,")), 100)
-    assert (own.road, list(own.remaining), list(known(own.swing).curves)) == ("analytic", ["analytic"], ["analytic"])
+    assert (own.method, list(own.remaining), list(known(own.swing).curves)) == ("analytic", ["analytic"], ["analytic"])
     same = of(SHIMMED, 100).remaining["analytic"].angles
     assert all(own.remaining["analytic"].angles[state] == pytest.approx(same[state], rel=1e-12) for state in STATES)
     assert "3D simulation" not in shown(own)
@@ -425,12 +425,12 @@ def test_the_shimmed_robot_meets_its_expected_numbers(tmp_path: Path) -> None:
         found = run["measures"][name]
         curve = found["take"] == "curve"
         samples = found["curve"] if curve else found
-        for road, bound in (("analytic", 1e-5), ("geometric", 3e-5)):  # printed digits; where the engine's steps end
-            for key, value in (("mean_build", found["mean_build"][road]), *samples[road].items()):
-                wanted = own["mean_build"][road] if key == "mean_build" else own[road].get(key)
+        for method, bound in (("analytic", 1e-5), ("geometric", 3e-5)):  # printed digits; where the engine's steps end
+            for key, value in (("mean_build", found["mean_build"][method]), *samples[method].items()):
+                wanted = own["mean_build"][method] if key == "mean_build" else own[method].get(key)
                 if wanted is not None:
                     ends = [value[0], value[-1]] if curve else value
-                    assert ends == pytest.approx(wanted, abs=bound), (name, road, key)
+                    assert ends == pytest.approx(wanted, abs=bound), (name, method, key)
 
 
 def test_the_shimmed_robot_is_the_robot_with_two_shims() -> None:

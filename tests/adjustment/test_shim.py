@@ -66,7 +66,7 @@ def written(folder: Path, text: str) -> Scene:
 
 
 def low_of(scene: Scene, folder: Path, measure: str = "normal backlash") -> float:
-    """Mean - 3 sigma on the geometric road [mm], as a run of the scene says it."""
+    """Mean - 3 sigma on the geometric method [mm], as a run of the scene says it."""
     run = run_scene(scene, overrides=Overrides(witness=0), out=folder / "run")
     return UM * run.summary["measures"][measure]["geometric"]["low_3sigma"]
 

@@ -1,6 +1,7 @@
 """Methods side by side: published stacks, closed forms, and worst cases by brute force."""
 
 import itertools
+import json
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -22,14 +23,14 @@ from tol3d.analyses.fitted_law import fitted
 from tol3d.analyses.methods import Drawn, methods, modified_factor
 from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.response import Response, response_of
-from tol3d.analyses.subject import sections_of
+from tol3d.analyses.subject import sections_of, text_of_section
 from tol3d.cli import app
 from tol3d.distributions import Distribution, Normal, Uniform
 from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.study.worst_cases import worst_cases
 from tol3d.system.copula import Block
 from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
@@ -243,7 +244,7 @@ def test_the_gearboxs_first_backlash_is_lower_than_its_ends_by_slopes_say() -> N
     """14.56 µm by a million builds of a descent of its own; ends by slopes 19.88 µm."""
     simulation = simulation_of(load("gearbox_in_housing"))
     measure = next(own for own in simulation.system.measures if own.name == "first normal backlash")
-    found = worst_cases(simulation, road_of(simulation, materials_of(simulation)), [measure])[measure.name]
+    found = worst_cases(simulation, method_of(simulation, materials_of(simulation)), [measure])[measure.name]
     for own in found.values():
         assert own is not None
         assert own.low is not None
@@ -255,7 +256,7 @@ def test_the_3k_reducers_lost_motion_is_lower_than_its_ends_by_slopes_say() -> N
     """At most 4.3′; ends by slopes 7.4′, and 1.6 million trials reached 6.5′."""
     simulation = simulation_of(load("reducer_3k"))
     measure = next(own for own in simulation.system.measures if own.name == "lost motion")
-    found = worst_cases(simulation, road_of(simulation, materials_of(simulation)), [measure])[measure.name]
+    found = worst_cases(simulation, method_of(simulation, materials_of(simulation)), [measure])[measure.name]
     for own in found.values():
         assert own is not None
         assert own.low is not None
@@ -293,6 +294,8 @@ def test_a_mechanism_from_outside_has_all_methods_and_a_run_keeps_them(tmp_path:
     assert picture.stat().st_size > 5000
     assert "modified RSS" in table.read_text("utf-8")
     assert isinstance(found, Methods)
+    of_old = json.loads(text_of_section(found).replace('"method":', '"road":', 1))
+    assert Methods.model_validate(of_old) == found  # as runs kept it until November 2026
     sample = found.measures["height"].simulation
     assert sample.trials == 500
     assert sample.mean == pytest.approx(float(kept.mean()))

@@ -26,20 +26,20 @@ def response(name: str, trials: int = TRIALS, *, analytic: bool = False) -> Resp
 
 
 def _same_as_a_run(name: str, folder: Path, trials: int) -> None:
-    """Every measure of both roads, and both ends of every curve."""
+    """Every measure of both methods, and both ends of every curve."""
     run = run_scene(name, overrides=Overrides(trials=trials, witness=0), out=folder / name)
     columns = run.columns()
-    for road in run.found.roads:
-        own = response(name, trials, analytic=road == "analytic")
+    for method in run.found.methods:
+        own = response(name, trials, analytic=method == "analytic")
         found = own.values(*own.drawn(trials))
         for k, measure in enumerate(own.names):
             curve, _, end = measure.rpartition(", ") if measure in own.curves else (measure, "", "")
-            kept = np.asarray(columns[f"{road}:{curve}"], dtype=np.float64)
+            kept = np.asarray(columns[f"{method}:{curve}"], dtype=np.float64)
             kept = {"": kept, "lowest": kept.min(axis=-1), "highest": kept.max(axis=-1)}[end]
             values = found.values[:, k]
             assert np.array_equal(values, np.where(np.isfinite(values), kept, np.nan), equal_nan=True)
             assert np.isfinite(values[found.seated[:, k]]).all()
-            if road == "geometric":
+            if method == "geometric":
                 codes = np.array(found.texts)[found.codes[:, k]]
                 assert codes.tolist() == np.asarray(columns[f"status:{curve}"]).tolist()
         assert own.evaluations == trials
@@ -107,7 +107,7 @@ def test_no_direction_of_a_plane_is_special() -> None:
 
 
 def test_gradients_are_the_slopes_of_theory() -> None:
-    """The analytic road knows every slope of a linear measure; both roads' are those at small steps."""
+    """The analytic method knows every slope of a linear measure; both methods' are those at small steps."""
     own = response("door")
     for measure in own.measures:
         form = own.simulation.system.closed_form(measure)

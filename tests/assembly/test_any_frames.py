@@ -1,4 +1,4 @@
-"""A cover on a base whose parts have any frames: both roads of every move differ by second order, trial by trial.
+"""A cover on a base whose parts have any frames: both methods of every move differ by second order, trial by trial.
 
 Shipped scenes have their parts drawn along one world; what hangs on an axis' sign or a basis shows only elsewhere.
 """
@@ -19,7 +19,7 @@ SLOW = ("pattern", "rest")
 
 @pytest.mark.parametrize("kind", [pytest.param(own, marks=pytest.mark.slow if own in SLOW else ()) for own in MOVES])
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in range(1, 12))])
-def test_both_roads_of_every_move_differ_by_second_order(kind: str, seed: int, tmp_path: Path) -> None:
+def test_both_methods_of_every_move_differ_by_second_order(kind: str, seed: int, tmp_path: Path) -> None:
     """Turns of 1e-3: below 2 % of the spread, and a sixteenth of that with zones a quarter as wide.
 
     Of a float the room stays as large while zones shrink, so that it is asked only to be small there.
@@ -29,7 +29,7 @@ def test_both_roads_of_every_move_differ_by_second_order(kind: str, seed: int, t
         made = assembled(scene(kind, seed, scale), tmp_path)
         trials = drawn(made.simulation, 0, COUNT)
         exact, linear = (
-            made.system.road(own, None).answers(trials, made.system.measures) for own in ("exact", "analytic")
+            made.system.method(own, None).answers(trials, made.system.measures) for own in ("exact", "analytic")
         )
         for name, values in exact.values.items():
             built = exact.status[name] == OK

@@ -76,10 +76,10 @@ def test_constants_build_and_have_no_shares(tmp_path: Path) -> None:
 def test_bits_of_a_trial_do_not_depend_on_its_neighbours() -> None:
     simulation = simulation_of(load(SCENES / "door.yaml"), Overrides())
     many = drawn(simulation, 0, 300)
-    road = simulation.system.road("exact", simulation.system.materials("exact"))
-    whole = road.answers(many, simulation.system.measures).values
+    method = simulation.system.method("exact", simulation.system.materials("exact"))
+    whole = method.answers(many, simulation.system.measures).values
     for trial in (0, 17, 299):
-        alone = road.answers(drawn(simulation, trial, 1), simulation.system.measures).values
+        alone = method.answers(drawn(simulation, trial, 1), simulation.system.measures).values
         assert all(np.array_equal(own[0], whole[name][trial]) for name, own in alone.items())
 
 

@@ -12,8 +12,8 @@ from scipy.stats import norm
 
 from tol3d import Overrides, SceneError, run_scene
 from tol3d.assembly.model.statuses import NO_BUILD, OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ TWO = ((0.0, 0.0), (80.0, 0.0))
 FOUR = ((-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0))
 LAW = "distribution: {kind: normal, mean: 0 mm, sigma: 0.05 mm}"
 OWN = "{diameter: 8 mm, distribution: {kind: normal, mean: 0 mm, sigma: 0.05 mm}}"
-ROADS = ("exact", "analytic")
+METHODS = ("exact", "analytic")
 
 
 def joint(
@@ -87,9 +87,9 @@ measures:
     return assembled(text, folder)
 
 
-def read(made: Assembled, rows: Array, road: str, name: str = "slack") -> Array:
+def read(made: Assembled, rows: Array, method: str, name: str = "slack") -> Array:
     """A measure of stated deviations."""
-    if road == "analytic":
+    if method == "analytic":
         return torsors.values(made.system.assembly, rows, [name])[name]
     return placing.values(made.system.assembly, rows, [name])[name][0]
 
@@ -141,23 +141,23 @@ def largest_slack(offsets: Array, clearances: Array, rows: Array) -> float:
     return float(found.x[size])
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(("at", "count"), [(TWO, 8), (FOUR, 3), pytest.param(FOUR, 60, marks=pytest.mark.slow)])
 def test_leaning_holes_leave_the_slack_of_a_cone_programme(
-    at: tuple[tuple[float, float], ...], count: int, road: str, tmp_path: Path
+    at: tuple[tuple[float, float], ...], count: int, method: str, tmp_path: Path
 ) -> None:
-    """All freedoms of cover and bolts by scipy, to 1e-8 mm; the exact road by second order of leans of 0.03 more.
+    """All freedoms of cover and bolts by scipy, to 1e-8 mm; the exact method by second order of leans of 0.03 more.
 
     A hole's end is 5 mm times 0.03^2 / 2 nearer its middle then, where a bolt that leans by 0.06 against the hole is
     1.35e-4 mm off.
     """
     made = joint(at, tmp_path, zones=True)
     rows = drawn(made.simulation, 0, count).deviations
-    found = read(made, rows, road)
+    found = read(made, rows, method)
     for k, row in enumerate(rows):
         holes, bolts = row[: 10 * len(at)].reshape(len(at), 2, 5), row[10 * len(at) :]
         own = programme(np.array(at), holes[:, :, :2], holes[:, :, 2:4], 8.4 + holes[:, :, 4], 8 + bolts)
-        assert found[k] == pytest.approx(largest_slack(*own), abs=1e-8 if road == "analytic" else 1.35e-4)
+        assert found[k] == pytest.approx(largest_slack(*own), abs=1e-8 if method == "analytic" else 1.35e-4)
 
 
 def test_bolts_one_by_one_fail_twenty_times_too_often(tmp_path: Path) -> None:
@@ -181,45 +181,45 @@ def test_bolts_one_by_one_fail_twenty_times_too_often(tmp_path: Path) -> None:
         assert share == pytest.approx(own, abs=4 * math.sqrt(own / len(rows)))
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_bolt_leans_through_holes_that_are_apart(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_bolt_leans_through_holes_that_are_apart(method: str, tmp_path: Path) -> None:
     """c = 0.2 mm, holes of 10 mm and 5 mm between: 2 c where they would meet, and 5 mm of a lean of 2 c / 10 mm."""
     floating = "{kind: toward, along: [1, 0, 0], at: cover.hole 0}"
     made = joint(TWO[:1], tmp_path, floating, apart=5.0)
-    assert read(made, np.zeros((1, made.system.assembly.width)), road, "x")[0] == pytest.approx(0.6, abs=1e-9)
+    assert read(made, np.zeros((1, made.system.assembly.width)), method, "x")[0] == pytest.approx(0.6, abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_cover_goes_as_far_as_both_clearances(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_cover_goes_as_far_as_both_clearances(method: str, tmp_path: Path) -> None:
     """0.4 mm nominally, as a float and over the play; 0.05 mm less where one bolt is 0.05 mm thicker."""
     more = "  most: {kind: gap, from: base.hole 0, to: cover.hole 0, along: [1, 0, 0], over_play: largest}\n"
     made = joint(TWO, tmp_path, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", more=more)
     rows = np.zeros((2, made.system.assembly.width))
     rows[1, 12:] = 0.05
     for name in ("x", "most"):
-        assert read(made, rows, road, name) == pytest.approx([0.4, 0.35], abs=1e-9)
+        assert read(made, rows, method, name) == pytest.approx([0.4, 0.35], abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_bolt_thicker_than_its_hole_is_not_built(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_bolt_thicker_than_its_hole_is_not_built(method: str, tmp_path: Path) -> None:
     """The slack is what it is too thick by, halved."""
     made = joint(TWO, tmp_path)
     rows = np.zeros((2, made.system.assembly.width))
     rows[:, 13] = [0.39, 0.41]
-    assert read(made, rows, road) == pytest.approx([0.005, -0.005], abs=1e-9)
+    assert read(made, rows, method) == pytest.approx([0.005, -0.005], abs=1e-9)
     assert list(placing.values(made.system.assembly, rows, ["x"])["x"][1]) == [OK, NO_BUILD]
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_screw_s_size_takes_half_of_itself_from_the_clearance_at_each_end(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_screw_s_size_takes_half_of_itself_from_the_clearance_at_each_end(method: str, tmp_path: Path) -> None:
     """Both bolts are one screw's shank: of 0.2 mm at each end d / 2 goes, of the cover's 0.4 mm d, all alike."""
     made = joint(TWO, tmp_path, "{kind: toward, along: [1, 0, 0], at: cover.hole 0}", bolt="screw.shank", screw=True)
     assert [own.name for own in made.system.contributors][-1] == "shank"
     deviations = np.array([-0.1, 0.0, 0.05, 0.39, 0.41])
     rows = np.zeros((len(deviations), made.system.assembly.width))
     rows[:, 12] = deviations
-    assert read(made, rows, road) == pytest.approx(0.2 - deviations / 2, abs=1e-9)
-    assert read(made, rows[:4], road, "x") == pytest.approx(0.4 - deviations[:4], abs=1e-9)
+    assert read(made, rows, method) == pytest.approx(0.2 - deviations / 2, abs=1e-9)
+    assert read(made, rows[:4], method, "x") == pytest.approx(0.4 - deviations[:4], abs=1e-9)
     assert list(placing.values(made.system.assembly, rows, ["x"])["x"][1]) == [OK, OK, OK, OK, NO_BUILD]
 
 
@@ -238,8 +238,8 @@ def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path
     assert share == pytest.approx(200 / 3, abs=100 * 4 * math.sqrt(2 / count))
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_random_cover_lies_on_a_ray_to_where_a_bolt_has_no_place(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_random_cover_lies_on_a_ray_to_where_a_bolt_has_no_place(method: str, tmp_path: Path) -> None:
     """At fraction 1 one |hole - hole| = c + c'; at 1/8, of three freedoms, half of the way (80 mm turn by 0.01)."""
     more = "  y: {kind: gap, from: base.hole 0, to: cover.hole 0, along: [0, 1, 0]}\n"
     more += "  turn: {kind: gap, from: base.hole 1, to: cover.hole 1, along: [0, 1, 0]}\n"
@@ -249,14 +249,14 @@ def test_a_random_cover_lies_on_a_ray_to_where_a_bolt_has_no_place(road: str, tm
     poses = []
     for fraction in (0.0, 0.125, 1.0):
         rows[:, -1] = fraction
-        poses.append(np.stack([read(made, rows, road, name) for name in ("x", "y", "far", "turn")]))
+        poses.append(np.stack([read(made, rows, method, name) for name in ("x", "y", "far", "turn")]))
     holes = rows[:, :12].reshape(-1, 2, 2, 3)
     clearances = ((8.4 + holes[..., 2] - 8 - rows[:, 12:14, None]) / 2).sum(axis=2)  # (trials, bolts)
     lengths = np.hypot(poses[2][[0, 2]], poses[2][[1, 3]]).T
     left = (clearances - lengths).min(axis=1)
-    np.testing.assert_allclose(left, 0.0, atol=1e-9 if road == "exact" else 1e-8)
+    np.testing.assert_allclose(left, 0.0, atol=1e-9 if method == "exact" else 1e-8)
     np.testing.assert_allclose(
-        2 * (poses[1] - poses[0]), poses[2] - poses[0], atol=1e-9 if road == "analytic" else 2e-3
+        2 * (poses[1] - poses[0]), poses[2] - poses[0], atol=1e-9 if method == "analytic" else 2e-3
     )
 
 

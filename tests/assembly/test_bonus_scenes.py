@@ -89,8 +89,8 @@ def test_a_gauge_accepts_as_many_as_the_quadrature(tmp_path: Path, modifier: str
         return 4 * math.sqrt(share * (1 - share) / COUNT)
 
     for name in PLACES:
-        for road in ("geometric", "analytic"):
-            out = summary["measures"][f"hole {name}"][road]["out_ppm"] / 1e6
+        for method in ("geometric", "analytic"):
+            out = summary["measures"][f"hole {name}"][method]["out_ppm"] / 1e6
             assert 1 - out == pytest.approx(one, abs=error(one))
     assert summary["joint"]["yields"]["geometric"]["yield_ppm"] / 1e6 == pytest.approx(every, abs=error(every))
 
@@ -100,8 +100,8 @@ def test_the_value_is_the_position_less_the_bonus_of_the_same_trial(tmp_path: Pa
     rows = np.zeros((5, 12))
     rows[:, 0] = (-0.01, 0.0, 0.05, 0.2, 0.3)  # under the limits, in them, over them
     rows[:, 1], rows[:, 2] = 0.03, 0.04
-    for road in ("exact", "analytic"):
-        found = made.values(stated(made.system, rows), road)["hole one"]
+    for method in ("exact", "analytic"):
+        found = made.values(stated(made.system, rows), method)["hole one"]
         assert found == pytest.approx(np.array([0.1, 0.1, 0.05, -0.1, -0.1]), abs=1e-12)
 
 
@@ -144,8 +144,8 @@ def test_discs_widened_by_sizes_have_the_sigma_of_the_mean_square_diameter(tmp_p
     made = assembled(zoned(), tmp_path)
     expected = math.sqrt(integrate.quad(lambda own: (T0 + own) ** 2 / HIGH, 0, HIGH)[0]) / 4
     assert expected == pytest.approx(0.061712, abs=1e-6)
-    for road in ("exact", "analytic"):
-        found = made.drawn(COUNT, road)
+    for method in ("exact", "analytic"):
+        found = made.drawn(COUNT, method)
         assert found["along x"].std() == pytest.approx(expected / math.sqrt(2), rel=5 / math.sqrt(2 * COUNT))
         assert found["judged"].max() <= T0 + 1e-9  # nothing leaves its widened zone
         assert found["judged"].max() > 0.99 * T0

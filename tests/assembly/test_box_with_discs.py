@@ -11,9 +11,9 @@ from numpy.polynomial.hermite_e import hermegauss
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]

@@ -218,7 +218,7 @@ def test_the_stacks_of_heights_follow_by_hand(tmp_path: Path) -> None:
     for name, (mean, sigma) in by_hand.items():
         closed = found["measures"][name]["analytic_closed_form"]
         assert (closed["mean"], closed["sigma"]) == pytest.approx((mean, sigma), rel=1e-9)
-        for road in ("analytic", "geometric"):
-            own = found["measures"][name][road]
+        for method in ("analytic", "geometric"):
+            own = found["measures"][name][method]
             assert own["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(count))
             assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))

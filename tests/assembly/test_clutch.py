@@ -12,9 +12,9 @@ from places import SCENES
 from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.draws import drawn

@@ -8,8 +8,8 @@ from assembly_trials import assembled
 from drafts import Draft, displacement
 
 from tol3d.assembly.model import Datum, Fix
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import InputError
 
 PLACES = (0.0, 30.0, 70.0, 120.0)
@@ -63,8 +63,8 @@ def written(place: str, datums: str) -> str:
 
 def test_what_lies_to_a_common_datum_of_three_is_inspected_within_its_zone(tmp_path: Path) -> None:
     made = assembled(written(ON, ALL), tmp_path)
-    for road in ("exact", "analytic"):
-        values = made.drawn(2000, road)["nose off"]
+    for method in ("exact", "analytic"):
+        values = made.drawn(2000, method)["nose off"]
         assert 0.9 * 0.02 < values.max() <= 0.02 + 1e-6
 
 

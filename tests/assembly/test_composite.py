@@ -147,7 +147,7 @@ def test_both_methods_differ_by_second_order(law: str, tmp_path: Path) -> None:
     trials = drawn(made.simulation, 0, 200)
     apart = []
     for scale in (1.0, 0.25):
-        exact, linear = (made.values(trials.scaled(scale), road) for road in ("exact", "analytic"))
+        exact, linear = (made.values(trials.scaled(scale), method) for method in ("exact", "analytic"))
         apart.append({name: float(np.abs(exact[name] - linear[name]).max()) for name in exact})
     for name in ("x", "upper", "lower"):
         assert apart[1][name] < max(apart[0][name] / 10, 1e-12)

@@ -1,4 +1,4 @@
-"""A scene of constants: no variance to share, and roads whose difference is of second order and rounding."""
+"""A scene of constants: no variance to share, and methods whose difference is of second order and rounding."""
 
 import math
 import re

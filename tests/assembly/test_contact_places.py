@@ -85,7 +85,7 @@ def test_a_contact_is_as_high_over_its_wall_as_its_locator_stands_off(
     """
     made = assembled(nest(kind, points_on), tmp_path)
     trials = drawn(made.simulation, 0, 50)
-    answers = made.system.road("exact", None).answers(trials, made.system.measures)
+    answers = made.system.method("exact", None).answers(trials, made.system.measures)
     slopes = 0.1 / 40 + 0.1 / 6  # of the wall, and of the block that the shortest wall turns
     for contributor, its in made.slices:
         if contributor.name.startswith("L"):

@@ -72,21 +72,21 @@ def all_dimensions() -> str:
     return scene(dimensions, measures)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_positive_deviation_makes_every_distance_from_its_datum_longer(tmp_path: Path, road: str) -> None:
-    found = assembled(all_dimensions(), tmp_path).drawn(1, road)
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_positive_deviation_makes_every_distance_from_its_datum_longer(tmp_path: Path, method: str) -> None:
+    found = assembled(all_dimensions(), tmp_path).drawn(1, method)
     for name, (*_, distance) in DIMENSIONS.items():
         assert found[f"{name} measured"][0] == pytest.approx(distance, abs=1e-9), name
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_direction_that_is_written_counts_as_written(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_direction_that_is_written_counts_as_written(tmp_path: Path, method: str) -> None:
     for z, distance in ((1, 40.1 + LONGER), (-1, 40.1 - LONGER)):
         text = scene(
             dimension("height", "lip", "foot", f", along: [0, 0, {z}]"),
             "  seen: {kind: gap, from: hook.foot, to: hook.lip, along: [0, 0, 1]}\n",
         )
-        assert assembled(text, tmp_path).drawn(1, road)["seen"][0] == pytest.approx(distance, abs=1e-9)
+        assert assembled(text, tmp_path).drawn(1, method)["seen"][0] == pytest.approx(distance, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -83,10 +83,10 @@ def test_closed_forms(door: Assembled) -> None:
     assert acting["upper gap"] == hinges | {"upper edge x"}
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_samples(door: Assembled, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_samples(door: Assembled, method: str) -> None:
     count = 200_000
-    found = door.drawn(count, road)
+    found = door.drawn(count, method)
     for name, values in found.items():
         assert values.std() == pytest.approx(sigma(name), rel=4 / math.sqrt(2 * count))
     share = 2 * norm.cdf(-1 / sigma("taper"))

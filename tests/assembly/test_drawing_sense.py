@@ -41,8 +41,8 @@ def thickness(datums: str) -> str:
 def test_a_thickness_with_a_parallelism_to_the_floor(tmp_path: Path) -> None:
     """The top follows the floor, which tilts: its parallelism to it stays within the zone, and reaches it."""
     text = BLOCK.format(tolerances=FLOOR + thickness(", datums: [floor]") + PARALLEL, measures=SEEN)
-    for road in ("exact", "analytic"):
-        found = assembled(text, tmp_path).drawn(20_000, road)["parallelism"]
+    for method in ("exact", "analytic"):
+        found = assembled(text, tmp_path).drawn(20_000, method)["parallelism"]
         assert found.max() == pytest.approx(0.02, rel=0.02)
         assert found.max() <= 0.02 * (1 + 1e-6)
 
@@ -136,8 +136,8 @@ def test_what_the_nominal_part_has_is_taken(tmp_path: Path) -> None:
     assert found.max() <= 0.1 * (1 + 1e-6)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_an_angle_about_half_a_turn_does_not_jump(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_an_angle_about_half_a_turn_does_not_jump(tmp_path: Path, method: str) -> None:
     """Faces that look at each other: 180 deg and what they tilt, not -180."""
     tilt = (
         "  tilt: {kind: perpendicularity, of: block.bore, zone: {diameter: 0.1 mm}, law: {kind: uniform}, "
@@ -148,7 +148,7 @@ def test_an_angle_about_half_a_turn_does_not_jump(tmp_path: Path, road: str) -> 
         for axis, about in (("x", [1, 0, 0]), ("y", [0, 1, 0]))
     )
     count = 20_000
-    found = assembled(BLOCK.format(tolerances=tilt, measures=measures), tmp_path).drawn(count, road)
+    found = assembled(BLOCK.format(tolerances=tilt, measures=measures), tmp_path).drawn(count, method)
     sigma = 0.05 / 2 / 15  # ends opposite, uniform in a disc of 0.05: half of it is the sigma across
     for values in found.values():
         assert np.abs(values - math.pi).max() < 0.004

@@ -1,4 +1,4 @@
-"""A float has one sense: both roads lay the pin on the same side of its slot, wherever hole and slot are."""
+"""A float has one sense: both methods lay the pin on the same side of its slot, wherever hole and slot are."""
 
 import math
 from pathlib import Path
@@ -8,7 +8,7 @@ import pytest
 from assembly_trials import assembled
 from numpy.typing import NDArray
 
-from tol3d.assembly.placing.road import features_placed
+from tol3d.assembly.placing.method import features_placed
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]

@@ -142,8 +142,8 @@ def test_axial_run_out_with_its_form_is_what_a_dial_reads_in_a_turn(tmp_path: Pa
     deviations = drawn(made.simulation, 0, 50_000).deviations
     wobble = 2.0 * np.hypot(deviations[:, 0], deviations[:, 1])
     assert 0.026 * 0.99 < wobble.max() <= 0.026 * (1 + 1e-12)
-    for road in ("exact", "analytic"):
-        assert made.drawn(2000, road)["askew"] == pytest.approx(wobble[:2000], abs=1e-7)
+    for method in ("exact", "analytic"):
+        assert made.drawn(2000, method)["askew"] == pytest.approx(wobble[:2000], abs=1e-7)
     smaller = made_of(AXIAL.replace("datums", "radius: 5 mm, datums"), tmp_path)  # the circle that is read
     assert left(smaller) == pytest.approx(0.09)
 
@@ -154,7 +154,7 @@ def test_both_methods_differ_by_second_order_beside_forms(text: str, tmp_path: P
     trials = drawn(made.simulation, 0, 200)
     apart = []
     for scale in (1.0, 0.25):
-        exact, linear = (made.values(trials.scaled(scale), road) for road in ("exact", "analytic"))
+        exact, linear = (made.values(trials.scaled(scale), method) for method in ("exact", "analytic"))
         apart.append(max(float(np.abs(exact[name] - linear[name]).max()) for name in exact))
     assert apart[1] < max(apart[0] / 10, 1e-12)
 

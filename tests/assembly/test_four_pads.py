@@ -52,9 +52,10 @@ def plate(folder: Path, x: float, y: float, laws: str = "normal, mean: 0 mm, sig
 
 
 def found(own: Assembled, count: int = COUNT) -> tuple[dict[str, Array], dict[str, Array], dict[str, Codes], Array]:
-    """Values of the exact and of the analytic road, codes, and heights of the pads (count, 4)."""
+    """Values of the exact and of the analytic method, codes, and heights of the pads (count, 4)."""
     trials = drawn(own.simulation, 0, count)
-    exact, linear = (own.system.road(name, None).answers(trials, own.system.measures) for name in ("exact", "analytic"))
+    asked = (own.system.method(name, None) for name in ("exact", "analytic"))
+    exact, linear = (method.answers(trials, own.system.measures) for method in asked)
     return (
         {name: values[:, 0] for name, values in exact.values.items()},
         {name: values[:, 0] for name, values in linear.values.items()},
@@ -81,8 +82,8 @@ def test_with_the_weight_in_the_middle_the_height_is_unique_and_the_tilt_is_not(
     """z = max((h1 + h3) / 2, (h2 + h4) / 2), two independent normals of s / sqrt 2; two pads carry."""
     exact, linear, codes, h = found(plate(tmp_path, 0.0, 0.0))
     middle = np.maximum((h[:, 0] + h[:, 2]) / 2, (h[:, 1] + h[:, 3]) / 2)
-    for road in (exact, linear):
-        assert np.abs(road["height"] - middle).max() < 2e-6
+    for method in (exact, linear):
+        assert np.abs(method["height"] - middle).max() < 2e-6
     own = SIGMA / math.sqrt(2)
 
     def density(z: float) -> float:
@@ -104,11 +105,11 @@ def test_rocking_asks_for_either_end_or_the_middle_of_both(tmp_path: Path) -> No
     """Of the two pads that do not carry one has all of the gap |D|, or the other one, or each a half."""
     exact, linear, codes, h = found(plate(tmp_path, 0.0, 0.0))
     d = h @ (1, -1, 1, -1)
-    for road in (exact, linear):
+    for method in (exact, linear):
         for k in range(4):
             gap = np.where((d > 0) == (k % 2 == 1), np.abs(d), 0.0)
             for asked, expected in (("least", 0 * gap), ("middle", gap / 2), ("largest", gap)):
-                assert np.abs(road[f"over {k + 1} {asked}"] - expected).max() < 5e-6
+                assert np.abs(method[f"over {k + 1} {asked}"] - expected).max() < 5e-6
     left = exact["over 1 largest"] + exact["over 2 largest"]
     is_mean(left, 2 * SIGMA * math.sqrt(2 / math.pi))
     is_share(left > 0.2, 2 * norm.cdf(-2))
@@ -126,10 +127,10 @@ def test_with_the_weight_aside_three_pads_carry_and_all_is_unique(tmp_path: Path
     assert carry[:, [1, 2]].all()
     assert not (carry[:, 0] & carry[:, 3]).any()
     is_share(carry[:, 0], 0.5)
-    for road in (exact, linear):
-        assert np.abs(road["height"] - heights).max() < 1e-5
-        assert np.abs(road["slope x"] - slopes_x).max() < 1e-7
-        assert np.abs(road["slope y"] - slopes_y).max() < 1e-7
+    for method in (exact, linear):
+        assert np.abs(method["height"] - heights).max() < 1e-5
+        assert np.abs(method["slope x"] - slopes_x).max() < 1e-7
+        assert np.abs(method["slope y"] - slopes_y).max() < 1e-7
     for k in range(4):
         assert np.abs(exact[f"over {k + 1}"][carry[:, k]]).max() < 1e-5  # its point is aside of the pad by the tilt
     mean_d = 2 * SIGMA * math.sqrt(2 / math.pi)
@@ -181,7 +182,7 @@ def test_the_problem_s_sigma_of_the_height_at_the_weight() -> None:
 def test_the_column_of_carrying_contacts_says_which(tmp_path: Path) -> None:
     own = plate(tmp_path, 0.0, -20.0, ";".join(f"constant, value: {h} mm" for h in (0.10, -0.04, 0.06, 0.02)))
     trials = drawn(own.simulation, 0, 3)
-    answers = own.system.road("exact", None).answers(trials, own.system.measures)
+    answers = own.system.method("exact", None).answers(trials, own.system.measures)
     assert answers.details["carries:plate on the pads"].tolist() == ["1 2 3"] * 3
     value = {name: own[0, 0] for name, own in answers.values.items()}
     assert value["height"] == pytest.approx(0.19 / 3, abs=1e-6)

@@ -68,22 +68,22 @@ measures:
 """
 
 
-def of_components(made: Assembled, contributor: str, components: Array, road: str = "exact") -> Mapping[str, Array]:
+def of_components(made: Assembled, contributor: str, components: Array, method: str = "exact") -> Mapping[str, Array]:
     """Measures of builds whose deviations are 0 but for the components (trials, components) of one contributor."""
     rows = np.zeros((len(components), made.system.assembly.width))
     rows[:, component_slices(made.system)[contributor]] = components
-    return made.values(stated(made.system, rows), road)
+    return made.values(stated(made.system, rows), method)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 @pytest.mark.parametrize("points_on", ["part", "fixture"])
-def test_pads_rise_with_the_tilt_of_the_plane_that_they_touch(tmp_path: Path, road: str, points_on: str) -> None:
+def test_pads_rise_with_the_tilt_of_the_plane_that_they_touch(tmp_path: Path, method: str, points_on: str) -> None:
     """The cover lies on the plane wherever its pads are: offset + x rise/60 + y rise/40 about the plane's middle."""
     surface = "base.rim" if points_on == "part" else "cover.seat"
     zone = f"  flatness of seat: {{kind: profile, of: {surface}, zone: {{width: 0.1 mm}}, law: {{kind: uniform}}}}\n"
     made = assembled(cover_on_rim(zone, points_on), tmp_path)
     components = np.array([[0.02, 0.0, 0.0], [0.0, 0.03, 0.0], [0.0, 0.0, -0.02], [0.01, 0.01, 0.02]])
-    found = of_components(made, "flatness of seat", components, road)["height"]
+    found = of_components(made, "flatness of seat", components, method)["height"]
     frame = made.system.assembly.features[surface].frame[:3, :3]
     arms = frame.T @ (np.array([*SEEN, 30.0]) - (60.0, 40.0, 30.0))
     expected = components @ np.array([1.0, arms[0] / 60, arms[1] / 40])

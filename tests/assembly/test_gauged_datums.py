@@ -56,13 +56,13 @@ def plate(datums: str, read: str = "[floor, bore]", far: float = 0.0) -> str:
     return PLATE.format(still=STILL, datums=datums, read=read, near=constant(0.0), far=constant(far))
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_slot_as_third_datum_lets_the_frame_turn_in_its_room(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_slot_as_third_datum_lets_the_frame_turn_in_its_room(tmp_path: Path, method: str) -> None:
     """Its blade meets the end that is farthest from the bore: uniform within 0.04 on 88 mm, common to both holes."""
     made = assembled(plate(THIRD.format("random")), tmp_path)
     names = [own.name for own in made.system.contributors]
     assert "shift of plate.slot to floor, bore" in names
-    found = made.values(drawn(made.simulation, 0, COUNT), road)
+    found = made.values(drawn(made.simulation, 0, COUNT), method)
     most = CLEAR_SLOT / 88.0
     turn = found["far y"] / 110.0
     assert np.abs(turn).max() <= most * (1 + 1e-6)
@@ -72,11 +72,11 @@ def test_a_slot_as_third_datum_lets_the_frame_turn_in_its_room(tmp_path: Path, r
     assert (turn**2).mean() == pytest.approx(most**2 / 3, abs=4 * most**2 * math.sqrt(4 / 45 / COUNT))
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_bore_and_slot_share_one_room(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_bore_and_slot_share_one_room(tmp_path: Path, method: str) -> None:
     """Every trial lies in it: |shift| <= 0.04 and, at both ends of the slot, |y shift + turn x| <= 0.04."""
     made = assembled(plate(BOTH.format("random")), tmp_path)
-    found = made.values(drawn(made.simulation, 0, 4_000), road)
+    found = made.values(drawn(made.simulation, 0, 4_000), method)
     turn = (found["far y"] - found["near y"]) / 66.0
     shift = found["near y"] - 44.0 * turn
     edge = np.abs([shift / CLEAR_BORE, *((shift + x * turn) / CLEAR_SLOT for x in (72.0, 88.0))]).max(axis=0)
@@ -86,12 +86,12 @@ def test_bore_and_slot_share_one_room(tmp_path: Path, road: str) -> None:
     assert abs(np.corrcoef(shift, turn)[0, 1]) > 0.5  # a shift to one side leaves turns to the other
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 @pytest.mark.parametrize("far", [0.03, 0.08, 0.3])
-def test_an_inspected_position_takes_its_least_over_the_room(tmp_path: Path, road: str, far: float) -> None:
+def test_an_inspected_position_takes_its_least_over_the_room(tmp_path: Path, method: str, far: float) -> None:
     """How far the gauges can follow a hole that lies aside: a linear programme over shift along y and turn."""
     made = assembled(plate("[floor, bore, slot]", BOTH.format("least"), far), tmp_path)
-    found = made.values(drawn(made.simulation, 0, 3), road)["least"]
+    found = made.values(drawn(made.simulation, 0, 3), method)["least"]
     rows = np.array([[1.0, 0.0], [1.0, 72.0], [1.0, 88.0]])
     most = linprog(
         [-1.0, -110.0],
@@ -102,23 +102,23 @@ def test_an_inspected_position_takes_its_least_over_the_room(tmp_path: Path, roa
     expected = 2 * max(far + most.fun, 0.0)
     assert -most.fun == pytest.approx(CLEAR_SLOT + 22 * (CLEAR_BORE + CLEAR_SLOT) / 88, abs=1e-9)  # 0.06
     # the hole is toleranced to datums in place: the exact turn of 0.9 mrad is off by 4e-7 of 110 mm
-    np.testing.assert_allclose(found, expected, atol=1e-8 if road == "analytic" else 1e-4)
+    np.testing.assert_allclose(found, expected, atol=1e-8 if method == "analytic" else 1e-4)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_first_datum_at_its_boundary_shifts_by_its_size_alone(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_first_datum_at_its_boundary_shifts_by_its_size_alone(tmp_path: Path, method: str) -> None:
     """Its gauge is the MMC of 10 mm, whatever its squareness: 0.03 all around in a bore of 10.06 mm."""
     made = assembled(plate("[bore]", "[{feature: bore, mmb: least}]", 0.05), tmp_path)
-    found = made.values(drawn(made.simulation, 0, 3), road)["least"]
+    found = made.values(drawn(made.simulation, 0, 3), method)["least"]
     np.testing.assert_allclose(found, 2 * (0.05 - 0.03), atol=1e-9)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_position_takes_its_least_over_the_shift_in_a_bore_alone(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_position_takes_its_least_over_the_shift_in_a_bore_alone(tmp_path: Path, method: str) -> None:
     """The bore leaves its gauge 0.04 all around: of a hole 0.05 off 0.01 is left, of one 0.03 off nothing."""
     for far, left in ((0.05, 0.05 - CLEAR_BORE), (0.03, 0.0)):
         made = assembled(plate("[floor, bore, slot]", "[floor, {feature: bore, mmb: least}]", far), tmp_path)
-        found = made.values(drawn(made.simulation, 0, 3), road)["least"]
+        found = made.values(drawn(made.simulation, 0, 3), method)["least"]
         np.testing.assert_allclose(found, 2 * left, atol=1e-9)
 
 
@@ -126,8 +126,8 @@ def test_centred_gauges_read_as_datums_regardless_of_size_where_these_lie_true(t
     centred, plain = (
         assembled(plate(own, far=0.02), tmp_path) for own in (BOTH.format("centred"), "[floor, bore, slot]")
     )
-    for road in ("exact", "analytic"):
-        one, other = (own.values(drawn(own.simulation, 0, 4), road) for own in (centred, plain))
+    for method in ("exact", "analytic"):
+        one, other = (own.values(drawn(own.simulation, 0, 4), method) for own in (centred, plain))
         for name in one:
             np.testing.assert_allclose(one[name], other[name], atol=1e-9)
     assert not [own for own in centred.system.contributors if own.name.startswith("shift")]
@@ -141,7 +141,7 @@ def test_a_datum_that_does_not_take_its_gauge_is_no_build(tmp_path: Path) -> Non
     text = plate(BOTH.format("random"))
     for off, expected in ((-0.01, OK), (-0.03, NO_BUILD)):
         made = assembled(text.replace("kind: constant, value: 0.06 mm", f"kind: constant, value: {off} mm"), tmp_path)
-        answers = made.system.road("exact", None).answers(drawn(made.simulation, 0, 5), made.system.measures)
+        answers = made.system.method("exact", None).answers(drawn(made.simulation, 0, 5), made.system.measures)
         assert set(answers.status["far y"].tolist()) == {expected}
 
 

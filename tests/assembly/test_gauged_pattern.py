@@ -91,17 +91,17 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Assembled:
 
 @pytest.fixture(scope="module")
 def values(made: Assembled) -> Mapping[str, Mapping[str, Array]]:
-    return {road: made.drawn(COUNT, road) for road in ("exact", "analytic")}
+    return {method: made.drawn(COUNT, method) for method in ("exact", "analytic")}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("measure", [SHIFT, TURN])
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 def test_as_many_patterns_are_accepted_as_are_known_to(
-    values: Mapping[str, Mapping[str, Array]], measure: str, road: str
+    values: Mapping[str, Mapping[str, Array]], measure: str, method: str
 ) -> None:
     share, error = ACCEPTED[measure]
-    found = float((values[road][measure] <= T0).mean())
+    found = float((values[method][measure] <= T0).mean())
     assert found == pytest.approx(share, abs=4 * math.hypot(error, math.sqrt(share * (1 - share) / COUNT)))
 
 
@@ -110,8 +110,8 @@ def test_the_verdict_of_shifts_is_that_of_discs_with_a_point_in_common(
     made: Assembled, values: Mapping[str, Mapping[str, Array]]
 ) -> None:
     errors, bonuses = errors_of(drawn(made.simulation, 0, 3_000))
-    for road in ("exact", "analytic"):
-        accepted = values[road][SHIFT][:3_000] <= T0
+    for method in ("exact", "analytic"):
+        accepted = values[method][SHIFT][:3_000] <= T0
         for k in range(3_000):
             assert accepted[k] == have_a_point(errors[k], (T0 + bonuses[k]) / 2), k
 
@@ -212,7 +212,7 @@ def test_a_thousand_random_patterns() -> None:
     assert_least(1000, 2)
 
 
-def test_the_roads_differ_by_second_order() -> None:
+def test_the_methods_differ_by_second_order() -> None:
     errors, radii = random_patterns(2_000, 3)
     about = PLACES - PLACES.mean(axis=0)
     arms = np.stack([-about[:, 1], about[:, 0]], axis=1)

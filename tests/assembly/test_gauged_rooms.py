@@ -1,4 +1,4 @@
-"""Datum frames on gauges in a common room: positions against linear programmes, and both roads against each other."""
+"""Datum frames on gauges in a common room: positions against linear programmes, and both methods against each other."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,8 +13,8 @@ from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Floating, Gauges, Measured, Plane, Shape, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 
@@ -188,7 +188,7 @@ def test_positions_over_the_room_as_linear_programmes_find_them(kept: list[str],
 
 @pytest.mark.parametrize(("kept", "at"), FRAMES, ids=lambda own: "|".join(own) or "none")
 @pytest.mark.parametrize("kind", ["centred", "random"])
-def test_both_roads_differ_by_second_order(kept: list[str], at: list[str], kind: str) -> None:
+def test_both_methods_differ_by_second_order(kept: list[str], at: list[str], kind: str) -> None:
     """A tenth of the deviations and of the room leaves a hundredth."""
     _, bare = gauged(kept, at, None)
     drawn_of, off = slice(bare.width, bare.width + 7), np.random.default_rng(5).normal(0.0, 0.01, (12, bare.width))

@@ -10,7 +10,7 @@ from scale import SIGMA, stack
 from tol3d import Overrides, load_scene, run_scene
 from tol3d.study.first_order import first_orders
 from tol3d.study.overrides import simulation_of
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 
 Array = NDArray[np.float64]
 
@@ -50,14 +50,14 @@ def test_both_methods_have_the_slopes_of_every_locator_of_a_stack(tmp_path: Path
     path = tmp_path / "stack.yaml"
     path.write_text(stack(6, 3), "utf-8")
     simulation = simulation_of(load_scene(path), Overrides())
-    found = first_orders(simulation, road_of(simulation, materials_of(simulation)), simulation.system.measures)
+    found = first_orders(simulation, method_of(simulation, materials_of(simulation)), simulation.system.measures)
     for reader in range(3):
         expected = slopes(5 - reader, reader)
-        for road in ("analytic", "geometric"):
-            own = {effect.name: effect.slope for effect in found[f"m{reader}"][road].effects}
+        for method in ("analytic", "geometric"):
+            own = {effect.name: effect.slope for effect in found[f"m{reader}"][method].effects}
             for k, row in enumerate(expected, 1):
                 mine = [own.get(f"{k} {name}", 0.0) for name in ("A1", "A2", "A3", "B1", "B2", "C1")]
-                assert mine == pytest.approx(row.tolist(), abs=2e-6), (reader, road, k)  # per um: third order
+                assert mine == pytest.approx(row.tolist(), abs=2e-6), (reader, method, k)  # per um: third order
 
 
 @pytest.mark.slow

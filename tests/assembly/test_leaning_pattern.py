@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize, nnls
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 
 Array = NDArray[np.float64]
 

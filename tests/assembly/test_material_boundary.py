@@ -66,8 +66,8 @@ def test_the_shift_is_uniform_in_the_room_of_the_gauge(tmp_path: Path, hole: str
     made = assembled(scene(hole=hole), tmp_path)
     square = integrate.quad(lambda own: float(clearance(np.asarray(own), hole)) ** 2 / 0.2, 0.0, 0.2)[0]
     sigma = math.sqrt(square / 4 + MIDDLE)
-    for road in ("exact", "analytic"):
-        found = made.drawn(COUNT, road)
+    for method in ("exact", "analytic"):
+        found = made.drawn(COUNT, method)
         for name, nominal in (("one along x", 60.0), ("one along y", 0.0)):
             assert found[name].mean() == pytest.approx(nominal, abs=4 * sigma / math.sqrt(COUNT))
             assert found[name].std() == pytest.approx(sigma, rel=4 / math.sqrt(2 * COUNT))
@@ -208,12 +208,12 @@ def inspected(law: str = UPRIGHT) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_gauge_that_may_shift_accepts_more(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_gauge_that_may_shift_accepts_more(tmp_path: Path, method: str) -> None:
     """|e| <= t0 / 2 + bonus / 2 + clearance, both sizes uniform; value by value 2 max(|e| - c, 0) - bonus."""
     made = assembled(inspected(), tmp_path)
     trials = drawn(made.simulation, 0, COUNT // 3)
-    found = made.values(trials, road)
+    found = made.values(trials, method)
     x, y, bonus, *_, size = trials.deviations.T
     expected = 2 * np.maximum(np.hypot(x, y) - (size + 0.05) / 2, 0) - bonus
     assert found["least"] == pytest.approx(expected, abs=1e-9)
@@ -246,7 +246,7 @@ def distance_to_lens(point: Array, half: Array, room: float) -> float:
 def test_a_datum_that_leans_limits_the_shift_at_both_ends(tmp_path: Path) -> None:
     made = assembled(inspected(law="{kind: uniform}"), tmp_path)
     trials = drawn(made.simulation, 0, 2_000)
-    found = {road: made.values(trials, road)["least"] for road in ("exact", "analytic")}
+    found = {method: made.values(trials, method)["least"] for method in ("exact", "analytic")}
     expected = [
         2 * distance_to_lens(np.array([x, y]), np.array(half), (size + 0.05) / 2) - bonus
         for x, y, bonus, *half, size in trials.deviations
@@ -270,7 +270,7 @@ def test_a_datum_that_does_not_take_its_gauge_is_no_build(tmp_path: Path) -> Non
     law = "{kind: process, distribution: {kind: normal, mean: 0 mm, sigma: 0.05 mm}}"
     made = assembled(inspected(law=law), tmp_path)
     trials = drawn(made.simulation, 0, 4_000)
-    answers = made.system.road("exact", None).answers(trials, made.system.measures)
+    answers = made.system.method("exact", None).answers(trials, made.system.measures)
     half, size = np.hypot(*trials.deviations[:, 3:5].T), trials.deviations[:, 5]
     fits = half <= (size + 0.05) / 2
     assert 0.2 < fits.mean() < 0.95

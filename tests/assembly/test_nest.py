@@ -91,9 +91,9 @@ def displaced(heights: Array, points_on: str) -> Array:
     return np.asarray(SEEN @ Rotation.from_rotvec(found.x[:3]).as_matrix().T + found.x[3:] - SEEN)
 
 
-def seen(made: Assembled, road: str) -> Array:
+def seen(made: Assembled, method: str) -> Array:
     """Measures of one build (2, 3) [mm]."""
-    found = made.drawn(1, road)
+    found = made.drawn(1, method)
     return np.array([[found[f"s{k} {axis}"][0] for axis in "xyz"] for k in (1, 2)])
 
 
@@ -110,12 +110,12 @@ def test_a_block_lies_where_scipy_lays_it(tmp_path: Path, points_on: str) -> Non
     assert seen(made, "exact") == pytest.approx(displaced(ONE_SHOT, points_on), abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 @pytest.mark.parametrize("points_on", ["fixture", "part"])
-def test_a_welded_part_may_have_any_frame(tmp_path: Path, points_on: str, road: str) -> None:
+def test_a_welded_part_may_have_any_frame(tmp_path: Path, points_on: str, method: str) -> None:
     laws = [constant(own) for own in (ONE_SHOT / 50).tolist()]
     alone, joined = (assembled(nest(laws, points_on, welded=welded), tmp_path) for welded in (False, True))
-    assert seen(joined, road) == pytest.approx(seen(alone, road), abs=1e-9)
+    assert seen(joined, method) == pytest.approx(seen(alone, method), abs=1e-9)
 
 
 def test_the_printed_one_shots(tmp_path: Path) -> None:

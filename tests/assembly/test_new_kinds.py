@@ -129,7 +129,7 @@ measures:
 
 
 class WithoutSpec(AngleSpec):
-    """A measure that one road cannot read."""
+    """A measure that one method cannot read."""
 
     reads = Reading("without", AngleSpec.reads.placing, "tol3d.assembly.torsors.measures:forgotten")
 
@@ -137,7 +137,7 @@ class WithoutSpec(AngleSpec):
 
 
 class UnreadSpec(FeatureMeasureSpec):
-    """A measure that no road reads."""
+    """A measure that no method reads."""
 
     kind: Literal["unread"]
 
@@ -165,10 +165,10 @@ def test_a_law_without_a_draw_is_refused_as_it_is_registered() -> None:
 
 @pytest.mark.parametrize(
     ("spec", "lack"),
-    [(WithoutSpec, NO_READING.format(WithoutSpec.reads.torsors)), (UnreadSpec, "`reads`, how both roads read it")],
+    [(WithoutSpec, NO_READING.format(WithoutSpec.reads.torsors)), (UnreadSpec, "`reads`, how both methods read it")],
     ids=lambda own: own.__name__ if isinstance(own, type) else "",
 )
-def test_a_measure_that_a_road_cannot_read_is_refused_as_it_is_registered(
+def test_a_measure_that_a_method_cannot_read_is_refused_as_it_is_registered(
     spec: type[AssemblyMeasureSpec], lack: str
 ) -> None:
     own = Mechanism(name="own", extends=("assembly",), measures=(spec,))
@@ -184,5 +184,5 @@ def test_a_measure_and_a_law_of_one_s_own_run_and_are_read_again(scene: Path, tm
     radius = run.summary["measures"]["radius"]
     assert (radius["kind"], radius["of"]) == ("radius", ["plate.bore"])
     drawn = run.columns("size [um]")["size [um]"]
-    for road in ("geometric", "analytic"):
-        assert run.columns(f"{road}:radius")[f"{road}:radius"] == pytest.approx(15_000 + drawn / 2, abs=1e-6)
+    for method in ("geometric", "analytic"):
+        assert run.columns(f"{method}:radius")[f"{method}:radius"] == pytest.approx(15_000 + drawn / 2, abs=1e-6)

@@ -16,8 +16,8 @@ from scipy.stats import norm
 from thinned import thinned
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
 
@@ -27,10 +27,10 @@ TWO = ((0.0, 0.0), (80.0, 0.0))
 FOUR = ((-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0))
 
 
-def read(plates: Assembled, rows: Array, road: str = "exact") -> Mapping[str, Array]:
+def read(plates: Assembled, rows: Array, method: str = "exact") -> Mapping[str, Array]:
     """Measures of stated deviations, not a number where they are not built."""
     names = [measure.name for measure in plates.system.measures]
-    if road == "analytic":
+    if method == "analytic":
         return torsors.values(plates.system.assembly, rows, names)
     return {name: own for name, (own, _) in placing.values(plates.system.assembly, rows, names).items()}
 
@@ -105,14 +105,14 @@ def test_two_pins_are_not_built_where_their_distances_say_so(tmp_path: Path) -> 
     assert share == pytest.approx(expected, abs=4 * math.sqrt(expected * (1 - expected) / len(rows)))
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 def test_holes_that_are_drawn_further_apart_than_their_pins_take_half_of_that_from_each_clearance(
-    tmp_path: Path, road: str
+    tmp_path: Path, method: str
 ) -> None:
     """0.1 mm of 80: of both clearances of 75 um on the radius 50 are gone before anything deviates."""
     text = plates(TWO, 10.15, 10.0).replace("hole 1: {kind: cylinder, at: [80.0", "hole 1: {kind: cylinder, at: [80.1")
     own = assembled(text, tmp_path)
-    slack = read(own, np.zeros((1, own.system.assembly.width)), road)["slack"]
+    slack = read(own, np.zeros((1, own.system.assembly.width)), method)["slack"]
     assert slack[0] == pytest.approx(0.025, abs=1e-9)
 
 
@@ -123,9 +123,9 @@ def test_two_pins_as_they_are_drawn(tmp_path: Path) -> None:
     assert expected == pytest.approx(3.0434e-4, rel=1e-4)
     rows, _ = two_pins(np.random.default_rng(5), count, 0.02)
     plates = made(TWO, 10.15, 10.0, tmp_path)
-    for road in ("exact", "analytic"):
-        share = float((read(plates, rows, road)["slack"] < 0).mean())
-        assert share == pytest.approx(expected, abs=4 * math.sqrt(expected / count)), road
+    for method in ("exact", "analytic"):
+        share = float((read(plates, rows, method)["slack"] < 0).mean())
+        assert share == pytest.approx(expected, abs=4 * math.sqrt(expected / count)), method
 
 
 def four_pins(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
@@ -135,18 +135,18 @@ def four_pins(rng: np.random.Generator, count: int) -> tuple[Array, Array, Array
     return deviations(pins, holes, pin_sizes, hole_sizes), pins - holes, 0.1 + (hole_sizes - pin_sizes) / 2
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_four_pins(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_four_pins(tmp_path: Path, method: str) -> None:
     """Problem 5c: builds 0.9731, 1 % of slacks below -0.01353, half of them below 0.05924; each with its own error."""
     count = 12_000
     rows, lack, clearances = four_pins(np.random.default_rng(6), count)
-    slack = read(made(FOUR, 10.0, 9.8, tmp_path), rows, road)["slack"]
+    slack = read(made(FOUR, 10.0, 9.8, tmp_path), rows, method)["slack"]
     assert (slack >= 0).mean() == pytest.approx(0.9731, abs=4 * math.sqrt(0.9731 * 0.0269 / count + 0.0007**2))
     for share, limit in ((0.01, -0.01353), (0.5, 0.05924)):
         assert (slack < limit).mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / count) + 4e-4)
     for k in range(20):
         of = partial(small_offsets, np.array(FOUR), lack[k])
-        if road == "exact":
+        if method == "exact":
             holes, pins = (rows[k].reshape(4, 2, 3)[:, own, :2] + np.array(FOUR) for own in (1, 0))
             of = partial(finite_offsets, holes, pins)
         assert slack[k] == pytest.approx(largest_slack(of, 30.0, clearances[k]), abs=1e-9)
@@ -168,8 +168,8 @@ def lacking_balance(own: Array, change: Array, clearances: Array, slack: float, 
 
 
 @pytest.mark.parametrize("seed", thinned(range(28), 28))
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, method: str) -> None:
     """Fifty trials each: offsets of the pose leave the slack that is stated, and touching pins balance."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(2, 7))
@@ -180,9 +180,9 @@ def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, road: s
     rows = deviations(pins, holes, pin_sizes, hole_sizes)
     clearances = (0.2 + hole_sizes - pin_sizes) / 2
     assembly = plates.system.assembly
-    slack = read(plates, rows, road)["slack"]
+    slack = read(plates, rows, method)["slack"]
     reach = float(np.abs(at).max())
-    if road == "exact":
+    if method == "exact":
         placed = placing.placed(assembly, rows)["upper"]
         turn, shift = np.arctan2(placed[:, 1, 0], placed[:, 0, 0]), placed[:, :2, 3]
     else:
@@ -194,13 +194,13 @@ def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, road: s
     assert built.sum() >= 10
     for k in np.flatnonzero(built):
         of = partial(finite_offsets, at + holes[k], at + pins[k])
-        if road == "analytic":
+        if method == "analytic":
             of = partial(small_offsets, at, pins[k] - holes[k])
         own, change = of(poses[k])
         assert (clearances[k] - np.linalg.norm(own, axis=1)).min() == pytest.approx(slack[k], abs=1e-9)
         # exact: a pose to 1e-10 mm turns an offset of 0.005 by 2e-8
         lacking = lacking_balance(own, change, clearances[k], slack[k], reach)
-        assert lacking < (1e-8 if road == "analytic" else 3e-8)
+        assert lacking < (1e-8 if method == "analytic" else 3e-8)
         if k < 5:
             assert slack[k] == pytest.approx(largest_slack(of, reach, clearances[k]), abs=1e-9)
 
@@ -221,7 +221,7 @@ def lens_reach(first: Array, second: Array, radius: Array, along: Array) -> Arra
 
 
 def lenses_overlap(of: Mapping[str, Array]) -> NDArray[np.bool_]:
-    """Road 1 of problem 10: at each hole the shifts that both ends allow make a lens; the parts go together where the
+    """Method 1 of problem 10: at each hole the shifts that both ends allow make a lens; the parts go together where the
     lenses overlap on the line that joins the holes."""
     along = np.array([100.0, 40.0]) / math.hypot(100, 40)
     tilt = slopes_of(1, *of["lower face"].T) + slopes_of(-1, *of["upper face"].T)  # heights along each own normal
@@ -253,20 +253,20 @@ def test_faces_of_the_scene_have_the_heights_of_the_problem() -> None:
     np.testing.assert_allclose(rows @ rows.T / 3, np.eye(3), atol=1e-7)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 @pytest.mark.parametrize("count", [20_000, pytest.param(400_000, marks=pytest.mark.slow)])
-def test_two_plates(road: str, count: int) -> None:
+def test_two_plates(method: str, count: int) -> None:
     """Problem 10: P(no build) = 0.056936 +- 0.000052, and the verdict of the lenses trial by trial."""
     plates = Assembled(simulation_of(load(SCENES / "two_plates.yaml"), Overrides()))
     trials = drawn(plates.simulation, 0, count)
     slices = {own.name: trials.deviations[:, places] for own, places in plates.slices}
-    slack = read(plates, trials.deviations, road)["slack"]
+    slack = read(plates, trials.deviations, method)["slack"]
     built = lenses_overlap(slices)
-    near = np.abs(slack) < (1e-4 if road == "exact" else 1e-9)
+    near = np.abs(slack) < (1e-4 if method == "exact" else 1e-9)
     assert ((slack >= 0) == built)[~near].all()
     share = float((slack < 0).mean())
     assert share == pytest.approx(0.056936, abs=4 * math.sqrt(0.056936 * 0.943064 / count + 0.000052**2))
-    if road == "exact":
+    if method == "exact":
         _, codes = placing.values(plates.system.assembly, trials.deviations, ["edge"])["edge"]
         np.testing.assert_array_equal(codes == NO_BUILD, slack < 0)
 
@@ -274,14 +274,14 @@ def test_two_plates(road: str, count: int) -> None:
 def test_a_trial_has_the_same_bits_alone() -> None:
     plates = Assembled(simulation_of(load(SCENES / "two_plates.yaml"), Overrides()))
     rows = drawn(plates.simulation, 0, 60).deviations
-    for road in ("exact", "analytic"):
-        together, alone = read(plates, rows, road), [read(plates, rows[k : k + 1], road) for k in range(60)]
+    for method in ("exact", "analytic"):
+        together, alone = read(plates, rows, method), [read(plates, rows[k : k + 1], method) for k in range(60)]
         for name, own in together.items():
             np.testing.assert_array_equal(own, [each[name][0] for each in alone])
 
 
 def test_two_plates_whose_faces_do_not_meet(tmp_path: Path) -> None:
-    """Without relations tilts are free too, five freedoms in all; both roads, which share no code, find the same room.
+    """Without relations tilts are free too, five freedoms in all; both methods, which share no code, find one room.
 
     By second order they differ: squares of slopes of 2e-3 over 100 mm.
     """

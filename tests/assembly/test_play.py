@@ -14,25 +14,25 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NO_BUILD
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
 
-ROADS = ("exact", "analytic")
+METHODS = ("exact", "analytic")
 PLATE = (SCENES / "hole_and_slot.yaml").read_text("utf-8")
 
 
-@pytest.mark.parametrize("road", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
-def test_hole_and_slot(road: str) -> None:
+@pytest.mark.parametrize("method", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
+def test_hole_and_slot(method: str) -> None:
     """Problem 13: the disc of a hole and the width of a slot, area and not radius uniform, of each trial's sizes."""
     count = 20_000
     whole = load(SCENES / "hole_and_slot.yaml")
     scene = whole.model_copy(update={"measures": {name: whole.measures[name] for name in ("corner x", "corner y")}})
-    found = Assembled(simulation_of(scene, Overrides())).drawn(count, road)
+    found = Assembled(simulation_of(scene, Overrides())).drawn(count, method)
     first, second = (c**2 + (0.01**2 + 0.004**2) / 4 for c in (0.05, 0.03))
     x, y, length = 300.0, 80.0, 120.0
     variances = {
@@ -68,19 +68,19 @@ def test_a_tongue_leans_in_its_slot_until_its_corners_touch(tmp_path: Path) -> N
     assert assembled(key(20.3, "{kind: centred}"), tmp_path).nominal["tip"] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_what_is_drawn_aside_of_its_slot_is_centred_in_it(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_what_is_drawn_aside_of_its_slot_is_centred_in_it(tmp_path: Path, method: str) -> None:
     """The key stands 0.3 mm aside on the drawing and the plate 0.2 mm; first order sees 120 mm as 0.1 mm longer."""
     text = key(20.03, "{kind: centred}").replace("float: {kind: random} ", "float: {kind: centred} ")
     aside = text.replace("  key:\n", "  key:\n    placed: {at: [0 mm, 0.3 mm, 0 mm]}\n", 1)
     aside = aside.replace("  plate:\n", "  plate:\n    placed: {at: [0.1 mm, -0.2 mm, 0 mm]}\n", 1)
-    for name, values in assembled(text, tmp_path).drawn(3, road).items():
-        within = 0.1 / 120 * 1.5 * np.abs(values).max() if road == "analytic" and "most" in name else 0.0
-        assert assembled(aside, tmp_path).drawn(3, road)[name] == pytest.approx(values, abs=within + 1e-9), name
+    for name, values in assembled(text, tmp_path).drawn(3, method).items():
+        within = 0.1 / 120 * 1.5 * np.abs(values).max() if method == "analytic" and "most" in name else 0.0
+        assert assembled(aside, tmp_path).drawn(3, method)[name] == pytest.approx(values, abs=within + 1e-9), name
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_measures_over_the_whole_play(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_measures_over_the_whole_play(tmp_path: Path, method: str) -> None:
     """Problem 13 at nominal sizes: |1 - x/L| c1 + x/L c2 along y, sqrt(1 + (y/L)^2) c1 + y/L c2 along x; no float."""
     more = "".join(
         f"  {axis} {which}: {{kind: gap, from: base.corner, to: plate.corner, along: {along}, over_play: {which}}}\n"
@@ -93,7 +93,7 @@ def test_measures_over_the_whole_play(tmp_path: Path, road: str) -> None:
         if contributor.kind == "size":
             rows[:, own] = 0.0
     names = ["x least", "x largest", "y least", "y largest", "tilt at least"]
-    if road == "exact":
+    if method == "exact":
         found = {name: own for name, (own, _) in placing.values(made.system.assembly, rows, names).items()}
     else:
         found = dict(torsors.values(made.system.assembly, rows, names))
@@ -130,12 +130,12 @@ measures:
 """.replace("  body: {kind: fix", "  set: {kind: fix")
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_pin_in_a_bore(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pin_in_a_bore(tmp_path: Path, method: str) -> None:
     """Problem 11b: both ends anywhere in their discs; 100 from the middle sigma (c/2) sqrt(1/2 + 2 d^2/l^2), and within
     c (1 + 2 d/l - 1/2 + 1/2)."""
     count, c, d, length = 40_000, 0.05, 100.0, 40.0
-    found = assembled(BORE, tmp_path).drawn(count, road)
+    found = assembled(BORE, tmp_path).drawn(count, method)
     sigma = c / 2 * math.sqrt(0.5 + 2 * d**2 / length**2)
     assert sigma == pytest.approx(0.0901388, abs=1e-7)
     for own in found.values():
@@ -153,8 +153,8 @@ def leaning(floating: str, spread: str) -> str:
     return text.replace("\nmoves:\n", f"  lean: {{kind: perpendicularity, {lean}}}\n\nmoves:\n")
 
 
-@pytest.mark.parametrize("road", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
-def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
+def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, method: str) -> None:
     """Uniform by area in the lens of two discs 2a apart: second moments by rejection from the box about it."""
     half = 0.03
     law = f"{{kind: process, distribution: {{kind: constant, value: {half * 1e3} um}}}}"
@@ -166,7 +166,7 @@ def test_a_hole_that_leans_leaves_a_lens(tmp_path: Path, road: str) -> None:
     names = ["corner x", "corner y"]
     x, y = (
         torsors.values(made.system.assembly, rows, names)[name]
-        if road == "analytic"
+        if method == "analytic"
         else placing.values(made.system.assembly, rows, names)[name][0]
         for name in names
     )
@@ -191,14 +191,14 @@ def four(floating: str, tmp_path: Path) -> Assembled:
     return assembled(plates(at, 10.2, 10.0, floating), tmp_path)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_random_pattern_stays_in_its_room_and_fills_it(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_random_pattern_stays_in_its_room_and_fills_it(tmp_path: Path, method: str) -> None:
     """Four equal pins: a pose (x, y, turn R) is inside where the farthest pin is; shares of the way out are u^(1/3)."""
     made = four("{kind: random}", tmp_path)
     rows = drawn(made.simulation, 0, 4000).deviations
     floats = next(own for contributor, own in made.slices if contributor.kind == "float")
     rows[:, : floats.start] = 0.0
-    if road == "exact":
+    if method == "exact":
         found = {name: own for name, (own, _) in placing.values(made.system.assembly, rows, ["x", "y", "turn"]).items()}
     else:
         found = dict(torsors.values(made.system.assembly, rows, ["x", "y", "turn"]))
@@ -207,7 +207,7 @@ def test_a_random_pattern_stays_in_its_room_and_fills_it(tmp_path: Path, road: s
     at = np.array([(-30.0, -20.0), (30.0, -20.0), (30.0, 20.0), (-30.0, 20.0)])
     farthest = np.max([np.hypot(x - turn * b, y + turn * a) for a, b in at], axis=0)
     share = farthest / 0.1
-    assert share.max() < 1 + (1e-9 if road == "analytic" else 2e-3)  # half of squared turns of 3e-3, 36 mm off, of 0.1
+    assert share.max() < 1 + (1e-9 if method == "analytic" else 2e-3)  # half of squared turns of 3e-3, 36 mm off
     assert np.sort(share**3) == pytest.approx((np.arange(4000) + 0.5) / 4000, abs=1.95 / math.sqrt(4000))  # 99.9 %
     ways = np.stack([x, y, turn * math.hypot(30, 20)])
     ways /= np.linalg.norm(ways, axis=0)
@@ -215,8 +215,8 @@ def test_a_random_pattern_stays_in_its_room_and_fills_it(tmp_path: Path, road: s
     assert (ways**2).mean(axis=1) == pytest.approx(1 / 3, abs=4 * math.sqrt(4 / 45 / 4000))
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path, method: str) -> None:
     made = four("{kind: toward, along: [1, 0, 0], at: upper.edge}", tmp_path)
     rows = np.zeros((3, made.system.assembly.width))
     sizes = {contributor.name: own.start for contributor, own in made.slices if contributor.kind == "size"}
@@ -224,7 +224,7 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
     rows[2, sizes["pin 2 size"]] = 0.25  # does not go in
     found = (
         {name: own for name, (own, _) in placing.values(made.system.assembly, rows, ["x", "y", "slack"]).items()}
-        if road == "exact"
+        if method == "exact"
         else torsors.values(made.system.assembly, rows, ["x", "y", "slack"])
     )
     assert found["x"][0] == pytest.approx(0.1, abs=1e-9)
@@ -232,8 +232,8 @@ def test_a_pattern_pushed_along_x_goes_by_the_smallest_clearance(tmp_path: Path,
     assert found["slack"] == pytest.approx([0.1, 0.075, -0.025], abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_plate_hangs_on_two_pins_as_low_as_both_clearances_let_it(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_plate_hangs_on_two_pins_as_low_as_both_clearances_let_it(tmp_path: Path, method: str) -> None:
     """Problem 11c: clearances c = 0.1, the pins e too far apart, the weight midway: -sqrt(c² - e²/4); the mean and
     sigma of e in N(0, 0.04) by quadrature, no build beyond 2c."""
     at = ((60.0, 0.0), (140.0, 0.0))  # the upper edge is midway
@@ -242,7 +242,7 @@ def test_a_plate_hangs_on_two_pins_as_low_as_both_clearances_let_it(tmp_path: Pa
     apart = np.append(0.04 * nodes[np.abs(nodes) < 4.9], [0.12, 0.201])
     rows = np.zeros((len(apart), hung.system.assembly.width))
     rows[:, next(own.start for contributor, own in hung.slices if contributor.name == "pin 1 x")] = apart
-    if road == "exact":
+    if method == "exact":
         found, codes = placing.values(hung.system.assembly, rows, ["y"])["y"]
         assert codes[-1] == NO_BUILD
         assert not codes[:-1].any()

@@ -10,8 +10,8 @@ from scipy.optimize import nnls
 
 from tol3d.assembly.model import Assembly, Axis, Contact, Fix, Plane, Point, Touch, Weld
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

@@ -50,8 +50,8 @@ def test_the_axis_fills_the_zone_beyond_its_end_and_leans_out_of_it_within(tmp_p
         "own": 2 * np.maximum(np.hypot(*start.T), np.hypot(*far.T)),
     }
     measures = [own for own in simulation.system.measures if own.name in expected]
-    for road in ("exact", "analytic"):
-        found = simulation.system.road(road, None).answers(trials, measures).values
+    for method in ("exact", "analytic"):
+        found = simulation.system.method(method, None).answers(trials, measures).values
         for name, own in expected.items():
             np.testing.assert_allclose(found[name][:, 0], own, rtol=0, atol=2e-7)  # a slope of 1e-2, squared
     radius, sigma = ZONE / 2, ZONE * math.sqrt(2 / 3 - 16 / 25)
@@ -110,13 +110,13 @@ def test_an_orientation_holds_an_axis_over_the_length_that_it_states(
     length = {"cover.hole 1": 8.0, "base.hole 1": 10.0, "base.stud hole": 10.0}[hole]
     (measure,) = (each for each in simulation.system.measures if each.name == "lean")
     read = {}
-    for road in ("exact", "analytic"):
-        read[road] = simulation.system.road(road, None).answers(trials, [measure]).values["lean"][:, 0]
-        assert 0.97 * lean < read[road].max() <= lean * (1 + 1e-5)
-        stretched = simulation.system.road(road, None).answers(trials, [over]).values[over.name][:, 0]
-        np.testing.assert_allclose(stretched, 24.0 / length * read[road], rtol=1e-9)
+    for method in ("exact", "analytic"):
+        read[method] = simulation.system.method(method, None).answers(trials, [measure]).values["lean"][:, 0]
+        assert 0.97 * lean < read[method].max() <= lean * (1 + 1e-5)
+        stretched = simulation.system.method(method, None).answers(trials, [over]).values[over.name][:, 0]
+        np.testing.assert_allclose(stretched, 24.0 / length * read[method], rtol=1e-9)
     np.testing.assert_allclose(read["exact"], read["analytic"], rtol=0, atol=2e-7)
-    scaled = simulation.system.road("exact", None).answers(trials.scaled(0.25), [measure]).values["lean"][:, 0]
+    scaled = simulation.system.method("exact", None).answers(trials.scaled(0.25), [measure]).values["lean"][:, 0]
     np.testing.assert_allclose(scaled, 0.25 * read["analytic"], rtol=0, atol=2e-8)  # of order 2
 
 

@@ -7,8 +7,8 @@ from random_touches import KINDS, RandomTouch, random_touch
 from thinned import thinned
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def test_a_thousand_random_touches_are_those_of_scipy(hundred: int) -> None:
 
 
 def left_out(made: RandomTouch, deviations: Array, name: str) -> Array:
-    """By how much the roads differ at most, at shares of the deviations that fall to a half each (4,)."""
+    """By how much the methods differ at most, at shares of the deviations that fall to a half each (4,)."""
     found = []
     for share in 0.5 ** np.arange(4):
         exact, codes = placing.values(made.assembly, share * deviations, [name])[name]
@@ -122,9 +122,9 @@ def test_slopes_are_central_differences_of_finite_poses(seed: int) -> None:
 def test_a_trial_has_the_same_bits_alone_and_among_others() -> None:
     made = random_touch(3)
     deviations, names = drawn(made, 3, 40), list(made.assembly.measures)
-    for road in (placing, torsors):
-        together = road.values(made.assembly, deviations, names)
+    for method in (placing, torsors):
+        together = method.values(made.assembly, deviations, names)
         for k in (0, 17, 39):
-            alone = road.values(made.assembly, deviations[k : k + 1], names)
+            alone = method.values(made.assembly, deviations[k : k + 1], names)
             for name in names:
                 assert np.array_equal(np.atleast_2d(alone[name])[:, 0], np.atleast_2d(together[name])[:, k])

@@ -17,8 +17,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import kstest, norm
 
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.distributions import TruncatedNormal
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
@@ -26,7 +26,7 @@ from tol3d.study.first_order import first_orders
 
 Array = NDArray[np.float64]
 
-ROADS = ("exact", "analytic")
+METHODS = ("exact", "analytic")
 RARE = 1e-6
 
 
@@ -38,9 +38,9 @@ def share_of(events: NDArray[np.bool_], share: float) -> None:
 # problem 1 ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_tails_of_uniform_blocks_are_those_of_irwin_and_hall_and_not_of_a_normal(tmp_path: Path, road: str) -> None:
-    gap = assembled(stack(), tmp_path).drawn(400_000, road)["gap"]
+@pytest.mark.parametrize("method", METHODS)
+def test_tails_of_uniform_blocks_are_those_of_irwin_and_hall_and_not_of_a_normal(tmp_path: Path, method: str) -> None:
+    gap = assembled(stack(), tmp_path).drawn(400_000, method)["gap"]
     width = 2 * HALF
     quantile = [
         GAP + width * (brentq(lambda x, p=p: irwin_hall(x, BLOCKS + 1) - p, 0.0, 5.0) - 2.5) for p in (0.00135, 0.99865)
@@ -58,7 +58,7 @@ def test_tails_of_uniform_blocks_are_those_of_irwin_and_hall_and_not_of_a_normal
 def test_the_worst_case_of_the_blocks_is_all_limits_at_once(tmp_path: Path) -> None:
     made = assembled(stack(), tmp_path)
     (measure,) = made.system.measures
-    for own in first_orders(made.simulation, made.system.road("exact", None), [measure])[measure.name].values():
+    for own in first_orders(made.simulation, made.system.method("exact", None), [measure])[measure.name].values():
         assert own.ends == pytest.approx((1e3 * (GAP - 5 * HALF), 1e3 * (GAP + 5 * HALF)), abs=1e-6)
 
 
@@ -77,8 +77,8 @@ def test_a_normal_fit_of_the_linear_clutch_misses_the_share_out_of_limits() -> N
 # problem 7 ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_four_pads_are_parallel_to_their_ground_within_the_range_of_four_normals(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_four_pads_are_parallel_to_their_ground_within_the_range_of_four_normals(tmp_path: Path, method: str) -> None:
     """Mean 2.05875 s, against |D| / 2 of their flatness, whose plane may tilt: 0.797885 s."""
     text = (SCENES / "four_pads.yaml").read_text("utf-8")
     pads = [f"table.pad {k}" for k in (1, 2, 3, 4)]
@@ -87,7 +87,7 @@ def test_four_pads_are_parallel_to_their_ground_within_the_range_of_four_normals
     parts, moves = text[: text.index("  plate:\n")], "moves:\n  set up: {kind: fix, part: table}\n"
     tolerances = text[text.index("tolerances:\n") : text.index("moves:\n")]
     made = assembled(f"{parts}{tolerances}{moves}measures:\n{measures}{flatness}", tmp_path)
-    found, count, sigma = made.drawn(100_000, road), 100_000, 0.05
+    found, count, sigma = made.drawn(100_000, method), 100_000, 0.05
     heights = np.stack([found[own[6:]] for own in pads])
     expected = quad(lambda x: 1 - norm.cdf(x) ** 4 - norm.sf(x) ** 4, -9, 9)[0]
     assert expected == pytest.approx(2.05875, abs=5e-6)
@@ -113,9 +113,9 @@ def beyond(tilt: float) -> float:
     return 1 - float(quad(inside, 0, math.pi / 2, limit=200)[0])
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_the_tail_of_a_uniform_face_s_tilt(tmp_path: Path, road: str) -> None:
-    found = zoned(tmp_path, "{kind: uniform}").drawn(200_000, road)
+@pytest.mark.parametrize("method", METHODS)
+def test_the_tail_of_a_uniform_face_s_tilt(tmp_path: Path, method: str) -> None:
+    found = zoned(tmp_path, "{kind: uniform}").drawn(200_000, method)
     tilt = np.hypot(found["about x"], found["about y"])
     for share, printed in ((0.05, 1.0644e-3), (0.0027, 1.4359e-3)):
         limit = brentq(lambda t, share=share: beyond(t) - share, 1e-5, WIDTH / B)
@@ -127,9 +127,9 @@ def test_the_tail_of_a_uniform_face_s_tilt(tmp_path: Path, road: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize(("sigma", "share", "error"), [(30, 5.483e-4, 0.052e-4), (20, 3.3e-5, 0.13e-5)])
-def test_two_plates_of_better_diameters(tmp_path: Path, road: str, sigma: int, share: float, error: float) -> None:
+def test_two_plates_of_better_diameters(tmp_path: Path, method: str, sigma: int, share: float, error: float) -> None:
     path = tmp_path / "plates.yaml"
     text = (SCENES / "two_plates.yaml").read_text("utf-8")
     assert text.count("sigma: 60 um") == 4
@@ -137,12 +137,12 @@ def test_two_plates_of_better_diameters(tmp_path: Path, road: str, sigma: int, s
     plates, count, seen = Assembled(simulation_of(load(path), Overrides())), 600_000, 0
     for first in range(0, count, 50_000):
         rows = drawn(plates.simulation, first, 50_000).deviations
-        seen += int((slack_of(plates, rows, road) < 0).sum())
+        seen += int((slack_of(plates, rows, method) < 0).sum())
     assert seen / count == pytest.approx(share, abs=4 * math.hypot(error, math.sqrt(share / count)))
 
 
-def slack_of(made: Assembled, rows: Array, road: str) -> Array:
-    if road == "analytic":
+def slack_of(made: Assembled, rows: Array, method: str) -> Array:
+    if method == "analytic":
         return torsors.values(made.system.assembly, rows, ["slack"])["slack"]
     return placing.values(made.system.assembly, rows, ["slack"])["slack"][0]
 
@@ -150,8 +150,8 @@ def slack_of(made: Assembled, rows: Array, road: str) -> Array:
 # problem 13 --------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
-def test_a_float_is_a_share_of_the_clearance_of_its_own_trial(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", [pytest.param("exact", marks=pytest.mark.slow), "analytic"])
+def test_a_float_is_a_share_of_the_clearance_of_its_own_trial(tmp_path: Path, method: str) -> None:
     """Squares of shares of the disc are uniform, shares of the slot too; of mean clearances some would lie outside."""
     text = (SCENES / "hole_and_slot.yaml").read_text("utf-8")
     measures = "".join(
@@ -162,7 +162,7 @@ def test_a_float_is_a_share_of_the_clearance_of_its_own_trial(tmp_path: Path, ro
     made = assembled(text[: text.index("measures:\n")] + f"measures:\n{measures}", tmp_path)
     count = 20_000
     trials = drawn(made.simulation, 0, count)
-    found = made.values(trials, road)
+    found = made.values(trials, method)
     sizes = {own.name: trials.deviations[:, places][:, 0] for own, places in made.slices if own.kind == "size"}
     first = (0.10 + sizes["hole size"] - sizes["pin 1 size"]) / 2
     second = (0.06 + sizes["slot size"] - sizes["pin 2 size"]) / 2

@@ -38,21 +38,21 @@ def cover(kind: str, key: str, folder: Path, further: str = "") -> Assembled:
 FORCE = "    force: {direction: [-1, -1, -3], at: [62 mm, 38 mm, 2 mm]}\n"
 
 
-def values(own: Assembled, road: str) -> Mapping[str, Array]:
-    return own.values(drawn(own.simulation, 0, 400), road)
+def values(own: Assembled, method: str) -> Mapping[str, Array]:
+    return own.values(drawn(own.simulation, 0, 400), method)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_six_contacts_that_a_force_presses_are_six_planes(road: str, tmp_path: Path) -> None:
-    held = values(cover("six_plane", "pairs", tmp_path), road)
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_six_contacts_that_a_force_presses_are_six_planes(method: str, tmp_path: Path) -> None:
+    held = values(cover("six_plane", "pairs", tmp_path), method)
     resting = cover("rest", "contacts", tmp_path, FORCE)
-    rested = values(resting, road)
+    rested = values(resting, method)
     assert held.keys() == rested.keys()
     for name, own in rested.items():
         assert own.std() > 0.03
         assert np.abs(own - held[name]).max() < 1e-10
-    road_of = resting.system.road("exact", None)
-    carried = road_of.answers(drawn(resting.simulation, 0, 50), resting.system.measures).details
+    method_of = resting.system.method("exact", None)
+    carried = method_of.answers(drawn(resting.simulation, 0, 50), resting.system.measures).details
     assert set(carried["carries:cover on the base"].tolist()) == {"1 2 3 4 5 6"}
 
 

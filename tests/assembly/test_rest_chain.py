@@ -13,9 +13,9 @@ from tol3d.assembly.grammar.measures.gap import DistanceSpec, GapSpec
 from tol3d.assembly.model import Assembly, Fix, Measured, Move, Point, Rest, Weld
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.plan import after
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Point, Relation, Rest
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -86,7 +86,7 @@ def test_a_bore_stays_on_its_pin_while_the_plate_slides_down_to_the_highest_pad(
     ],
     ids=["point on pin", "bore on pin"],
 )
-def test_both_roads_differ_by_terms_of_second_order(relations: tuple[Relation, ...]) -> None:
+def test_both_methods_differ_by_terms_of_second_order(relations: tuple[Relation, ...]) -> None:
     model = on_pads(relations)
     trials = np.random.default_rng(3).normal(0, 0.1, (60, model.width))
     off = []

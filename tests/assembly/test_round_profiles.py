@@ -163,13 +163,13 @@ SIZES = ("bore size", "pin size", "ball size")
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("road", ["exact", "analytic"])
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 def test_size_and_place_share_the_width_and_a_hole_is_smaller_where_its_surface_lies_outward(
-    law: str, road: str, tmp_path: Path
+    law: str, method: str, tmp_path: Path
 ) -> None:
     """|size - nominal| / 2 + position / 2 <= t / 2, in each trial; of the pin about its unequal middle, -0.03 mm."""
     made = assembled(plate(law), tmp_path)
-    found, deviations = made.drawn(4000, road), drawn(made.simulation, 0, 4000).deviations
+    found, deviations = made.drawn(4000, method), drawn(made.simulation, 0, 4000).deviations
     first = {own.name: deviations[:, where.start] for own, where in made.slices}
     assert found["bore size"] == pytest.approx(8.0 - 2.0 * first["bore"], abs=1e-12)
     assert found["pin size"] == pytest.approx(8.0 + 2.0 * first["pin"], abs=1e-12)
@@ -186,7 +186,7 @@ def test_both_methods_differ_by_second_order(law: str, tmp_path: Path) -> None:
     trials = drawn(made.simulation, 0, 200)
     apart = []
     for scale in (1.0, 0.25):
-        exact, linear = (made.values(trials.scaled(scale), road) for road in ("exact", "analytic"))
+        exact, linear = (made.values(trials.scaled(scale), method) for method in ("exact", "analytic"))
         apart.append(max(float(np.abs(exact[name] - linear[name]).max()) for name in exact))
     assert apart[1] < max(apart[0] / 10, 1e-12)
 

@@ -36,8 +36,8 @@ from tol3d.assembly.model import (
     Touch,
 )
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
 
@@ -382,9 +382,9 @@ measures:
 def test_a_hole_in_a_frame_is_as_far_from_an_edge_wherever_the_origin_lies(tmp_path: Path) -> None:
     """2000 trials; of [A] by hand too: a twentieth of the zone's diameter and what A's tilt does to 5 mm of height."""
     here, there = (assembled(plate(at), tmp_path) for at in (np.zeros(3), FAR))
-    for road in ("exact", "analytic"):
-        its = there.drawn(2000, road)
-        for name, values in here.drawn(2000, road).items():
+    for method in ("exact", "analytic"):
+        its = there.drawn(2000, method)
+        for name, values in here.drawn(2000, method).items():
             np.testing.assert_allclose(its[name], values, atol=1e-9, rtol=0)
     # both ends in discs of 0.005: their mean has 0.0025 / sqrt(2); rises in |w| + |x| + |y| <= 0.025: 0.025 / sqrt(10)
     sigma = np.hypot(0.0025 / np.sqrt(2), 5 / 50 * 0.025 / np.sqrt(10))

@@ -58,10 +58,10 @@ measures:
 
 
 @pytest.mark.parametrize("points_on", ["part", "fixture"])
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_part_that_is_lifted_slides_aside_along_a_slanted_wall(tmp_path: Path, points_on: str, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_part_that_is_lifted_slides_aside_along_a_slanted_wall(tmp_path: Path, points_on: str, method: str) -> None:
     """The wall is touched still: (0, 1, s) . (0, y, lift) = 0; nothing turns, so that this is exact."""
-    found = assembled(scene(points_on), tmp_path).drawn(1, road)
+    found = assembled(scene(points_on), tmp_path).drawn(1, method)
     assert found["z"][0] == pytest.approx(LIFT, abs=1e-12)
     assert found["y"][0] == pytest.approx(-SLANT * LIFT, abs=1e-12)
     assert found["x"][0] == pytest.approx(0.0, abs=1e-12)

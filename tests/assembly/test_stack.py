@@ -52,11 +52,11 @@ measures:
 """
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_blocks_that_are_uniform_leave_the_gap_of_irwin_and_hall(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_blocks_that_are_uniform_leave_the_gap_of_irwin_and_hall(tmp_path: Path, method: str) -> None:
     made = assembled(stack(), tmp_path)
     assert made.nominal["gap"] == pytest.approx(GAP, abs=1e-12)
-    gap = made.drawn(TRIALS, road)["gap"]
+    gap = made.drawn(TRIALS, method)["gap"]
     count = BLOCKS + 1
     assert irwin_hall(1.0, count) == pytest.approx(1 / 120)
     for limit in (0.0, 0.05):

@@ -12,8 +12,8 @@ from rigid_parts import RigidParts
 from tol3d.assembly.grammar.measures.contact import SurfaceGapSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Measured, Point
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from tol3d.errors import SceneError
 
 STEEL, ALUMINIUM = 12e-6, 23e-6  # 1/K
 COUNT = 4000
-ROADS = {"analytic": "analytic", "exact": "geometric"}
+METHODS = {"analytic": "analytic", "exact": "geometric"}
 BAR = (SCENES / "warm_bar.yaml").read_text("utf-8")
 
 PLAY = """scene: a warm bush on a warm pin
@@ -59,8 +59,8 @@ def column(run: Run, name: str) -> NDArray[np.float64]:
     return np.asarray(run.columns(name)[name], float)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_warm_bar_takes_the_room_that_its_frame_leaves(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_warm_bar_takes_the_room_that_its_frame_leaves(method: str, tmp_path: Path) -> None:
     """The wall at -150 mm (1 + s T), the bar's end 300 mm (1 + a (T + C)) and its length off further, the stop at 151.
 
     Sums of a few numbers of 100 mm: 1e-9 um is far more than their rounding.
@@ -68,7 +68,7 @@ def test_a_warm_bar_takes_the_room_that_its_frame_leaves(road: str, tmp_path: Pa
     run = run_of(BAR, tmp_path)
     oven, current, length = (column(run, name) for name in ("oven [K]", "current [K]", "bar length [um]"))
     by_hand = 1000 * (301 * (1 + STEEL * oven) - 300 * (1 + ALUMINIUM * (oven + current))) - length
-    np.testing.assert_allclose(column(run, f"{ROADS[road]}:gap"), by_hand, atol=1e-8, rtol=0)
+    np.testing.assert_allclose(column(run, f"{METHODS[method]}:gap"), by_hand, atol=1e-8, rtol=0)
     mean = 1000 + 1000 * ((301 * STEEL - 300 * ALUMINIUM) * 30 - 300 * ALUMINIUM * 10)
     variances = (
         (1000 * (301 * STEEL - 300 * ALUMINIUM) * 10) ** 2,
@@ -76,21 +76,21 @@ def test_a_warm_bar_takes_the_room_that_its_frame_leaves(road: str, tmp_path: Pa
         (100 / 3) ** 2,
     )
     own = run.summary["measures"]["gap"]
-    assert own["mean_build"][ROADS[road]] == pytest.approx(mean, abs=1e-8)
-    assert own[ROADS[road]]["mean"] == pytest.approx(mean, abs=4 * math.sqrt(sum(variances) / COUNT))
-    assert own[ROADS[road]]["sigma"] == pytest.approx(math.sqrt(sum(variances)), rel=4 / math.sqrt(2 * COUNT))
+    assert own["mean_build"][METHODS[method]] == pytest.approx(mean, abs=1e-8)
+    assert own[METHODS[method]]["mean"] == pytest.approx(mean, abs=4 * math.sqrt(sum(variances) / COUNT))
+    assert own[METHODS[method]]["sigma"] == pytest.approx(math.sqrt(sum(variances)), rel=4 / math.sqrt(2 * COUNT))
     form = own["analytic_closed_form"]
     assert (form["mean"], form["sigma"]) == pytest.approx((mean, math.sqrt(sum(variances))), rel=1e-9)
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_bush_that_grows_more_than_its_pin_has_more_play(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_bush_that_grows_more_than_its_pin_has_more_play(method: str, tmp_path: Path) -> None:
     """Half the difference of the diameters, each grown by its own coefficient; both grow about the same origin, so that
     their axes part by the difference of what 8.6 mm grow, which a part that is free to move does not mind."""
     run = run_of(PLAY, tmp_path, 300)
     hot, shaded = column(run, "hot [K]"), column(run, "shaded [K]")
     by_hand = 500 * (30 * (1 + ALUMINIUM * hot) - 29.9 * (1 + STEEL * (hot + shaded)))
-    np.testing.assert_allclose(column(run, f"{ROADS[road]}:slack"), by_hand, atol=1e-6, rtol=0)
+    np.testing.assert_allclose(column(run, f"{METHODS[method]}:slack"), by_hand, atol=1e-6, rtol=0)
 
 
 def test_gears_and_solid_parts_have_one_temperature() -> None:

@@ -71,11 +71,11 @@ def least(ends: Array, radii: Array) -> float:
 
 
 @pytest.mark.parametrize("modifier", ["", ", modifier: mmc"])
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_all_features_share_one_place_of_the_gauge(road: str, modifier: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_all_features_share_one_place_of_the_gauge(method: str, modifier: str, tmp_path: Path) -> None:
     """Against a convex programme on 100 builds: one shift of the gauge for both holes, each with its own zone."""
     made = assembled(plate(modifier=modifier), tmp_path)
-    found, own = made.drawn(100, road)["both"], columns(made, 100)
+    found, own = made.drawn(100, method)["both"], columns(made, 100)
     for k, value in enumerate(found):
         ends = np.concatenate([own[name][k].reshape(2, 2) for name in ("near", "far")])
         bonus = [own[f"{name} size"][k, 0] if modifier else 0.0 for name in ("near", "far")]
@@ -98,8 +98,8 @@ def test_without_gauges_it_is_the_largest_of_both_positions_less_their_zones(mod
     made = assembled(plate("[floor, bore]", modifier=modifier), tmp_path)
     own = columns(made, 500)
     bonus = [own[f"{name} size"][:, 0] if modifier else 0.0 for name in ("near", "far")]
-    for road in ("exact", "analytic"):
-        found = made.drawn(500, road)
+    for method in ("exact", "analytic"):
+        found = made.drawn(500, method)
         expected = np.maximum(found["near off"] - 0.2 - bonus[0], found["far off"] - 0.1 - bonus[1])
         np.testing.assert_allclose(found["both"], expected, rtol=0, atol=1e-12)
 
@@ -110,7 +110,7 @@ def test_both_methods_differ_by_second_order_and_an_origin_elsewhere_changes_not
     trials = drawn(made.simulation, 0, 200)
     apart = []
     for scale in (1.0, 0.25):
-        exact, linear = (made.values(trials.scaled(scale), road)["both"] for road in ("exact", "analytic"))
+        exact, linear = (made.values(trials.scaled(scale), method)["both"] for method in ("exact", "analytic"))
         apart.append(float(np.abs(exact - linear).max()))
     assert apart[1] < max(apart[0] / 10, 1e-9)
     other = assembled(plate(more=floor, x=-700), tmp_path)

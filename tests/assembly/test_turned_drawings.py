@@ -119,10 +119,10 @@ def test_every_trial_of_a_scene_is_the_same_however_its_parts_are_drawn(name: st
         text = text.replace(old, new)
     made = assembled(text, tmp_path)
     other = assembled(redrawn(text, made, poses_of(load(SCENES / f"{name}.yaml"))), tmp_path)
-    for road in ("exact", "analytic"):
-        for measure, values in made.drawn(40, road).items():
+    for method in ("exact", "analytic"):
+        for measure, values in made.drawn(40, method).items():
             within = 1e-7 if name == "four_pads" else 1e-9
-            np.testing.assert_allclose(other.drawn(40, road)[measure], values, atol=within, rtol=0, err_msg=measure)
+            np.testing.assert_allclose(other.drawn(40, method)[measure], values, atol=within, rtol=0, err_msg=measure)
 
 
 @pytest.mark.slow

@@ -37,13 +37,13 @@ def test_each_datum_alone(tmp_path: Path) -> None:
         assert found == pytest.approx(2 * math.hypot(x - 150, y - 60), abs=1e-9)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_statistics(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_statistics(tmp_path: Path, method: str) -> None:
     count = 200_000
     assert np.sqrt(np.diagonal(covariance())) == pytest.approx((0.0447999, 0.0471782), abs=5e-8)
     share = share_beyond(0.15)
     assert share == pytest.approx(0.0049780, abs=5e-8)
-    found = assembled(plate({name: normal(own) for name, own in SIGMAS.items()}), tmp_path).drawn(count, road)
+    found = assembled(plate({name: normal(own) for name, own in SIGMAS.items()}), tmp_path).drawn(count, method)
     assert (found["position"] > 0.3).mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / count))
     machine = math.exp(-(0.15**2) / (2 * 0.04**2))
     assert machine == pytest.approx(0.000884, abs=1e-6)

@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from scipy.stats import halfnorm, norm, rayleigh
 
 from tol3d.assembly.placing.common_opening import common_openings
-from tol3d.assembly.placing.road import features_placed
+from tol3d.assembly.placing.method import features_placed
 from tol3d.assembly.torsors.common_opening import CommonOpening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
@@ -66,18 +66,18 @@ def test_two_holes_in_a_run(tmp_path: Path) -> None:
     path = tmp_path / "sheets.yaml"
     path.write_text(sheets(2), "utf-8")
     summary = run_scene(path, overrides=Overrides(trials=COUNT, seed=2), out=tmp_path / "run").summary
-    for road in ("geometric", "analytic"):
-        found = summary["measures"]["bolt"][road]
+    for method in ("geometric", "analytic"):
+        found = summary["measures"]["bolt"][method]
         assert found["mean"] == pytest.approx(1e3 * mean, abs=4e3 * sigma / math.sqrt(COUNT))
         assert found["sigma"] == pytest.approx(1e3 * sigma, rel=4 * 1.2 / math.sqrt(2 * COUNT))  # its kurtosis is 3.6
         assert found["out_ppm"] / 1e6 == pytest.approx(below, abs=4 * math.sqrt(below / COUNT))
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_four_holes_of_which_three_decide(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_four_holes_of_which_three_decide(tmp_path: Path, method: str) -> None:
     made = assembled(sheets(4), tmp_path)
     row = np.array([[value for x, y, size in FOUR for value in (size - 8.4, x, y)]])
-    assert made.values(stated(made.system, row), road)["bolt"] == pytest.approx(8.2550000, abs=1e-9)
+    assert made.values(stated(made.system, row), method)["bolt"] == pytest.approx(8.2550000, abs=1e-9)
 
 
 def test_the_circle_of_four_holes_lies_where_it_is_known_to() -> None:
@@ -129,7 +129,7 @@ def by_programme(discs: Array) -> float:
     return -2.0 * best
 
 
-def by_roads(discs: Array) -> tuple[float, float]:
+def by_methods(discs: Array) -> tuple[float, float]:
     openings, centres = np.empty(1), np.empty((2, 1))
     common_openings(*(np.ascontiguousarray(own[:, None]) for own in discs), openings, centres)
     x, y, radii = discs
@@ -140,7 +140,7 @@ def by_roads(discs: Array) -> tuple[float, float]:
 
 def assert_alike(sets: list[Array]) -> None:
     for discs in sets:
-        exact, analytic = by_roads(discs)
+        exact, analytic = by_methods(discs)
         programme = by_programme(discs)  # a feasible circle, so never larger than the largest
         assert exact == pytest.approx(analytic, abs=1e-10)
         assert programme - 1e-12 <= exact <= programme + 1e-6
@@ -252,7 +252,7 @@ def test_holes_that_lean_count_at_both_ends(tmp_path: Path) -> None:
             assert found[name][k] == pytest.approx(by_programme(discs), abs=2e-6), name
 
 
-def test_the_roads_differ_by_second_order(tmp_path: Path) -> None:
+def test_the_methods_differ_by_second_order(tmp_path: Path) -> None:
     made = assembled(LEANING, tmp_path)
     trials = drawn(made.simulation, 0, 2_000)
     far = []

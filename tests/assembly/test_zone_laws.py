@@ -47,9 +47,9 @@ def zoned(folder: Path, law: str, outward: str = "") -> Assembled:
     return assembled(SCENE.format(law=law, outward=outward), folder)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_uniform(tmp_path: Path, road: str) -> None:
-    found = zoned(tmp_path, "{kind: uniform}").drawn(COUNT, road)
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_uniform(tmp_path: Path, method: str) -> None:
+    found = zoned(tmp_path, "{kind: uniform}").drawn(COUNT, method)
     half, error = WIDTH / 2, 4 / math.sqrt(2 * COUNT)
     assert (found["height"] - 20).std() == pytest.approx(half / math.sqrt(10), rel=error)
     alpha, beta = half / (B / 2), half / (A / 2)
@@ -114,7 +114,7 @@ SIGMAS = {  # of the middle in its zone of 0.1 mm [um]: of the face, of the bore
 
 @pytest.mark.parametrize("law", SIGMAS)
 def test_check_and_run_tell_the_sigma_of_the_middle_under_each_law(law: str, tol3d: Command, tmp_path: Path) -> None:
-    """As both roads draw it: a hole's middle by `normal` has 0.974 of a sixth of the zone, by `process` 1/√2 of it."""
+    """Both methods: a hole's middle by `normal` has 0.974 of a sixth of the zone, by `process` 1/√2 of it."""
     text = (
         SCENE.format(law=law, outward="")
         + "  aside: {kind: gap, from: plate.upright, to: plate.bore, along: [1, 0, 0]}\n"
@@ -127,8 +127,8 @@ def test_check_and_run_tell_the_sigma_of_the_middle_under_each_law(law: str, tol
     for name, tolerance, sigma in zip(("height", "aside"), ("profile", "position"), SIGMAS[law], strict=True):
         assert run[name]["law_sigmas_um"] == pytest.approx({tolerance: sigma}, rel=1e-7)
         assert run[name]["analytic_closed_form"]["sigma"] == pytest.approx(sigma, rel=1e-7)
-        for road in ("analytic", "geometric"):
-            assert run[name][road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
+        for method in ("analytic", "geometric"):
+            assert run[name][method]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
         row = re.search(rf"^{tolerance} .* (\S+) +µm +–", checked, re.MULTILINE)
         assert row is not None
         assert row[1] == f"{sigma:.3g}"
@@ -211,11 +211,11 @@ measures:
 """
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_on_a_ring_an_axis_lies_at_half_of_its_trial_s_zone_at_any_phase(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_on_a_ring_an_axis_lies_at_half_of_its_trial_s_zone_at_any_phase(tmp_path: Path, method: str) -> None:
     """t = 0.1 mm + bonus in every trial, no lean; mean square (0.3^3 - 0.1^3) / (3 · 0.2) of t, sigma t / 2 / √2."""
     made, count = assembled(RING, tmp_path), 20_000
-    found = made.drawn(count, road)
+    found = made.drawn(count, method)
     zone = 0.1 + found["diameter"] - 30
     assert np.hypot(found["x"], found["y"]) == pytest.approx(zone / 2, abs=1e-9)
     assert found["position"] == pytest.approx(zone, abs=1e-9)

@@ -28,7 +28,7 @@ def drawn(trials: int, seed: int) -> Deviated:
 
 
 def differences(trials: int, steps: int, seed: int, tilt: float) -> tuple[float, float, float]:
-    """Largest difference of both roads at the pitch radius [mm], the chord error, and the share of like pins."""
+    """Largest difference of both methods at the pitch radius [mm], the chord error, and the share of like pins."""
     strips = lobe_strips(CycloidDisc(20.0, PROFILE, HOLES), steps)
     deviated = drawn(trials, seed)
     phis = np.random.default_rng(seed + 1).uniform(0.0, 2 * math.pi * 39, (trials, 1))

@@ -1,4 +1,4 @@
-"""Tilted discs as a tolerance: both roads, rates, and the scene that lacks a width."""
+"""Tilted discs as a tolerance: both methods, rates, and the scene that lacks a width."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -35,11 +35,11 @@ def tilted(own: RVSet, scale: float) -> tuple[RVDeviated, Array]:
 
 
 @pytest.mark.parametrize("sense", [1, -1])
-def test_roads_differ_by_the_square_of_tilts(sense: int) -> None:
+def test_methods_differ_by_the_square_of_tilts(sense: int) -> None:
     own, off, effect = bare(), [], []
     for scale in (1e-4, 1e-5):
         deviated, turns = tilted(own, scale)
-        exact, linear = (road(own).turned(deviated, turns, sense).turns for road in (ExactTurning, LinearTurning))
+        exact, linear = (method(own).turned(deviated, turns, sense).turns for method in (ExactTurning, LinearTurning))
         off.append(np.abs(exact - linear).max())
         effect.append(np.abs(linear - LinearTurning(own).turned(RVDeviated.nothing(own, 60), turns, sense).turns).max())
     assert 30 < off[0] / off[1] < 300
@@ -50,10 +50,10 @@ def test_roads_differ_by_the_square_of_tilts(sense: int) -> None:
 def test_rates_are_those_on_the_side_of_the_tilts() -> None:
     own = bare()
     deviated, turns = tilted(own, 1e-5)
-    road = LinearTurning(own)
-    found = road.turned(deviated, turns, -1)
-    rates = road.rates(deviated.disc_tilts, turns[:, 0], found, -1)
-    flat = road.turned(RVDeviated.nothing(own, 60), turns, -1)
+    method = LinearTurning(own)
+    found = method.turned(deviated, turns, -1)
+    rates = method.rates(deviated.disc_tilts, turns[:, 0], found, -1)
+    flat = method.turned(RVDeviated.nothing(own, 60), turns, -1)
     term = (rates.disc_tilts * deviated.disc_tilts).sum(axis=(1, 2))
     # without clearance all pins touch a flat disc: whichever is first with a tilt starts from there
     np.testing.assert_allclose(term, (found.turns - flat.turns)[:, 0], rtol=0, atol=1e-12)

@@ -63,7 +63,7 @@ def test_an_eccentric_planet_swings_by_its_eccentricity_over_the_base_radius() -
 
 
 @pytest.mark.parametrize("size", [0.02, 0.01])
-def test_both_roads_of_a_mesh_differ_by_second_order(size: float) -> None:
+def test_both_methods_of_a_mesh_differ_by_second_order(size: float) -> None:
     rng = np.random.default_rng(5)
     own = RVDeviated.nothing(OWN, 40)
     for each in (own.sun_offset, own.planet_offset, own.stage.carrier_holes, own.stage.carrier_offsets):
@@ -88,16 +88,16 @@ def test_a_turn_of_all_cranks_is_the_same_stage_at_another_crank_angle() -> None
     assert turned == pytest.approx(moved - beta * WEIGHT, abs=1e-12)
 
 
-def test_rates_are_differences_of_the_analytic_road() -> None:
+def test_rates_are_differences_of_the_analytic_method() -> None:
     rng = np.random.default_rng(2)
-    road, own = LinearTurning(OWN), RVDeviated.nothing(OWN, 30)
+    method, own = LinearTurning(OWN), RVDeviated.nothing(OWN, 30)
     arrays = (own.sun_offset, own.planet_offset, own.stage.carrier_holes, own.stage.disc_offsets, own.stage.pins)
     for each in (*arrays, own.sun_thickness, own.planet_thickness):
         each[...] = rng.normal(0.0, 0.003, each.shape)
     turns: NDArray[np.float64] = rng.random(30)
     twice = np.stack([turns, turns], axis=1)  # at several positions cranks keep their angle
-    before = road.turned(own, twice, -1)
-    rates = road.rates(own.disc_tilts, turns, before, -1)
+    before = method.turned(own, twice, -1)
+    rates = method.rates(own.disc_tilts, turns, before, -1)
     steps = (
         rates.sun_offset,
         rates.planet_offset,
@@ -114,13 +114,13 @@ def test_rates_are_differences_of_the_analytic_road() -> None:
         along = rng.normal(0.0, 1.0, each.shape)
         each += step * along
         expected += (rate * along).reshape(30, -1).sum(axis=1)
-    after = road.turned(own, twice, -1)
+    after = method.turned(own, twice, -1)
     assert (after.turns - before.turns)[:, 0] / step == pytest.approx(expected, rel=1e-5, abs=1e-7)
 
 
-@pytest.mark.parametrize(("sense", "road"), [*product((1, -1), (ExactTurning, LinearTurning))])
+@pytest.mark.parametrize(("sense", "method"), [*product((1, -1), (ExactTurning, LinearTurning))])
 def test_phases_of_cranks_are_turns_of_their_planets_of_which_the_first_holds(
-    sense: int, road: type[ExactTurning | LinearTurning]
+    sense: int, method: type[ExactTurning | LinearTurning]
 ) -> None:
     """A perfect stage turns with its cranks, and those until the planet that has least room touches."""
     plain, own = RVDeviated.nothing(OWN, 20), RVDeviated.nothing(OWN, 20)
@@ -128,10 +128,10 @@ def test_phases_of_cranks_are_turns_of_their_planets_of_which_the_first_holds(
     least = own.stage.crank_phases.max(axis=1) if sense > 0 else own.stage.crank_phases.min(axis=1)
     turns = np.full((20, 1), 0.3)
     backlash = crank_turns(OWN, plain, turns, sense, placed_mesh)[0]
-    found = road(OWN).turned(own, turns, sense)
+    found = method(OWN).turned(own, turns, sense)
     nominal = replace(OWN, first=None)
     phis = turns - (backlash + least[:, None]) / (2 * np.pi * OWN.crank_arm)  # of the output, cranks held there
-    there = road(nominal).turned(plain, phis, sense).turns
+    there = method(nominal).turned(plain, phis, sense).turns
     assert there == pytest.approx(0.0, abs=1e-4)
     assert found.turns == pytest.approx(there - (backlash + least[:, None]) / OWN.crank_arm, abs=1e-7)
     assert (own.stage.crank_phases[np.arange(20), found.planets[:, 0]] == least).all()

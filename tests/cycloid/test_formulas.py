@@ -61,10 +61,10 @@ def test_a_scene_with_nothing_that_the_formula_knows_has_totals_of_nothing() -> 
     ("analytic", "geometric", "noted"), [(-0.27, -0.25, True), (0.3, 0.29, False), (None, -1.0, True)]
 )
 def test_a_lost_motion_below_zero_is_said_to_be_no_play(analytic: float | None, geometric: float, noted: bool) -> None:
-    roads = {"analytic": SimpleNamespace(mean=analytic), "geometric": SimpleNamespace(mean=geometric)}
+    methods = {"analytic": SimpleNamespace(mean=analytic), "geometric": SimpleNamespace(mean=geometric)}
     measures = {
-        "play": SimpleNamespace(kind="cycloid_lost_motion", **roads),
-        "error": SimpleNamespace(kind="cycloid_transmission_error", **roads),
+        "play": SimpleNamespace(kind="cycloid_lost_motion", **methods),
+        "error": SimpleNamespace(kind="cycloid_transmission_error", **methods),
     }
     said = [str(line) for line in below_zero(cast(RunSummary, SimpleNamespace(measures=measures)))]
     assert [line.strip().startswith("play: negative where pins press on both sides") for line in said] == [True] * noted

@@ -1,4 +1,4 @@
-"""The analytic road of a rest, whose method is another one: closed forms of play, and the turns of the exact road."""
+"""The analytic method of a rest, solved otherwise: closed forms of play, and the turns of the exact method."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def play(disc: float, carrier: float, crank: float = 1e-5) -> Play:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sense", [1, -1])
-def test_both_roads_of_a_rest_differ_by_second_order(sense: int) -> None:
+def test_both_methods_of_a_rest_differ_by_second_order(sense: int) -> None:
     """With everything at half its size, the modification too, they differ by a quarter."""
     rms = []
     for size in (1.0, 0.5):

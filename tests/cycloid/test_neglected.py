@@ -1,4 +1,4 @@
-"""What the analytic road leaves out of readings of a reducer covers what it differs by from the exact one."""
+"""What the analytic method leaves out of readings of a reducer covers what it differs by from the exact one."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from tol3d.study.overrides import simulation_of
 
 
 @pytest.mark.slow
-def test_bounds_cover_the_roads_differences_at_one_position() -> None:
+def test_bounds_cover_the_methods_differences_at_one_position() -> None:
     """But for a few hundredths of an arc second of third order; 15618 has a pin at the very edge of the window."""
     study = simulation_of(load_scene(SCENES / "rv_250aii.yaml"), Overrides())
     system = study.system
@@ -21,7 +21,8 @@ def test_bounds_cover_the_roads_differences_at_one_position() -> None:
         for first, count in ((0, 300), (15618, 1)):
             trials = drawn(study, first, count)
             exact, analytic = (
-                system.road(road, None).answers(trials, (measure,)).values[name][:, 0] for road in ("exact", "analytic")
+                system.method(each, None).answers(trials, (measure,)).values[name][:, 0]
+                for each in ("exact", "analytic")
             )
             off = np.abs(exact - analytic) * measure.per_internal
             (bound,) = system.neglected(measure, trials).values()

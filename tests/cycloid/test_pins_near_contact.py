@@ -1,4 +1,4 @@
-"""How many pins share a load once they give way by a deflection: counts of both roads against counts gap by gap."""
+"""How many pins share a load once they give way by a deflection: counts of both methods against counts gap by gap."""
 
 import cmath
 import math
@@ -56,7 +56,7 @@ def linear_gaps(radial: Array, pitch: Array, profile: Array, phi: float) -> list
 
 
 @pytest.mark.parametrize("deflection", [0.002, 0.008])
-def test_the_analytic_road_counts_linear_gaps_where_the_first_one_is_closed(deflection: float) -> None:
+def test_the_analytic_method_counts_linear_gaps_where_the_first_one_is_closed(deflection: float) -> None:
     own, phis = nothing(40), np.linspace(0.0, 39 * 2 * math.pi, 40)
     rng = np.random.default_rng(5)
     own.pins[..., 0] = rng.normal(0.0, 0.004, (40, 40))
@@ -73,7 +73,7 @@ def test_the_analytic_road_counts_linear_gaps_where_the_first_one_is_closed(defl
 
 
 @pytest.mark.parametrize("deflection", [0.002, pytest.param(0.006, marks=pytest.mark.slow)])
-def test_the_exact_road_counts_gaps_to_dense_points_of_all_flanks(deflection: float) -> None:
+def test_the_exact_method_counts_gaps_to_dense_points_of_all_flanks(deflection: float) -> None:
     """Distances to points are off by less than a nanometre; no gap of these trials is so near to the deflection."""
     made, phis = erring(3, 2, 0.003, seed=8), np.linspace(0.3, 200.0, 3)
     found = first_contact(contact_shape(PROFILE, WINDOW, 0.0, deflection), made, phis[:, None])
@@ -92,10 +92,10 @@ def test_turns_are_the_same_whether_pins_are_counted_or_not(tmp_path: Path) -> N
     assert isinstance(system, RVSystem)
     own = {measure.name: measure for measure in system.measures if measure.take == "value"}
     trials = drawn(study, 0, 40)
-    for road in ("exact", "analytic"):
-        both = system.road(road, None).answers(trials, [*own.values()]).values
+    for method in ("exact", "analytic"):
+        both = system.method(method, None).answers(trials, [*own.values()]).values
         for name, measure in own.items():
-            assert np.array_equal(system.road(road, None).answers(trials, (measure,)).values[name], both[name])
+            assert np.array_equal(system.method(method, None).answers(trials, (measure,)).values[name], both[name])
         assert (both["pins"] >= 1).all()
         assert (both["pins"] == np.round(both["pins"])).all()
 
@@ -107,7 +107,7 @@ def test_a_deflection_of_more_than_every_gap_counts_all_working_pins(tmp_path: P
     system = study.system
     assert isinstance(system, RVSystem)
     measure = next(measure for measure in system.measures if measure.name == "pins")
-    found = system.road("analytic", None).answers(drawn(study, 0, 5), (measure,)).values["pins"]
+    found = system.method("analytic", None).answers(drawn(study, 0, 5), (measure,)).values["pins"]
     nominal = len(linear_gaps(np.zeros(40), np.zeros((2, 39)), np.zeros((2, 39)), 0.0))
     assert (np.abs(found - nominal) <= 1).all()  # the first stage turns the cranks by some minutes
 
@@ -154,7 +154,7 @@ def test_a_run_has_whole_quantiles_bars_and_shares_out_of_limits(tmp_path: Path)
 def test_a_count_is_held_to_its_contributors_and_not_to_second_order(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Pins that go inwards for outwards on the analytic road come near where those of the exact one leave."""
+    """Pins that go inwards for outwards on the analytic method come near where those of the exact one leave."""
     known = LinearTurning.turned
 
     def turned(self: LinearTurning, deviated: RVDeviated, *rest: Any) -> Turned:

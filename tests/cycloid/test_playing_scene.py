@@ -39,23 +39,23 @@ def simulated(tmp_path: Path, text: str) -> Simulation:
     return simulation_of(load_scene(path))
 
 
-def turned(simulation: Simulation, road: str, trials: int) -> dict[str, Array]:
-    """Values of each measure [rad] by a road."""
+def turned(simulation: Simulation, method: str, trials: int) -> dict[str, Array]:
+    """Values of each measure [rad] by a method."""
     own = simulation.system
-    return dict(own.road(road, None).answers(drawn(simulation, 0, trials), own.measures).values)
+    return dict(own.method(method, None).answers(drawn(simulation, 0, trials), own.measures).values)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [30, 200])
 def test_builds_of_a_scene_rest_where_highs_finds_them(count: int, tmp_path: Path) -> None:
-    """Of each by turns with the torque back and on, by both roads."""
+    """Of each by turns with the torque back and on, by both methods."""
     made = simulated(tmp_path, TEXT.replace("\nmoves:", f"{MORE}\nmoves:").replace("\nstudy:", BACK))
-    road, trials = made.system.road("exact", None), drawn(made, 0, count)
-    columns = columns_of(made.system, road, trials)
+    method, trials = made.system.method("exact", None), drawn(made, 0, count)
+    columns = columns_of(made.system, method, trials)
     for sense, measure in ((-1, "transmission error"), (1, "back")):
         own = np.arange(count)[(1 - sense) // 2 :: 2]
         expected = np.array([PlayingReducer(columns, trial).turned(sense) for trial in own])
-        exact, analytic = (columns[f"{road}:{measure}"][own] / ARCMIN for road in ("geometric", "analytic"))
+        exact, analytic = (columns[f"{method}:{measure}"][own] / ARCMIN for method in ("geometric", "analytic"))
         # teeth are met at the middle of a bearing and along a straight line from there: (5 um)^2 / 63 mm of a planet
         np.testing.assert_allclose(exact, expected, rtol=0, atol=1e-9)
         assert np.abs(analytic - expected).max() < 5e-6  # an arc second: pins near the window's edge
@@ -74,12 +74,12 @@ def cranks_turned_by_hand(disc: float | None, carrier: float = 0.0) -> str:
 
 
 @pytest.mark.parametrize(
-    ("road", "within"),  # the analytic one leaves a bearing without play a nanometre on the radius
+    ("method", "within"),  # the analytic one leaves a bearing without play a nanometre on the radius
     [("analytic", 2 * 2e-6 / SMALL + 1e-8), pytest.param("exact", 1e-11, marks=pytest.mark.slow)],
     ids=["analytic", "exact"],
 )
 def test_equal_play_turns_the_carrier_by_itself_over_the_cranks_circle_either_way(
-    road: str, within: float, tmp_path: Path
+    method: str, within: float, tmp_path: Path
 ) -> None:
     """By hand, with cranks that stand and no error of holes.
 
@@ -89,9 +89,9 @@ def test_equal_play_turns_the_carrier_by_itself_over_the_cranks_circle_either_wa
     the disc stays in the middle, and the carrier turns on from first contact by the angle whose chord is c: all levers
     of working pins are above 0.7 * 85.8 mm = 2 * 30.03 mm.
     """
-    first = turned(simulated(tmp_path, cranks_turned_by_hand(None)), road, 40)
+    first = turned(simulated(tmp_path, cranks_turned_by_hand(None)), method, 40)
     for disc, carrier in ((0.0, 0.0), (10.0, 5.0), (0.0, 8.0)):
-        found = turned(simulated(tmp_path, cranks_turned_by_hand(disc, carrier)), road, 40)
+        found = turned(simulated(tmp_path, cranks_turned_by_hand(disc, carrier)), method, 40)
         more = 2 * np.arcsin((disc + carrier) / 2 * 1e-3 / (2 * SMALL))
         for name, times in (("transmission error", -1), ("lost motion", 2)):
             np.testing.assert_allclose(found[name] - first[name], times * more, rtol=0, atol=within)
@@ -106,11 +106,11 @@ def test_more_play_in_any_bearing_is_no_less_lost_motion(tmp_path: Path) -> None
         k for k, name in enumerate(n for one in own.contributors for n in one.columns) if name.startswith("play")
     ]
     assert len(columns) == 9
-    for road in ("exact", "analytic"):
-        less, sums = own.road(road, None).answers(before, own.measures).values["lost motion"], []
+    for method in ("exact", "analytic"):
+        less, sums = own.method(method, None).answers(before, own.measures).values["lost motion"], []
         for column in columns:
             before.deviations[:, column] += 4e-3
-            more = own.road(road, None).answers(before, own.measures).values["lost motion"]
+            more = own.method(method, None).answers(before, own.measures).values["lost motion"]
             before.deviations[:, column] -= 4e-3
             assert (more - less).min() > -1e-9
             sums.append((more - less).mean())
@@ -135,7 +135,7 @@ def test_draws_below_zero_of_every_bearing_are_counted_and_count_as_no_play(tmp_
     assert tally.unphysical["play in the carrier"] == below.any(axis=0).sum() > below[0].sum()
     known = turned(made, "analytic", 200)["lost motion"]
     trials.deviations[:, -3:] = np.maximum(trials.deviations[:, -3:], 0.0)  # the carrier's play comes last
-    without = made.system.road("analytic", None).answers(trials, made.system.measures).values["lost motion"]
+    without = made.system.method("analytic", None).answers(trials, made.system.measures).values["lost motion"]
     np.testing.assert_array_equal(known, without)
 
 
@@ -145,7 +145,7 @@ def test_cranks_that_do_not_fit_are_failed_and_counted_as_that(tmp_path: Path) -
     tight = re.sub("lower: (5|0) um, upper: (15|10) um", "lower: 0.5 um, upper: 1.5 um", TEXT)
     holes = "  holes: {kind: carrier_hole, of: carrier, each: hole, distribution: {kind: rayleigh, scale: 2 um}}\n"
     made = simulated(tmp_path, tight.replace("\nmoves:", f"{holes}\nmoves:"))
-    answers = made.system.road("exact", None).answers(drawn(made, 0, 200), made.system.measures)
+    answers = made.system.method("exact", None).answers(drawn(made, 0, 200), made.system.measures)
     for name, status in answers.status.items():
         failed = made.system.statuses.texts.index("cranks do not fit")
         assert set(status) == {0, failed}

@@ -123,7 +123,7 @@ def test_every_kind_of_error_at_once_moves_a_random_reducer_as_a_search_finds(se
     path.write_text(scene_of(own, at), "utf-8")
     simulation = simulation_of(load_scene(path))
     trials = drawn(simulation, 0, TRIALS)
-    columns = columns_of(simulation.system, simulation.system.road("exact", None), trials)
+    columns = columns_of(simulation.system, simulation.system.method("exact", None), trials)
     for trial in range(TRIALS):
         one = DrawnColumns(columns, trial)
         reducer, position = WholeReducer(own, one), one.at("move")

@@ -30,14 +30,14 @@ from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.study.versions import installed_versions
 from tol3d.system.mechanism import mechanism_of, requires_of
-from tol3d.system.road import ANALYTIC_ROAD, Answers
+from tol3d.system.method import ANALYTIC_METHOD, Answers
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
 
 ARCMIN = math.radians(1 / 60)
-ROADS = {"analytic": ANALYTIC_ROAD, "geometric": "exact"}
+METHODS = {"analytic": ANALYTIC_METHOD, "geometric": "exact"}
 COUNT = 60
 
 PAIR = """
@@ -144,18 +144,18 @@ measures: {{lost: {{kind: planetary_lost_motion, of: 3K}}}}
 """
 
 
-def answered(system: System, train: tuple[GearSystem, Trials], road: str, at: Array) -> Answers:
+def answered(system: System, train: tuple[GearSystem, Trials], method: str, at: Array) -> Answers:
     """What a link's own scene reads of the trials of its train; contributors are called alike in both."""
     whole, trials = train
     slots = whole.model.component_slices
     deviations = np.concatenate([trials.deviations[:, slots[own.name]] for own in system.contributors], axis=1)
     own_trials = Trials(deviations, dict.fromkeys(system.positions(dict.fromkeys(system.streams, np.zeros(1))), at))
-    return system.road(road, None).answers(own_trials, system.measures)
+    return system.method(method, None).answers(own_trials, system.measures)
 
 
-def alone(system: System, train: tuple[GearSystem, Trials], road: str, at: Array) -> Array:
+def alone(system: System, train: tuple[GearSystem, Trials], method: str, at: Array) -> Array:
     """The play of it [rad]."""
-    return answered(system, train, road, at).values["lost"][:, 0]
+    return answered(system, train, method, at).values["lost"][:, 0]
 
 
 def output_turns(train: tuple[GearSystem, Trials], link: str) -> Array:
@@ -166,7 +166,7 @@ def output_turns(train: tuple[GearSystem, Trials], link: str) -> Array:
 
 @pytest.fixture(scope="module")
 def plays(three: tuple[GearSystem, Trials], tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str], Array]:
-    """Play of each link [rad] by link and road, from its own scene."""
+    """Play of each link [rad] by link and method, from its own scene."""
     folder, found = tmp_path_factory.mktemp("alone"), {}
     for own, text, made in (
         ("pair", PAIR_ALONE, gear_system),
@@ -175,33 +175,33 @@ def plays(three: tuple[GearSystem, Trials], tmp_path_factory: pytest.TempPathFac
     ):
         system: System = made(load_scene(written(folder, text)))
         at = three[1].positions["pair"] if own == "pair" else output_turns(three, own)
-        for road in ROADS.values():
-            found[own, road] = alone(system, three, road, at)
+        for method in METHODS.values():
+            found[own, method] = alone(system, three, method, at)
     return found
 
 
-@pytest.mark.parametrize("road", ROADS.values())
+@pytest.mark.parametrize("method", METHODS.values())
 @pytest.mark.parametrize("link", ["rv", "3K"])
 def test_a_link_leaves_bit_by_bit_what_it_leaves_alone(
-    link: str, road: str, three: tuple[GearSystem, Trials], plays: dict[tuple[str, str], Array]
+    link: str, method: str, three: tuple[GearSystem, Trials], plays: dict[tuple[str, str], Array]
 ) -> None:
     """All of its tolerances act, run-outs of both shafts among them."""
     system, trials = three
     own, measure = system.model.link(link), system.measures[0]
     seen = link_trials(system.model, measure, own, trials)
-    found = (own.analytic if road == ANALYTIC_ROAD else own.exact)(seen).play[:, 0]
-    assert np.array_equal(found, plays[link, road])
+    found = (own.analytic if method == ANALYTIC_METHOD else own.exact)(seen).play[:, 0]
+    assert np.array_equal(found, plays[link, method])
     assert found.std() > 5e-6
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("method", METHODS)
 def test_the_train_is_the_sum_of_its_links_over_the_ratios_behind_each(
-    road: str, three: tuple[GearSystem, Trials], plays: dict[tuple[str, str], Array]
+    method: str, three: tuple[GearSystem, Trials], plays: dict[tuple[str, str], Array]
 ) -> None:
     """The reducer has 1 + 40/20 x 12 = 25. Rounding of a sum of some 5e-3 rad."""
     system, trials = three
-    found = system.road(ROADS[road], None).answers(trials, system.measures).values
-    pair, rv, planets = (plays[own, ROADS[road]] for own in ("pair", "rv", "3K"))
+    found = system.method(METHODS[method], None).answers(trials, system.measures).values
+    pair, rv, planets = (plays[own, METHODS[method]] for own in ("pair", "rv", "3K"))
     np.testing.assert_allclose(found["at the slow shaft"][:, 0], pair / 25 + rv, rtol=0, atol=1e-16)
     np.testing.assert_allclose(found["lost motion"][:, 0], (pair / 25 + rv) / I_SET + planets, rtol=0, atol=1e-15)
     assert min((pair / 25).std(), rv.std()) > 5e-6  # neither is lost in the other
@@ -216,14 +216,14 @@ def test_thinner_sun_teeth_free_the_carrier_by_their_arc_over_planet_and_cranks(
     contributors = [each for each in three[0].contributors if each.effect.acts_on("rv")]
     widths = {each.name: len(each.draw.components) for each in contributors}
 
-    def play(road: str, thinner: float) -> float:
+    def play(method: str, thinner: float) -> float:
         deviations = {name: np.zeros((1, width)) for name, width in widths.items()}
         deviations["sun teeth"][:] = -thinner
         seen = LinkTrials(contributors, deviations, np.full((1, 1), 0.7))
-        return float((own.analytic if road == ANALYTIC_ROAD else own.exact)(seen).play[0, 0])
+        return float((own.analytic if method == ANALYTIC_METHOD else own.exact)(seen).play[0, 0])
 
-    for road in ROADS.values():
-        assert play(road, 0.02) - play(road, 0.0) == pytest.approx(0.02 / 10 / 12.5, rel=0.01)
+    for method in METHODS.values():
+        assert play(method, 0.02) - play(method, 0.0) == pytest.approx(0.02 / 10 / 12.5, rel=0.01)
     seen = link_trials(three[0].model, three[0].measures[0], own, three[1])
     part = own.parts(seen, {name: np.full(width, 0.001) for name, width in widths.items()})["sun teeth"]
     np.testing.assert_allclose(part, -(seen.deviations["sun teeth"][:, 0] - 0.001) / 125, rtol=1e-12)
@@ -251,9 +251,9 @@ measures: {{lost motion: {{kind: lost_motion, of: train, over: {{at: 0 deg}}}}}}
     alike = text[: text.index("  train")] + measure
     own = rv_system(load_scene(written(tmp_path, alike)))
     rows = np.linspace(-0.009, 0.009, 7)[:, None]
-    for road in ROADS.values():
+    for method in METHODS.values():
         found, wanted = (
-            each.road(road, None).answers(Trials(rows, {"rv": np.zeros(7)}), each.measures).values["lost motion"]
+            each.method(method, None).answers(Trials(rows, {"rv": np.zeros(7)}), each.measures).values["lost motion"]
             for each in (system, own)
         )
         assert np.array_equal(found, wanted)
@@ -274,8 +274,8 @@ def test_every_contributor_of_every_link_has_its_share(run: Run) -> None:
     }  # fmt: skip
     assert names["lost motion"] == names["at the slow shaft"] | of_set
     for measure in ("lost motion", "at the slow shaft"):
-        for road in ("analytic_percent", "geometric_percent"):
-            assert sum(own[road] for own in found[measure]["contributors"]) == pytest.approx(100, abs=6)
+        for method in ("analytic_percent", "geometric_percent"):
+            assert sum(own[method] for own in found[measure]["contributors"]) == pytest.approx(100, abs=6)
         assert found[measure]["agreement"]["explanation"]["faults"] == []
     stages = run.summary["trains"]["train"]["stages"]
     assert [own["kind"] for own in stages] == ["mesh", "rv_reducer", "planetary_set"]
@@ -328,7 +328,7 @@ def test_a_sign_that_is_wrong_in_a_link_is_told(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(RVLink, "analytic", flipped)
     found = run_scene(written(tmp_path, THREE), out=tmp_path / "run").summary["measures"]["at the slow shaft"]
     fault, *_ = found["agreement"]["explanation"]["faults"]
-    assert fault.startswith("the two roads disagree on pin circle: ")
+    assert fault.startswith("the two methods disagree on pin circle: ")
 
 
 # others beside it -----------------------------------------------------------------------------------------------------
@@ -371,10 +371,11 @@ def test_of_two_reducers_in_series_the_first_counts_over_the_ratio_of_the_last(t
     assert isinstance(whole, GearSystem)
     (tmp_path / "alone").mkdir()
     first, second = (rv_system(load_scene(written(tmp_path / "alone", own))) for own in (RV_TRUE, SECOND_ALONE))
-    for road in ROADS.values():
-        found = {name: own[:, 0] for name, own in whole.road(road, None).answers(trials, whole.measures).values.items()}
+    for method in METHODS.values():
+        answers = whole.method(method, None).answers(trials, whole.measures)
+        found = {name: own[:, 0] for name, own in answers.values.items()}
         for name, own, link in (("first", first, "rv"), ("last", second, "second")):
-            read = alone(own, (whole, trials), road, output_turns((whole, trials), link))
+            read = alone(own, (whole, trials), method, output_turns((whole, trials), link))
             assert np.array_equal(found[name], read)
             assert found[name].std() > 3e-6
         np.testing.assert_allclose(found["lost motion"], found["first"] / 25 + found["last"], rtol=0, atol=1e-17)
@@ -403,13 +404,13 @@ def test_beside_another_load_path_both_leave_what_each_leaves_where_its_middle_l
     assert isinstance(own, RVLink)
     seen = link_trials(whole.model, whole.measures[0], own, trials)
     half = trials.deviations[:, whole.model.component_slices["box play"]][:, 0] / 2
-    for road, turning in (("exact", exact_turning(own.own)), (ANALYTIC_ROAD, linear_turning(own.own))):
+    for method, turning in (("exact", exact_turning(own.own)), (ANALYTIC_METHOD, linear_turning(own.own))):
         on, back = (
             turning.turned(own.deviated(seen, own.output_turns(seen)[:, 0]), own.output_turns(seen), sense).turns[:, 0]
             for sense in (1, -1)
         )
         wanted = np.minimum(on, half) - np.maximum(back, -half)
-        found = whole.road(road, None).answers(trials, whole.measures).values["lost motion"][:, 0]
+        found = whole.method(method, None).answers(trials, whole.measures).values["lost motion"][:, 0]
         np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-16)
         centred = np.minimum(on - back, 2 * half)
         assert np.abs(found - centred).max() > 1e-5  # its middle counts
@@ -427,7 +428,7 @@ def test_builds_that_fail_fail_their_train_in_its_words(tmp_path: Path, monkeypa
     read = answered(own, (whole, trials), "exact", output_turns((whole, trials), "second"))
     unfit = np.array(own.statuses.texts)[read.status["lost"]] == "cranks do not fit"
     assert 0 < unfit.sum() < 12
-    found = whole.road("exact", None).answers(trials, whole.measures)
+    found = whole.method("exact", None).answers(trials, whole.measures)
     for name in ("last", "lost motion"):
         words = np.array(whole.statuses.texts)[found.status[name]]
         assert words.tolist() == np.where(unfit, "interferes", "ok").tolist()
@@ -441,7 +442,7 @@ def test_builds_that_fail_fail_their_train_in_its_words(tmp_path: Path, monkeypa
         return FreeTurn(turn.play, turn.middle)
 
     monkeypatch.setattr(RVLink, "exact", lost)
-    again = whole.road("exact", None).answers(trials, whole.measures)
+    again = whole.method("exact", None).answers(trials, whole.measures)
     assert np.array(whole.statuses.texts)[again.status["first"]].tolist() == ["no contact"] * 3 + ["ok"] * 9
 
 
@@ -480,10 +481,10 @@ def test_a_link_from_outside_stands_beside_it_with_the_same_rights(tmp_path: Pat
     angle = np.radians(columns["position:rope [deg]"])
     x, y = (columns[f"slow run-out.{axis} [um]"] for axis in "xy")
     rope = (columns["stretch [um]"] + x * np.cos(angle) - y * np.sin(angle)) * 1e-3 / 50 / ARCMIN
-    for road in ROADS:
-        np.testing.assert_allclose(columns[f"{road}:of the rope"], rope, rtol=0, atol=1e-12)
-        others = columns[f"{road}:lost motion"] - rope
-        np.testing.assert_allclose(others, columns[f"{road}:lost motion:rv [arcmin]"] * 20 / 50, rtol=0, atol=1e-12)
+    for method in METHODS:
+        np.testing.assert_allclose(columns[f"{method}:of the rope"], rope, rtol=0, atol=1e-12)
+        others = columns[f"{method}:lost motion"] - rope
+        np.testing.assert_allclose(others, columns[f"{method}:lost motion:rv [arcmin]"] * 20 / 50, rtol=0, atol=1e-12)
     shares = {own["name"]: own["geometric_percent"] for own in found.summary["measures"]["of the rope"]["contributors"]}
     assert shares.keys() == {"stretch", "slow run-out"}
     assert sum(shares.values()) == pytest.approx(100, abs=1e-6)

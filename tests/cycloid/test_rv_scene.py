@@ -209,8 +209,8 @@ def test_half_ranges_are_those_of_a_plain_monte_carlo(
     # of 2 000 000 units, 0.05" standard error (digest: 37.2, 38.4, 35.8, 36.8"; the carrier added to the first contact
     # there gives 38.20 and 36.72", moving the discs as here 38.42 and 36.45"); of 40 000 here 0.33"
     run = run_scene(bare(tmp_path, discs, carrier), overrides=Overrides(trials=40_000), out=tmp_path / "run")
-    for road in ("analytic", "geometric"):
-        found = run.summary["measures"]["transmission error"][road]
+    for method in ("analytic", "geometric"):
+        found = run.summary["measures"]["transmission error"][method]
         assert 60 * found["pooled"]["half_span"] == pytest.approx(half, abs=4 * 0.33 + 0.1)
         assert mean is None or 60 * found["mean"] == pytest.approx(mean, abs=0.35)
         assert 60 * found["sigma"] == pytest.approx({1: 12.1, 2: 11.6}[discs], abs=0.4)

@@ -51,11 +51,11 @@ def test_a_turn_of_the_cranks_turns_the_output_back_by_one_lobe(system: RVSystem
 
 
 def test_the_swing_is_the_lost_motion_of_the_trial(trial: ShownReducer, system: RVSystem) -> None:
-    """As the exact road reads it: what the measure's two first contacts are apart, the first stage's backlash in it."""
+    """As the exact method reads it: the turn between the measure's first contacts, the first stage's backlash in it."""
     simulation = simulation_of(load_scene(SCENE), Overrides(trials=10))
     trials = drawn(simulation, 4, 1)
     measure = next(own for own in system.measures if own.name == "lost motion")
-    lost = system.road("exact", None).answers(trials, (measure,)).values["lost motion"][0, 0]
+    lost = system.method("exact", None).answers(trials, (measure,)).values["lost motion"][0, 0]
     angles = carrier_angles(swung(trial, 5))
     assert math.radians(angles[-1]) == pytest.approx(lost, abs=1e-12)
     assert angles == pytest.approx([share * angles[-1] for share in (0, 0.25, 0.5, 0.75, 1)], abs=1e-12)

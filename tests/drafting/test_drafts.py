@@ -129,8 +129,8 @@ def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) ->
     (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
     simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
     system = simulation.system
-    road = system.road("exact", system.materials("exact"))
-    values = road.answers(nominal_build(system), system.measures).values
+    method = system.method("exact", system.materials("exact"))
+    values = method.answers(nominal_build(system), system.measures).values
     (gap,) = (float(own[0, 0]) for name, own in values.items() if name.startswith("gap"))
     assert gap == pytest.approx(3.0, abs=1e-9)
 
@@ -274,9 +274,9 @@ def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> 
     text += f"tolerances:\n  pad: {higher}\n"
     simulation = simulation_of(scene_file(text, tmp_path), Overrides())
     system = simulation.system
-    road = system.road("exact", system.materials("exact"))
-    values = road.answers(drawn(simulation, 0, 1), system.measures).values["height"]
-    nominal = road.answers(nominal_build(system), system.measures).values["height"]
+    method = system.method("exact", system.materials("exact"))
+    values = method.answers(drawn(simulation, 0, 1), system.measures).values["height"]
+    nominal = method.answers(nominal_build(system), system.measures).values["height"]
     assert nominal[0, 0] == pytest.approx(20.0, abs=1e-9)
     # pads of A at (-8, -8), (8, -8) and (0, 8) in its plane; the first one 0.08 higher lifts the middle by a quarter
     assert values[0, 0] - 20.0 == pytest.approx(0.02, abs=1e-3)

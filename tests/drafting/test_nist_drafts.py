@@ -70,7 +70,7 @@ def measured(text: str, folder: Path, count: int) -> tuple[dict[str, dict[str, A
     trials = drawn(simulation, 0, count)
     values: dict[str, dict[str, Array]] = {}
     for name in ("exact", "analytic"):
-        made = system.road(name, system.materials(name))
+        made = system.method(name, system.materials(name))
         answers = made.answers(trials, system.measures)
         assert all((codes == OK).all() for codes in answers.status.values())
         values[name] = {key: own[:, 0] for key, own in answers.values.items()}
@@ -161,14 +161,14 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     simulation = simulation_of(load(tmp_path / "scene.yaml"), Overrides())
     system = simulation.system
     assert isinstance(system, AssemblySystem)
-    road = system.road("exact", system.materials("exact"))
+    method = system.method("exact", system.materials("exact"))
     said = {int(row["id"]): row["kind"] for row in ROWS if row["class"] == "said" and row["model"] == named(model)}
     sources = {own.name: own.needs[0].source or 0 for own in draft.entries if own.section == "measures" and own.needs}
     inspected = {name: number for name, number in sources.items() if number in said}
     assert {*inspected.values()} == {number for number, kind in said.items() if kind not in FORMS}
     reached = dict.fromkeys(inspected, 0.0)
     for first in range(0, MANY, BLOCK):
-        values = road.answers(drawn(simulation, first, BLOCK), system.measures).values
+        values = method.answers(drawn(simulation, first, BLOCK), system.measures).values
         reached = {name: max(own, float(values[name].max())) for name, own in reached.items()}
     widths = {own.id: own.magnitude.value for own in draft.files[0].text.tolerances if own.magnitude}
     for name, number in inspected.items():
@@ -229,7 +229,7 @@ def test_distances_and_sizes_are_within_the_limits_of_the_file_and_reach_them(mo
     system = simulation.system
     assert isinstance(system, AssemblySystem)
     values = (
-        system.road("exact", system.materials("exact")).answers(drawn(simulation, 0, TRIALS), system.measures).values
+        system.method("exact", system.materials("exact")).answers(drawn(simulation, 0, TRIALS), system.measures).values
     )
     assert len(wanted) > 3
     for number in wanted.values():

@@ -54,7 +54,7 @@ def with_flank(model: Model, flank: Flank) -> Model:
 
 @dataclass(frozen=True)
 class Rows:
-    """Both roads of 2000 trials on one working flank [mm]."""
+    """Both methods of 2000 trials on one working flank [mm]."""
 
     model: Model
     deviations: np.ndarray

@@ -12,6 +12,7 @@ from places import SPUR_PAIR
 
 from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.distributions import Normal, Rayleigh, Uniform
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import (
     AxisOffset,
     AxisTilt,
@@ -26,7 +27,6 @@ from tol3d.gearing.model import (
     Temperature,
     model_from_scene,
 )
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import analytic_backlash, closed_form, stack_of
 from tol3d.gears import SpurGear, SpurPair
 
@@ -201,7 +201,7 @@ def test_rayleigh_length_in_a_random_direction_is_two_normals() -> None:
 def test_a_tilt_costs_half_its_loss_on_each_flank_side_that_is_read_over_the_face(
     kind: str, read_at: str, loss: float, tmp_path: Path
 ) -> None:
-    """20 um of in-plane tilt over 20 mm of face close 20 um sin(20 deg), on both roads."""
+    """20 um of in-plane tilt over 20 mm of face close 20 um sin(20 deg), on both methods."""
     gear = {"kind": "spur_gear", "module": "2.5 mm", "face_width": "20 mm"}
     law = {"kind": "constant", "value": "20 um"}
     thin = {"kind": "tooth_thickness", "of": "wheel", "distribution": {"kind": "constant", "value": "-60 um"}}

@@ -1,7 +1,7 @@
-"""Clearances in every direction that a scene can say: both roads against each other and against plain numbers.
+"""Clearances in every direction that a scene can say: both methods against each other and against plain numbers.
 
 The paper's pair with its bearing clearance moved to either gear and turned into every direction. What the text means
-is worked out here again, so that a direction that both roads misread alike is found out.
+is worked out here again, so that a direction that both methods misread alike is found out.
 """
 
 import math
@@ -89,12 +89,12 @@ def exact_backlash(columns: Mapping[str, np.ndarray], shifts: dict[str, np.ndarr
 @pytest.mark.parametrize(("flank", "sigma"), [("right", 1), ("left", -1)])
 @pytest.mark.parametrize("direction", ["apart", "tooth_force", "{at: 50 deg}", "random"])
 @pytest.mark.parametrize("gear", ["pinion", "wheel"])
-def test_both_roads_take_a_clearance_as_the_text_means_it(
+def test_both_methods_take_a_clearance_as_the_text_means_it(
     gear: str, direction: str, flank: str, sigma: Flank, tmp_path: Path, engine_of: EngineOf
 ) -> None:
     model = clearance_scene(tmp_path, gear, direction, flank)
     columns = gear_columns(model, engine_of(model), drawn_trials(model, 1, 0, TRIALS))
-    geometric, analytic = (columns[f"{road}:normal backlash"] for road in ("geometric", "analytic"))
+    geometric, analytic = (columns[f"{method}:normal backlash"] for method in ("geometric", "analytic"))
     assert (columns["status"] == "ok").all()
     assert np.abs(geometric - analytic).max() <= STACK_UP_BOUND
     exact = exact_backlash(columns, {gear: shift_of_the_axis(columns, gear, direction, sigma)}, sigma)

@@ -1,4 +1,4 @@
-"""Effects: each is known to both roads, says where it acts, and is built alike by numpy and by the compiled kernel."""
+"""Effects: each is known to both methods, says where it acts, and numpy and the compiled kernel build it alike."""
 
 import math
 from dataclasses import replace
@@ -58,20 +58,20 @@ def mesh_of(name: str, driver: str, driven: str, housing: str | None = None) -> 
 
 
 def test_every_effect_is_among_those_that_are_tried_here() -> None:
-    """But deviations of single flanks, which have roads of their own: test_single_flanks.py tries them."""
+    """But deviations of single flanks, which have methods of their own: test_single_flanks.py tries them."""
     assert {*(type(effect) for effect in ALL), effects.FlankDeviation} == set(SINGLE)
 
 
 @pytest.mark.parametrize("pair", ["spur", "bevel 17/43"])
 @pytest.mark.parametrize("effect", ALL, ids=lambda effect: type(effect).__name__)
-def test_both_roads_know_every_effect_of_every_kind_of_pair(effect: Effect, pair: str) -> None:
+def test_both_methods_know_every_effect_of_every_kind_of_pair(effect: Effect, pair: str) -> None:
     model, _ = far_model(pair, RIGHT)
     stack = stack_of(model, model.meshes[0], Reading())
     moved = list(displacements(effect, model, 1))
     does = contribution(effect, stack, model.contributors[0])
     acts = effect.acts_in(model.meshes[0])
     assert bool(moved) == acts
-    # what nothing displaces has no term; the reverse is what a road may leave out, such as growth of bevel gears
+    # what nothing displaces has no term; the reverse is what a method may leave out, such as growth of bevel gears
     assert acts or does.opening is does.aside is None
 
 

@@ -47,7 +47,7 @@ WHOLE_FACE = Reading()
 BOTH_GEARS = frozenset(("pinion", "wheel"))
 CLOSED_FORM_BOUND = 1e-9  # mm; seen: 3e-11, rounding of angles of some hundred turns times radii of 200 mm
 SEARCH_BOUND = 5e-6  # mm, as promised; seen: 3e-9 at a seat, 4e-7 of gaps, which is GAP_SLANT
-ROADS_BOUND = 5e-8  # mm; seen 3e-8, once in 60 000 free turns of eccentric gears, else 1e-9; see ACROSS_FACES
+METHODS_BOUND = 5e-8  # mm; seen 3e-8, once in 60 000 free turns of eccentric gears, else 1e-9; see ACROSS_FACES
 ACROSS_FACES = 1e-6  # mm; beyond the end of the mate's face 0.4 mm are read along its normal: 0.4 (2 mrad)^2/2
 CANDIDATE_READINGS = [
     replace(reading, teeth=teeth)
@@ -370,7 +370,7 @@ def test_reading_at_once_equals_reading_by_gaps(pair: SpurPair, flank: Flank, se
         assert untold.sum() <= (2 if name == "driver turn" else 0), name
         apart = np.nanmax(np.abs(at_once - by_gaps)[in_range], initial=0.0) * arms[name]
         # seats across partly overlapping faces: the normal at the end of a face is not the flank's; seen 2e-7
-        assert apart <= (ROADS_BOUND if reading.contact == "section" else ACROSS_FACES), name
+        assert apart <= (METHODS_BOUND if reading.contact == "section" else ACROSS_FACES), name
 
 
 # contact points, normals, derivatives ---------------------------------------------------------------------------------
@@ -538,7 +538,7 @@ def test_gears_and_housing_that_grow_alike_are_a_larger_pair() -> None:
     assert seen.driven_turn == pytest.approx(nominal.driven_turn, abs=1e-12)
 
 
-def test_faces_that_do_not_overlap_have_no_contact_by_either_road() -> None:
+def test_faces_that_do_not_overlap_have_no_contact_by_either_method() -> None:
     pair = PAIRS["paper"]
     shift = np.array([[0.0, 0.0, z] for z in (-25.0, -20.001, -19.999, 19.999, 20.001, 25.0)])
     builds = displaced(pair, shift)

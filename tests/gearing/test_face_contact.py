@@ -79,9 +79,9 @@ def test_the_closed_form_is_that_of_the_sample(tmp_path: Path) -> None:
     form = own["analytic_closed_form"]
     assert form["sigma"] == pytest.approx(sigma, rel=1e-3)  # the net's
     assert form["mean"] == pytest.approx(straight - spread * math.sqrt(2 / math.pi), abs=1e-3 * sigma)
-    for road in ("analytic", "geometric"):
-        assert own[road]["mean"] == pytest.approx(form["mean"], abs=4 * own[road]["mean_se"] + 0.02)
-        assert own[road]["sigma"] == pytest.approx(sigma, abs=4 * own[road]["sigma_se"] + 0.02)
+    for method in ("analytic", "geometric"):
+        assert own[method]["mean"] == pytest.approx(form["mean"], abs=4 * own[method]["mean_se"] + 0.02)
+        assert own[method]["sigma"] == pytest.approx(sigma, abs=4 * own[method]["sigma_se"] + 0.02)
     assert not own["agreement"]["explanation"]["faults"]
     shares = np.array([c["analytic_percent"] for c in own["contributors"] if c["name"] != "thinned"])
     assert shares.sum() == pytest.approx(100.0, abs=0.5)

@@ -67,8 +67,8 @@ def test_a_tooth_of_an_idler_acts_in_both_meshes_where_it_passes_them(tmp_path: 
             clear &= np.abs(off - end) > 1.4
     assert min((inside & clear).sum(), (~inside & clear).sum()) > 12
     lost = math.degrees(AHEAD * 1e-3 * COS / (25 * COS)) * 60  # arcmin at c
-    for road in ("analytic", "geometric"):
-        values = columns[f"{road}:lost"]
+    for method in ("analytic", "geometric"):
+        values = columns[f"{method}:lost"]
         full = float(np.median(values[~inside & clear]))
         assert values[~inside & clear] == pytest.approx(full, abs=2e-3)
         assert values[inside & clear] == pytest.approx(full - lost, abs=5e-3)

@@ -1,4 +1,4 @@
-"""Both roads on internal pairs: they differ by squares of the deviations; wrong pairs get one message."""
+"""Both methods on internal pairs: they differ by squares of the deviations; wrong pairs get one message."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -54,7 +54,7 @@ def model_of(folder: Path, text: str) -> Model:
 
 
 def differences(model: Model, size: float) -> dict[str, float]:
-    """Root mean square of what the roads differ by, deviations at a share of their size, by measure."""
+    """Root mean square of what the methods differ by, deviations at a share of their size, by measure."""
     trials = drawn_trials(model, 3, 0, 60)
     some = replace(trials, deviations=size * (trials.deviations - thinning(model, len(trials))))
     columns = gear_columns(model, ExactEngine(model), some)
@@ -73,7 +73,7 @@ def thinning(model: Model, count: int) -> np.ndarray:
 @pytest.mark.parametrize("drives", ["inner", "ring"])
 @pytest.mark.parametrize("flank", ["right", "left"])
 @pytest.mark.parametrize("read_at", ["face", "mean_section", "face_contact"])
-def test_the_roads_differ_by_squares_of_the_deviations(tmp_path: Path, drives: str, flank: str, read_at: str) -> None:
+def test_the_methods_differ_by_squares_of_the_deviations(tmp_path: Path, drives: str, flank: str, read_at: str) -> None:
     mesh = MESH.replace("25 deg", f"25 deg, working_flank: {flank}")
     if drives == "ring":
         mesh = mesh.replace("driver: inner, driven: ring", "driver: ring, driven: inner")
@@ -184,5 +184,5 @@ def test_load_paths_through_a_ring_meet_in_the_intersection_of_their_plays(tmp_p
     ends = [np.minimum(plays[0] / 2, plays[1] / 2 + sign * aside) for sign in (1, -1)]
     expected = np.degrees(sum(ends)) * 60
     assert (np.abs(aside) > np.abs(plays[1] - plays[0]) / 2).sum() > 10  # some are cut by the other path
-    for road in ("geometric", "analytic"):
-        assert np.abs(columns[f"{road}:lost motion"] - expected).max() < 1e-6
+    for method in ("geometric", "analytic"):
+        assert np.abs(columns[f"{method}:lost motion"] - expected).max() < 1e-6

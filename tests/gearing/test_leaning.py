@@ -18,8 +18,8 @@ from thinned import thinned
 
 import tol3d
 from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Measure, Model, Reading, model_from_scene
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.slopes.coefficients import coefficients_of
 from tol3d.gearing.stack_up import closed_form, stack_of
 from tol3d.gearing.stack_up.leaning import leaning_shares
@@ -210,7 +210,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", thinned(CASES, 2))
-def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None:
+def test_a_large_sample_of_either_method_agrees(case: str, tmp_path: Path) -> None:
     """Mean within four standard errors of the sample, sigma too by its own fourth moment, beside what NET allows.
 
     A share by regression on a deviation and its square is at most what it does alone; what is unexplained lies
@@ -220,8 +220,8 @@ def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None
     columns = gear_columns(model, exact_engine(model), drawn_trials(model, 3, 0, TRIALS))
     for name in ("first backlash", "lost motion"):
         measure, form = measure_of(model, name), form_of(model, name)
-        for road, neglected in (("analytic", 0.0), ("geometric", 0.02)):
-            values = np.asarray(columns[f"{road}:{name}"]) / measure.per_internal
+        for method, neglected in (("analytic", 0.0), ("geometric", 0.02)):
+            values = np.asarray(columns[f"{method}:{name}"]) / measure.per_internal
             about = values - values.mean()
             kurtosis = (about**4).mean() / (about**2).mean() ** 2
             error = 4 / math.sqrt(TRIALS)
@@ -239,7 +239,7 @@ def test_a_large_sample_of_either_road_agrees(case: str, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_both_roads_have_the_same_coefficients_where_the_shaft_leans(case: str, tmp_path: Path) -> None:
+def test_both_methods_have_the_same_coefficients_where_the_shaft_leans(case: str, tmp_path: Path) -> None:
     for name, rows in coefficients_of(model_of(tmp_path, *CASES[case])).items():
         own = {row.name: row for row in rows}
         assert {"low clearance", "high clearance"} <= set(own), name

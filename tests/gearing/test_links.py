@@ -91,25 +91,25 @@ def of_teeth(columns: Mapping[str, Array], radius: float, *gears: str) -> Array:
     return np.asarray(lacking * UM / radius * ARCMIN)
 
 
-def of_jaws(columns: Mapping[str, Array], slack: float, road: str) -> Array:
+def of_jaws(columns: Mapping[str, Array], slack: float, method: str) -> Array:
     """Play [arcmin] of jaws at 12 mm; the slack in um."""
     opening = (slack + columns["wear [um]"]) * UM / 12.0
-    return np.asarray((opening if road == "analytic" else 2 * np.arcsin(opening / 2)) * ARCMIN)
+    return np.asarray((opening if method == "analytic" else 2 * np.arcsin(opening / 2)) * ARCMIN)
 
 
 # in series -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_in_series_the_plays_add_up_by_the_ratios(runs: Mapping[str, Run], road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_in_series_the_plays_add_up_by_the_ratios(runs: Mapping[str, Run], method: str) -> None:
     """24:56 and then 20:30 after the gearbox; 20:30 after the pair."""
     columns = runs["series"].columns()
     belt, _ = of_belt(columns, 20.0)
     pair = of_teeth(columns, 42.0, "sun", "wheel")
     by_belt = 20 / 30
     wanted = columns["gearbox play [arcmin]"] * (24 / 56) * by_belt + pair * by_belt + belt
-    wanted = wanted + of_jaws(columns, 600.0, road)
-    assert np.abs(columns[f"{road}:lost motion"] - wanted).max() < AGREES
+    wanted = wanted + of_jaws(columns, 600.0, method)
+    assert np.abs(columns[f"{method}:lost motion"] - wanted).max() < AGREES
     assert belt.std() > 1.0  # else the position would not matter
 
 
@@ -119,7 +119,7 @@ def test_each_link_has_a_term_of_its_own(runs: Mapping[str, Run]) -> None:
     assert [stage["kind"] for stage in stages] == ["reducer", "mesh", "belt", "jaw_coupling"]
     assert [stage["ratio"] for stage in stages] == pytest.approx([5, -56 / 24, 30 / 20, 1], rel=1e-15)
     belt = next(stage for stage in stages if stage["link"] == "belt")
-    assert belt["roads"]["geometric"]["mean"] == pytest.approx(of_belt(columns, 20.0)[0].mean(), rel=1e-12)
+    assert belt["methods"]["geometric"]["mean"] == pytest.approx(of_belt(columns, 20.0)[0].mean(), rel=1e-12)
     assert columns["geometric:lost motion:jaws [arcmin]"] == pytest.approx(of_jaws(columns, 600.0, "geometric"))
 
 
@@ -128,7 +128,7 @@ def test_of_a_law_that_depends_on_the_position_there_is_no_closed_form(runs: Map
     assert "analytic_closed_form" in runs["wolfrom"].summary["measures"]["lost motion"]
 
 
-def test_roads_that_differ_are_explained_by_what_differs(runs: Mapping[str, Run]) -> None:
+def test_methods_that_differ_are_explained_by_what_differs(runs: Mapping[str, Run]) -> None:
     """2 asin(s / 2r) - s / r = (s / r)^3 / 24 + ...; s / r up to 1/12."""
     agreement = runs["series"].summary["measures"]["lost motion"]["agreement"]
     most = (2 * math.asin(1 / 24) - 1 / 12) * ARCMIN
@@ -140,24 +140,24 @@ def test_roads_that_differ_are_explained_by_what_differs(runs: Mapping[str, Run]
 # in parallel ---------------------------------------------------------------------------------------------------------
 
 
-def beside(columns: Mapping[str, Array], road: str, clocking: Array) -> Array:
+def beside(columns: Mapping[str, Array], method: str, clocking: Array) -> Array:
     """What belt and gears leave free together, and the jaws after them [arcmin]."""
     belt, middle = of_belt(columns, 20.0)
     gears = of_teeth(columns, 20.0, "first", "second", "third", "fourth")  # 20:40:20 teeth, twice 20 mm over 40 mm
     shift = -clocking  # a gear that sits ahead leaves its shaft behind
     low = np.maximum(middle - belt / 2, shift - gears / 2)
     high = np.minimum(middle + belt / 2, shift + gears / 2)
-    return np.asarray(high - low + of_jaws(columns, 60.0, road))
+    return np.asarray(high - low + of_jaws(columns, 60.0, method))
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_in_parallel_the_plays_intersect(runs: Mapping[str, Run], road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_in_parallel_the_plays_intersect(runs: Mapping[str, Run], method: str) -> None:
     columns = runs["parallel"].columns()
-    wanted = beside(columns, road, columns["clocking [arcmin]"])
-    assert np.abs(columns[f"{road}:lost motion"] - wanted).max() < AGREES
+    wanted = beside(columns, method, columns["clocking [arcmin]"])
+    assert np.abs(columns[f"{method}:lost motion"] - wanted).max() < AGREES
     belt, middle = of_belt(columns, 20.0)
     gears = of_teeth(columns, 20.0, "first", "second", "third", "fourth")
-    alone = np.minimum(belt, gears) + of_jaws(columns, 60.0, road)
+    alone = np.minimum(belt, gears) + of_jaws(columns, 60.0, method)
     assert (alone - wanted > 1.0).mean() > 0.2  # clocking and the belt's own middle matter
     assert 0.2 < (belt < gears).mean() < 0.8  # and either is the tighter one
     assert np.abs(middle).max() > 1.0
@@ -255,8 +255,8 @@ def test_with_planets_lost_motion_is_what_a_programme_finds(
     wanted = [
         reach(WOLFROM, {name: (-own[k] / 2, own[k] / 2) for name, own in plays.items()}, read, held) for k in range(60)
     ]
-    for road in ("analytic", "geometric"):
-        assert np.abs(columns[f"{road}:{measure}"][:60] - wanted).max() < AGREES
+    for method in ("analytic", "geometric"):
+        assert np.abs(columns[f"{method}:{measure}"][:60] - wanted).max() < AGREES
 
 
 def test_a_ring_s_rate_follows_willis() -> None:
@@ -361,8 +361,8 @@ def test_positions_count_against_the_carrier() -> None:
     assert both.drives[0].turns == 5  # least common multiple of 5/4 and 1
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_on_a_carrier_play_follows_the_angle_against_it(tmp_path: Path, road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_on_a_carrier_play_follows_the_angle_against_it(tmp_path: Path, method: str) -> None:
     """The sun at 100 deg, the carrier at 20: the pulley stands at 80 deg against it."""
     scene = rewritten(
         tmp_path,
@@ -386,7 +386,7 @@ def test_on_a_carrier_play_follows_the_angle_against_it(tmp_path: Path, road: st
     )
     # the carrier's play c turns the planet by c (1 - 12/18) while the sun is held
     wanted = own + columns["in the fixed ring [arcmin]"] / 3
-    assert np.abs(columns[f"{road}:lost motion"] - wanted).max() < SAME
+    assert np.abs(columns[f"{method}:lost motion"] - wanted).max() < SAME
 
 
 @pytest.mark.slow

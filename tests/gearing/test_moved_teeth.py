@@ -93,7 +93,7 @@ def test_fcl_sees_leaning_axes_and_helix_slopes_add_up(value: int, tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_single_flanks_in_a_housing_agree_on_both_roads(tmp_path: Path) -> None:
+def test_single_flanks_in_a_housing_agree_on_both_methods(tmp_path: Path) -> None:
     """Trial by trial; what is left is of leaning axes, whose ends move the path of contact along the face."""
     gears = ("first pinion", "first wheel", "second pinion", "second wheel")
     teeth = [f"  {own} pitch: {{kind: pitch_deviation, of: {own}, flanks: each, {WALK}}}" for own in gears]

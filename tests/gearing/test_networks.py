@@ -20,12 +20,12 @@ from scipy.optimize import linprog
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.meshing.seats import geometric_values, seated
+from tol3d.gearing.methods.analytic import analytic_play
 from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.model.measure import ParallelStage
 from tol3d.gearing.model.mesh_measures import reader_like
 from tol3d.gearing.model.networks import Network, network_path
 from tol3d.gearing.model.train_measures import network_stage
-from tol3d.gearing.roads.analytic import analytic_play
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.system.trials import Trials
 
@@ -176,19 +176,19 @@ def by_programme(columns: Mapping[str, Array], trial: int, read: str, held: str)
     ("what", "read", "held"), [("in the midst", "left", "input"), ("held in the midst", "output", "right")]
 )
 def test_a_shaft_between_load_paths_is_held_by_all_of_them(what: str, read: str, held: str, tmp_path: Path) -> None:
-    """Thick teeth and clocking alone, which both roads take as they are."""
+    """Thick teeth and clocking alone, which both methods take as they are."""
     (tmp_path / "scene.yaml").write_text(split_text(READ[what], thickness_alone=True), "utf-8")
     run = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=60, witness=0), out=tmp_path / "run")
     columns = run.columns()
     for trial in range(60):
         wanted = by_programme(columns, trial, read, held)
         assert wanted is not None
-        for road, off in (("analytic", 1e-9), ("geometric", 1e-6)):
-            assert columns[f"{road}:lost motion"][trial] == pytest.approx(wanted * ARCMIN, rel=0, abs=off)
+        for method, off in (("analytic", 1e-9), ("geometric", 1e-6)):
+            assert columns[f"{method}:lost motion"][trial] == pytest.approx(wanted * ARCMIN, rel=0, abs=off)
 
 
-def test_walks_leave_what_the_closed_road_does_where_that_holds(tmp_path: Path) -> None:
-    """The split train at its output, all tolerances, on the analytic road."""
+def test_walks_leave_what_the_closed_method_does_where_that_holds(tmp_path: Path) -> None:
+    """The split train at its output, all tolerances, on the analytic method."""
     model = model_from_scene(load_scene(SCENES / "split_train.yaml"))
     measure = next(own for own in model.measures if own.name == "lost motion")
     assert isinstance(measure.kind, LostMotion)
@@ -203,7 +203,7 @@ def test_walks_leave_what_the_closed_road_does_where_that_holds(tmp_path: Path) 
 
 
 @pytest.mark.slow
-def test_both_roads_agree_in_the_midst_and_what_differs_is_explained(tmp_path: Path) -> None:
+def test_both_methods_agree_in_the_midst_and_what_differs_is_explained(tmp_path: Path) -> None:
     (tmp_path / "scene.yaml").write_text(split_text(READ["in the midst"]), "utf-8")
     run = run_scene(tmp_path / "scene.yaml", overrides=Overrides(trials=300, witness=0), out=tmp_path / "run")
     agreement = run.summary["measures"]["lost motion"]["agreement"]

@@ -208,7 +208,7 @@ class Forgotten(Effect):
         return False
 
 
-def test_an_effect_that_a_road_does_not_know_is_named(tmp_path: Path) -> None:
+def test_an_effect_that_a_method_does_not_know_is_named(tmp_path: Path) -> None:
     model = model_from_scene(coated(tmp_path))
     first, *others = model.contributors
     model = replace(model, contributors=(replace(first, effect=Forgotten()), *others))

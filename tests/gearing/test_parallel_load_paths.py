@@ -215,9 +215,9 @@ def plays(model: Model, block: Trials, side: str) -> np.ndarray:
     return -fast * COS / ARMS["wheel"] * SLOW - slow * COS / ARMS["bull"]
 
 
-def both_roads(model: Model, block: Trials) -> Mapping[str, np.ndarray]:
+def both_methods(model: Model, block: Trials) -> Mapping[str, np.ndarray]:
     found = gear_columns(model, exact_engine(model), block)
-    return {road: found[f"{road}:lost motion"] / ARCMIN for road in ("analytic", "geometric")} | dict(found)
+    return {method: found[f"{method}:lost motion"] / ARCMIN for method in ("analytic", "geometric")} | dict(found)
 
 
 def test_by_thickness_alone_the_tighter_load_path_decides(tmp_path: Path) -> None:
@@ -225,9 +225,9 @@ def test_by_thickness_alone_the_tighter_load_path_decides(tmp_path: Path) -> Non
     block = drawn_trials(model, 1, 0, 500)
     left, right = (plays(model, block, side) for side in SIDES[:2])
     assert 0.3 < (left < right).mean() < 0.7
-    found = both_roads(model, block)
-    for road in ("analytic", "geometric"):
-        assert np.abs(found[road] - np.minimum(left, right)).max() < AGREES, road
+    found = both_methods(model, block)
+    for method in ("analytic", "geometric"):
+        assert np.abs(found[method] - np.minimum(left, right)).max() < AGREES, method
 
 
 def test_clocking_shifts_what_each_load_path_leaves_free(tmp_path: Path) -> None:
@@ -243,9 +243,9 @@ def test_clocking_shifts_what_each_load_path_leaves_free(tmp_path: Path) -> None
     halves = {side: plays(model, block, side) / 2 for side in SIDES[:2]}
     low = np.max([shifts[side] - halves[side] for side in SIDES[:2]], axis=0)
     high = np.min([shifts[side] + halves[side] for side in SIDES[:2]], axis=0)
-    found = both_roads(model, block)
-    for road in ("analytic", "geometric"):
-        assert np.abs(found[road] - (high - low)).max() < AGREES, road
+    found = both_methods(model, block)
+    for method in ("analytic", "geometric"):
+        assert np.abs(found[method] - (high - low)).max() < AGREES, method
     shifted = np.minimum(halves["left"], halves["right"]) * 2 - (high - low)
     assert (shifted > 1e-5).mean() > 0.5  # in the others one interval lies within the other
 
@@ -266,7 +266,7 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
     clocking = f"  right pinion clocking: {{kind: clocking, of: right pinion, distribution: {{kind: normal, mean: 0 rad, sigma: {sigma!r} rad}}}}"  # noqa: E501
     model = model_of(tmp_path, split_stage().text([*constants(*ALL), clocking]))
     block = drawn_trials(model, 3, 0, trials)
-    found = both_roads(model, block)
+    found = both_methods(model, block)
     share = 2 * norm.sf(2.2)
     assert set(found["status"]) == {"ok", "interferes"}
     tight = found["status"] == "interferes"
@@ -274,8 +274,8 @@ def test_ways_bind_as_often_as_one_pinion_sits_beyond_the_play(tmp_path: Path) -
     wanted = FREE - SLOW * np.abs(told(model, block, "right pinion clocking"))
     beside = np.abs(wanted) > AGREES  # of a trial that is on the edge either may be said
     assert np.array_equal(tight[beside], wanted[beside] < 0)
-    for road in ("geometric", "analytic"):  # what binds is less than nothing by what the load paths lack
-        assert np.abs(found[road] - wanted).max() < AGREES
+    for method in ("geometric", "analytic"):  # what binds is less than nothing by what the load paths lack
+        assert np.abs(found[method] - wanted).max() < AGREES
 
 
 # the mechanism, turned to its ends -------------------------------------------------------------------------------
@@ -428,7 +428,7 @@ def test_the_stack_up_is_off_by_squares_only(tmp_path: Path) -> None:
     lines = [line for kind in ("thickness", "eccentricity", "clocking") for line in tolerances(kind, *ALL)]
     model = model_of(tmp_path, split_stage().text([*lines, *tolerances("axis", *LAY), *OUTPUT]))
     block = drawn_trials(model, 11, 0, 2000)
-    found = both_roads(model, block)
+    found = both_methods(model, block)
 
     def length(name: str) -> np.ndarray:
         return np.hypot(*block.deviations[:, model.component_slices[name]].T)

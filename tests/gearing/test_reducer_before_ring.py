@@ -43,8 +43,8 @@ def test_the_reducer_s_play_turns_the_ring_by_the_ratio_of_the_teeth(ratio: int,
     run = run_scene(tmp_path / "scene.yaml", out=tmp_path / "run")
     columns = run.columns()
     assert run.summary["status"]["ok"] == 200
-    for road in ("analytic", "geometric"):
-        own = columns[f"{road}:lost motion"] - columns[f"{road}:ring backlash"]
+    for method in ("analytic", "geometric"):
+        own = columns[f"{method}:lost motion"] - columns[f"{method}:ring backlash"]
         np.testing.assert_allclose(own, columns["backlash [arcmin]"] * 2 / 7, rtol=0, atol=1e-9)
     alpha = math.radians(20)
     theta = np.radians(columns["position:ring stage [deg]"])

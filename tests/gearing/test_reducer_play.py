@@ -24,21 +24,21 @@ def test_three_sigma_of_its_law_reach_beyond_its_ends() -> None:
     assert MEAN + 3 * SIGMA > HIGH + 0.4
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_a_reducer_s_low_and_high_are_the_ends_of_its_law(run: Run, road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_a_reducer_s_low_and_high_are_the_ends_of_its_law(run: Run, method: str) -> None:
     (train,) = run.summary["trains"].values()
-    (own,) = (stage["roads"][road] for stage in train["stages"] if stage["link"] == "gearbox")
+    (own,) = (stage["methods"][method] for stage in train["stages"] if stage["link"] == "gearbox")
     assert own["low_3sigma"] == pytest.approx(LOW, abs=1e-9)
     assert own["high_3sigma"] == pytest.approx(HIGH, abs=1e-9)
     assert own["mean"] == pytest.approx(MEAN, abs=4 * SIGMA / TRIALS**0.5)  # four standard errors
     assert own["sigma"] == pytest.approx(SIGMA, rel=4 / (2 * TRIALS) ** 0.5)  # at most those of a normal's sigma
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_the_sum_of_highs_counts_the_reducer_s_ends(run: Run, road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_the_sum_of_highs_counts_the_reducer_s_ends(run: Run, method: str) -> None:
     (train,) = run.summary["trains"].values()
     for key, end in (("low_3sigma", LOW), ("high_3sigma", HIGH)):
-        others = [s["factor"] * s["roads"][road][key] for s in train["stages"] if s["link"] != "gearbox"]
+        others = [s["factor"] * s["methods"][method][key] for s in train["stages"] if s["link"] != "gearbox"]
         (factor,) = (stage["factor"] for stage in train["stages"] if stage["link"] == "gearbox")
         assert len(others) >= 2
-        assert train["sums"][road][key] == pytest.approx(sum(others) + factor * end, rel=1e-9)
+        assert train["sums"][method][key] == pytest.approx(sum(others) + factor * end, rel=1e-9)

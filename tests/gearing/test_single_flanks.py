@@ -86,7 +86,7 @@ def test_flanks_without_deviations_are_those_of_gears_without_the_tolerance(tmp_
     assert (ours.status == theirs.status).all()
 
 
-# both roads, and the witness ------------------------------------------------------------------------------------
+# both methods, and the witness ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_the_stack_up_agrees_trial_by_trial_to_the_second_order(
     ):
         off = stack.normal_backlash(builds.deviations, builds.angle, turns) - values  # type: ignore[arg-type]
         assert 1e3 * np.abs(off).max() < bound_um
-    assert 1e3 * found.gap.std() > 3.0  # um: what both roads follow
+    assert 1e3 * found.gap.std() > 3.0  # um: what both methods follow
 
 
 @pytest.mark.slow

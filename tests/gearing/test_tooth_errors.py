@@ -57,7 +57,7 @@ def trials(system: GearSystem) -> Trials:
 @pytest.fixture(scope="module")
 def curves(system: GearSystem, trials: Trials) -> dict[str, Array]:
     """By the exact engine, (trials, positions) [um at the wheel's base circle]."""
-    values = system.road("exact", {}).answers(trials, system.measures).values
+    values = system.method("exact", {}).answers(trials, system.measures).values
     return {side: 1e3 * BASES[1] * values[side] for side in ("drive", "back")}
 
 
@@ -124,9 +124,9 @@ def test_peaks_of_errors_are_those_of_the_positions_and_no_parabola_beside_a_jum
     assert found == pytest.approx(np.ptp(curves["drive"], axis=1), abs=1e-12)
 
 
-def test_both_roads_have_the_same_errors_tooth_by_tooth(
+def test_both_methods_have_the_same_errors_tooth_by_tooth(
     system: GearSystem, trials: Trials, curves: dict[str, Array]
 ) -> None:
-    by_theory = system.road("analytic", None).answers(trials, system.measures).values
+    by_theory = system.method("analytic", None).answers(trials, system.measures).values
     for side, curve in curves.items():
         assert 1e3 * BASES[1] * by_theory[side] == pytest.approx(curve, abs=0.02)

@@ -297,18 +297,18 @@ def test_shares_of_stages_add_up_to_all_of_the_variance_and_are_those_of_the_sam
     own = train_sections(model, merged_terms(first, second), {})["indexing"]
     factors = {"gearbox": 0.5, "first mesh": 31 / 40, "second mesh": 1.5, "third mesh": 1.0}
     assert {stage["link"]: stage["factor"] for stage in own["stages"]} == pytest.approx(factors)
-    for road in ("analytic", "geometric"):
-        total = columns[f"{road}:lost motion"]
+    for method in ("analytic", "geometric"):
+        total = columns[f"{method}:lost motion"]
         for stage in own["stages"]:
-            values = columns[f"{road}:lost motion:{stage['link']} [arcmin]"]
+            values = columns[f"{method}:lost motion:{stage['link']} [arcmin]"]
             share = 100 * factors[stage["link"]] * np.cov(values, total)[0, 1] / total.var(ddof=1)
-            found = stage["roads"][road]
+            found = stage["methods"][method]
             assert found["share_percent"] == pytest.approx(share, abs=1e-9)
             assert (found["mean"], found["sigma"]) == pytest.approx((values.mean(), values.std(ddof=1)))
             assert (found["sample_min"], found["sample_max"]) == (values.min(), values.max())
-        assert sum(stage["roads"][road]["share_percent"] for stage in own["stages"]) == pytest.approx(100.0)
-        added = sum(factors[stage["link"]] * stage["roads"][road]["high_3sigma"] for stage in own["stages"])
-        assert own["sums"][road]["high_3sigma"] == pytest.approx(added)
+        assert sum(stage["methods"][method]["share_percent"] for stage in own["stages"]) == pytest.approx(100.0)
+        added = sum(factors[stage["link"]] * stage["methods"][method]["high_3sigma"] for stage in own["stages"])
+        assert own["sums"][method]["high_3sigma"] == pytest.approx(added)
 
 
 # derivatives ----------------------------------------------------------------------------------------------------

@@ -25,9 +25,9 @@ from tol3d import Scene, load_scene
 from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, Engine
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.methods.neglected import neglected
 from tol3d.gearing.model import Backlash, Kind, Measure, Model, TransmissionError, model_from_scene
 from tol3d.gearing.model.mesh_measures import default_reading
-from tol3d.gearing.roads.neglected import neglected
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gears import LEFT, RIGHT, BevelGear, BevelPair, SpurGear, SpurPair
 from tol3d.gears.flank import Flank
@@ -93,7 +93,7 @@ def scene_of(pair: EccentricPair, flank: str = "left", *, half_play: bool = True
 
 @dataclass(frozen=True)
 class Curves:
-    """What a road finds at the driver's positions [rad], angles in rad."""
+    """What a method finds at the driver's positions [rad], angles in rad."""
 
     positions: np.ndarray
     drive: np.ndarray
@@ -101,12 +101,12 @@ class Curves:
     play: np.ndarray
 
 
-def curves_of(model: Model, road: str = "geometric", engine: Engine | None = None) -> Curves:
+def curves_of(model: Model, method: str = "geometric", engine: Engine | None = None) -> Curves:
     trials = mean_build(model, model.measures[0])
     columns = gear_columns(model, engine or ExactEngine(model), trials)
     assert set(columns["status"]) == {"ok"}
     per = math.radians(1 / 60)
-    found = [columns[f"{road}:{name}"][0] * per for name in ("drive", "back", "play")]
+    found = [columns[f"{method}:{name}"][0] * per for name in ("drive", "back", "play")]
     return Curves(np.array(model.measures[0].positions.fixed), *found)
 
 
@@ -118,7 +118,7 @@ def reference() -> Curves:
     return curves_of(model_from_scene(scene_of(REFERENCE)))
 
 
-def test_the_exact_road_meets_the_reference_case_to_a_hundredth_of_an_arc_second(reference: Curves) -> None:
+def test_the_exact_method_meets_the_reference_case_to_a_hundredth_of_an_arc_second(reference: Curves) -> None:
     play = reference.play * ARCSEC
     assert play[0] == pytest.approx(267.037, abs=0.01)
     assert play.min() == pytest.approx(133.919, abs=0.01)
@@ -130,7 +130,7 @@ def test_the_exact_road_meets_the_reference_case_to_a_hundredth_of_an_arc_second
     assert np.ptp(reference.back) * ARCSEC == pytest.approx(410.768, abs=0.01)
 
 
-def test_the_analytic_road_meets_the_reference_case_to_a_thousandth_of_an_arc_second() -> None:
+def test_the_analytic_method_meets_the_reference_case_to_a_thousandth_of_an_arc_second() -> None:
     play = curves_of(model_from_scene(scene_of(REFERENCE, half_play=False)), "analytic").play * ARCSEC
     assert play[0] == pytest.approx(266.939, abs=0.001)
     assert play.min() == pytest.approx(133.674, abs=0.001)
@@ -190,7 +190,7 @@ def at_turns(measure: Measure, turns: int, count: int) -> Measure:
 # first order --------------------------------------------------------------------------------------
 
 
-def test_the_analytic_road_is_the_published_formulas_of_either_side() -> None:
+def test_the_analytic_method_is_the_published_formulas_of_either_side() -> None:
     pair = replace(REFERENCE, centre=75.5, play=0.2)
     opened = 2 * sum(pair.base) * (involute(pair.working_alpha) - involute(pair.alpha))
     model = model_from_scene(scene_of(replace(pair, play=pair.play - opened), half_play=False))
@@ -361,12 +361,12 @@ def test_fcl_errs_by_its_chords_along_the_whole_period(engine_of: EngineOf) -> N
     model = replace(model, measures=tuple(at_turns(measure, 16, 7) for measure in model.measures[:2]))
     engine = engine_of(model)
     columns = {
-        road: gear_columns(model, own, mean_build(model, model.measures[0]))
-        for road, own in (("exact", ExactEngine(model)), ("fcl", engine))
+        method: gear_columns(model, own, mean_build(model, model.measures[0]))
+        for method, own in (("exact", ExactEngine(model)), ("fcl", engine))
     }
     bound = 2 * engine.chord_error / REFERENCE.base[1] * 180 / math.pi * 60
     for side in ("drive", "back"):
-        exact, fcl = (columns[road][f"geometric:{side}"][0] for road in ("exact", "fcl"))
+        exact, fcl = (columns[method][f"geometric:{side}"][0] for method in ("exact", "fcl"))
         assert np.abs(fcl - exact).max() <= bound
 
 
@@ -390,8 +390,8 @@ def test_derivatives_are_difference_quotients(flank: str) -> None:
 
 def values_of(model: Model, engine: Engine | None, trials: Trials) -> np.ndarray:
     measure = model.measures[0]
-    road = "analytic" if engine is None else "geometric"
-    return np.asarray(gear_columns(model, engine, trials, (measure,))[f"{road}:{measure.name}"])
+    method = "analytic" if engine is None else "geometric"
+    return np.asarray(gear_columns(model, engine, trials, (measure,))[f"{method}:{measure.name}"])
 
 
 def train_fields(flank: str = "drive", second: str = "right", **measure: object) -> dict[str, object]:
@@ -432,12 +432,12 @@ def train_fields(flank: str = "drive", second: str = "right", **measure: object)
     }
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
 @pytest.mark.parametrize("flank", ["drive", "back"])
-def test_a_train_adds_its_meshes_errors_up_over_the_ratios_behind_them(flank: str, road: str) -> None:
+def test_a_train_adds_its_meshes_errors_up_over_the_ratios_behind_them(flank: str, method: str) -> None:
     model = model_from_scene(Scene.model_validate(train_fields(flank)))
     trials = drawn_trials(model, 2, 0, 5)
-    engine = None if road == "analytic" else ExactEngine(model)
+    engine = None if method == "analytic" else ExactEngine(model)
     whole = values_of(model, engine, trials)
     total = np.zeros_like(whole)
     kind = model.measures[0].kind
@@ -525,14 +525,14 @@ SQUARES = 0.015  # of an error: its products with what rests; 20 um of clearance
 
 
 def check_first_order(kind: str, scenes: int, trials: int, seed: int) -> None:
-    """Both roads differ by what the stack-up says that it neglects, and by squares, on random scenes and trials."""
+    """Both methods differ by what the stack-up says that it neglects, and by squares, on random scenes and trials."""
     turning = 0
     for scene in random_scenes(kind, scenes, seed):
         model = with_curves(model_from_scene(scene), Positions("turn", 1, 14))
         block = drawn_trials(model, 3, 0, trials)
         columns = gear_columns(model, ExactEngine(model), block, model.measures[:2])
         for measure in model.measures[:2]:
-            analytic, exact = (np.radians(columns[f"{road}:{measure.name}"] / 60) for road in ("analytic", "geometric"))
+            analytic, exact = (np.radians(columns[f"{own}:{measure.name}"] / 60) for own in ("analytic", "geometric"))
             left_out = sum(neglected(model, measure, block).values(), np.zeros(trials)) / measure.per_internal
             seated = columns[f"status:{measure.name}"] == "ok"
             largest = np.abs(analytic).max(axis=1)
@@ -543,17 +543,17 @@ def check_first_order(kind: str, scenes: int, trials: int, seed: int) -> None:
 
 
 @pytest.mark.parametrize("kind", ["spur", pytest.param("bevel", marks=pytest.mark.slow)])
-def test_both_roads_differ_by_what_the_stack_up_neglects(kind: str) -> None:
+def test_both_methods_differ_by_what_the_stack_up_neglects(kind: str) -> None:
     check_first_order(kind, 4, 10, 21)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["spur", "bevel"])
-def test_both_roads_differ_by_what_the_stack_up_neglects_on_many_scenes(kind: str) -> None:
+def test_both_methods_differ_by_what_the_stack_up_neglects_on_many_scenes(kind: str) -> None:
     check_first_order(kind, 40, 25, 22)
 
 
-def test_the_roads_differ_by_the_square_of_the_eccentricities() -> None:
+def test_the_methods_differ_by_the_square_of_the_eccentricities() -> None:
     """Eccentricities and play halved leave a quarter of the difference."""
     differences = []
     for share in (1.0, 0.5, 0.25):

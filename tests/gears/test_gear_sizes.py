@@ -208,7 +208,7 @@ def test_a_witness_of_edges_is_content(tmp_path: Path, tooth: str) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), "utf-8")
     model = simulation_of(load_scene(path))
-    witness = witness_summary(model, model.system.road("exact", None), model.study.trials)
+    witness = witness_summary(model, model.system.method("exact", None), model.study.trials)
     own = witness["measures"]["one tooth"]
     assert own["compared"] > 10
     assert own["allowance"] == pytest.approx(1e3 * LEFT_OVER * 3.5)
@@ -221,12 +221,12 @@ def test_a_small_gear_s_witness_warns_of_little(tmp_path: Path) -> None:
     model = model_of(tmp_path, SPUR, 0.05, (12, 20), 0.05)
     apart = model_of(tmp_path, SPUR.replace("{a}", "0.8196"), 0.05, (12, 20), 0.05)
     simulation, other_simulation = simulated(model, witness=40), simulated(apart, witness=40)
-    road = simulation.system.road("exact", None)
-    witness = witness_summary(simulation, road, 40)
+    method = simulation.system.method("exact", None)
+    witness = witness_summary(simulation, method, 40)
     assert witness_warnings(simulation, witness) == []
     own = witness["measures"]["backlash"]
     assert own["expected_at_most"] + own["allowance"] < 0.005
-    other = witness_summary(other_simulation, road, 40)
+    other = witness_summary(other_simulation, method, 40)
     assert witness_warnings(other_simulation, other)
 
 

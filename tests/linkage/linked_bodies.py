@@ -12,7 +12,7 @@ from oracles.closed_loops import Loops, Pair, Poses, closed, displaced, facing, 
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model.statuses import OK
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.stated import component_count, component_slices, stated
 
 Array = NDArray[np.float64]
@@ -293,14 +293,14 @@ class Study:
             row[slices[f"zero of {name}"]] = value
         return row
 
-    def answers(self, rows: Array, road: str = "exact") -> Answers:
-        made = self.system.road(road, self.system.materials(road))
+    def answers(self, rows: Array, method: str = "exact") -> Answers:
+        made = self.system.method(method, self.system.materials(method))
         found: Answers = made.answers(stated(self.system, rows), self.system.measures)
         return found
 
-    def seen(self, rows: Array, where: str = "", road: str = "exact") -> Array:
+    def seen(self, rows: Array, where: str = "", method: str = "exact") -> Array:
         """All probes in trials (trials, probes, 3) [mm]; every one is built."""
-        answers = self.answers(rows, road)
+        answers = self.answers(rows, method)
         assert all((codes == OK).all() for codes in answers.status.values())
         own = self.linkage
         return np.stack(

@@ -1,4 +1,4 @@
-"""How well the spherical drive points: its digest's figures, trial by trial against an oracle, both roads."""
+"""How well the spherical drive points: its digest's figures, trial by trial against an oracle, both methods."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ DIGEST = {
 
 @dataclass(frozen=True)
 class Sample:
-    """What both roads make of the same trials."""
+    """What both methods make of the same trials."""
 
     made: Assembled
     trials: Trials
@@ -64,8 +64,8 @@ class Sample:
 def sample(tmp_path_factory: pytest.TempPathFactory) -> Sample:
     made = assembled(drive_text(MEASURES, TRIALS), tmp_path_factory.mktemp("drive"))
     trials, found = drawn(made.simulation, 0, TRIALS), []
-    for road in ("exact", "analytic"):
-        answers = made.system.road(road, made.system.materials(road)).answers(trials, made.system.measures)
+    for method in ("exact", "analytic"):
+        answers = made.system.method(method, made.system.materials(method)).answers(trials, made.system.measures)
         found.append(answers)
     values = [{name: own[:, 0] / MINUTE for name, own in answers.values.items()} for answers in found]
     codes = {name: found[0].status.get(name, np.zeros(TRIALS, dtype=np.int8)) for name in values[0]}
@@ -93,7 +93,7 @@ def test_the_figures_of_the_digest(sample: Sample, pose: str) -> None:
         assert values.std() == pytest.approx(sigma, abs=4 * np.sqrt(2) * of_sigma(values) + digit)
 
 
-def test_the_linear_road_is_near_up_to_70_degrees(sample: Sample) -> None:
+def test_the_linear_method_is_near_up_to_70_degrees(sample: Sample) -> None:
     """Sigma within 1 % at 40 and 70 deg; rms difference of trials 0.06' at 70 deg, by its fourth moments and digit."""
     for pose in ("middle", "far"):
         exact, linear = (own[f"error {pose}"] for own in (sample.exact, sample.linear))
@@ -188,7 +188,7 @@ def test_trials_against_two_equations_in_two_unknowns(sample: Sample, pose: str)
 # what is told ---------------------------------------------------------------------------------------
 
 
-def test_a_flipped_sign_in_one_road_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_flipped_sign_in_one_method_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "drive.yaml"
     path.write_text(drive_text(error("along", "against: frame.axis, component: along, at: middle")), "utf-8")
     right = ClosedLoop.displaced
@@ -206,7 +206,7 @@ def test_a_flipped_sign_in_one_road_is_told(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(ClosedLoop, "displaced", flipped)
     found = run_scene(path, out=tmp_path / "run", overrides=Overrides(trials=2000)).summary["measures"]["along"]
     fault, *_ = found["agreement"]["explanation"]["faults"]
-    assert fault.startswith("the two roads disagree on zero of travel 2: ")
+    assert fault.startswith("the two methods disagree on zero of travel 2: ")
 
 
 def test_a_root_on_the_other_side_of_a_singular_pose_is_another_branch(sample: Sample) -> None:
@@ -221,8 +221,8 @@ def test_a_root_on_the_other_side_of_a_singular_pose_is_another_branch(sample: S
 
     measure = next(own for own in sample.made.system.measures if own.name == "error middle")
     with patch("tol3d.linkage.loop.loops_closed", turned):
-        road = sample.made.system.road("exact", None)
-        answers = road.answers(sample.trials.part(0, 5), [measure])
+        method = sample.made.system.method("exact", None)
+        answers = method.answers(sample.trials.part(0, 5), [measure])
     assert calls
     assert (answers.status["error middle"] == OTHER_BRANCH).all()
     assert np.isnan(answers.values["error middle"]).all()

@@ -76,7 +76,7 @@ CHANGES: dict[str, Callable[[Linkage], Linkage]] = {
     "name", [own if own in ("random", "planet") else pytest.param(own, marks=pytest.mark.slow) for own in MAKERS]
 )
 def test_measures_do_not_change(name: str, change: str, tmp_path: Path) -> None:
-    """All features of joints and all inputs deviate; on both roads."""
+    """All features of joints and all inputs deviate; on both methods."""
     linkage = MAKERS[name]()
     changed = CHANGES[change](linkage)
     rng = np.random.default_rng(2)
@@ -89,8 +89,8 @@ def test_measures_do_not_change(name: str, change: str, tmp_path: Path) -> None:
         after.columns(deviations, {name: senses[name] * value for name, value in zeros.items()})[None],
     )
     for where in linkage.poses:
-        for road in ("exact", "analytic"):
-            assert np.abs(before.seen(rows[0], where, road) - after.seen(rows[1], where, road)).max() < LIMIT
+        for method in ("exact", "analytic"):
+            assert np.abs(before.seen(rows[0], where, method) - after.seen(rows[1], where, method)).max() < LIMIT
 
 
 @pytest.mark.parametrize(
@@ -109,8 +109,8 @@ def test_plays_do_not_change_either(change: str, tmp_path: Path) -> None:
             row[slices[own.name]] *= 1e-3
         other[there[own.name]] = row[slices[own.name]]
     for where in linkage.poses:
-        for road in ("exact", "analytic"):
-            assert np.abs(before.seen(row[None], where, road) - after.seen(other[None], where, road)).max() < LIMIT
+        for method in ("exact", "analytic"):
+            assert np.abs(before.seen(row[None], where, method) - after.seen(other[None], where, method)).max() < LIMIT
 
 
 def test_parts_drawn_turned_have_their_loops_where_they_were(tmp_path: Path) -> None:

@@ -186,7 +186,7 @@ def test_a_linked_part_is_held_by_a_feature_toleranced_to_datums_that_deviate(co
         assert standing is not None
         cover = standing["slider"] @ laid(normals, distances)
         expected.append([(standing["slider"] @ [10.0, 4.0, -3.0, 1.0])[:3], (cover @ [40.0, 30.0, 22.0, 1.0])[:3]])
-    made = covered.system.road("exact", covered.system.materials("exact"))
+    made = covered.system.method("exact", covered.system.materials("exact"))
     read = made.answers(stated(covered.system, np.array(rows)), covered.system.measures).values
     found = np.array(
         [
@@ -197,17 +197,17 @@ def test_a_linked_part_is_held_by_a_feature_toleranced_to_datums_that_deviate(co
     assert np.abs(found - np.array(expected)).max() < 1e-9
 
 
-def test_its_roads_differ_by_second_order(covered: Assembled) -> None:
+def test_its_methods_differ_by_second_order(covered: Assembled) -> None:
     rng = np.random.default_rng(6)
     rows = 0.02 * rng.normal(size=(20, component_count(covered.system)))
     rows[:, component_slices(covered.system)["zero of angle"]] *= 0.01
     wholes = []
     for factor in (1.0, 0.5):
         both = [
-            covered.system.road(road, covered.system.materials(road)).answers(
+            covered.system.method(method, covered.system.materials(method)).answers(
                 stated(covered.system, factor * rows), covered.system.measures
             )
-            for road in ("exact", "analytic")
+            for method in ("exact", "analytic")
         ]
         off = [both[0].values[own.name] - both[1].values[own.name] for own in covered.system.measures]
         wholes.append(float(np.sqrt(np.mean(np.square(off)))))

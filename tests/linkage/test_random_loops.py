@@ -1,4 +1,4 @@
-"""Loops of joints of any kinds at random places, against the oracle and road against road."""
+"""Loops of joints of any kinds at random places, against the oracle and method against method."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -25,7 +25,7 @@ def assert_as_the_oracle(linkage: Linkage, folder: Path, seed: int = 0) -> None:
 
 
 def assert_second_order(linkage: Linkage, folder: Path) -> None:
-    """Halving all deviations quarters the rms difference of the roads, within what a third order makes of 20 trials.
+    """Halving all deviations quarters the rms difference of the methods, within what a third order makes of 20 trials.
 
     Near a singular pose some do not close, and the third order counts: deviations are then a 64th of the others'.
     """
@@ -61,7 +61,7 @@ def test_random_loops_are_as_the_oracle_has_them(seed: int, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("seed", [*range(2), *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 60))])
-def test_the_roads_of_random_loops_differ_by_second_order(seed: int, tmp_path: Path) -> None:
+def test_the_methods_of_random_loops_differ_by_second_order(seed: int, tmp_path: Path) -> None:
     assert_second_order(random_loop(100 + seed, two=seed % 2 == 0), tmp_path)
 
 
@@ -76,7 +76,7 @@ def test_an_input_of_one_of_two_freedoms_counts_wherever_its_joint_is_listed(kin
 
 @pytest.mark.parametrize("seed", [200, *(pytest.param(k, marks=pytest.mark.slow) for k in range(201, 221))])
 def test_large_deviations_are_followed_or_told_not_to_close(seed: int, tmp_path: Path) -> None:
-    """0.6 mm and 0.01 rad of loops of 60 mm: the road follows them where the oracle does, and nowhere else."""
+    """0.6 mm and 0.01 rad of loops of 60 mm: the method follows them where the oracle does, and nowhere else."""
     linkage = random_loop(seed, two=seed % 2 == 0)
     study, rng = study_of(linkage, tmp_path), np.random.default_rng(seed)
     trials = [random_deviations(linkage, rng, 0.6, 1e-2) for _ in range(12)]

@@ -1,4 +1,4 @@
-"""First-order slopes of everything that acts, against central differences of the finite road at random poses."""
+"""First-order slopes of everything that acts, against central differences of the finite method at random poses."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -47,7 +47,7 @@ def steps_of(system: Any) -> Array:
 
 
 def slopes(study: Study, where: str) -> tuple[Array, Array]:
-    """Of all probes by each deviation (components, probes, 3): of the finite road, and to first order."""
+    """Of all probes by each deviation (components, probes, 3): of the finite method, and to first order."""
     steps = steps_of(study.system)
     rows = np.diag(steps)
     there = study.seen(np.concatenate([rows, -rows]), where)
@@ -136,8 +136,8 @@ study: {{trials: 10}}
     by = 5.0 / (2 * np.pi)
     for where, way in (("ahead", 12.0), ("behind", -30.0)):
         shares = {"zero": 1.0, "lead": abs(way) / 300, "backlash": by, "turn error": by * abs(way) / 100}
-        for road in ("exact", "analytic"):
-            answers = made.system.road(road, made.system.materials(road))
+        for method in ("exact", "analytic"):
+            answers = made.system.method(method, made.system.materials(method))
             rows = np.zeros((5, component_count(made.system)))
             for k, name in enumerate(shares):
                 rows[k, slices[f"{name} of travel"]] = 1e-3

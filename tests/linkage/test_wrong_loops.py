@@ -420,7 +420,7 @@ def test_a_clearance_that_is_drawn_below_0_is_no_build(tmp_path: Path) -> None:
     made = assembled(scene({"b": f"{{kind: ball, between: [crank.P, rod.P], {clearance}}}"}), tmp_path)
     rows = np.zeros((4, component_count(made.system)))
     rows[:, component_slices(made.system)["clearance of b"]] = np.array([[0.0], [-0.004], [-0.0051], [0.004]])
-    answers = made.system.road("exact", made.system.materials("exact")).answers(
+    answers = made.system.method("exact", made.system.materials("exact")).answers(
         stated(made.system, rows), made.system.measures
     )
     assert answers.status["x"].tolist() == [OK, OK, NO_BUILD, OK]

@@ -107,10 +107,10 @@ def system_of(text: str, folder: Path) -> MachineSystem:
     return system
 
 
-def plays(system: MachineSystem, trials: Trials, pose: str, road: str = "exact") -> Array:
+def plays(system: MachineSystem, trials: Trials, pose: str, method: str = "exact") -> Array:
     """Lost motions of all drives at a pose (trials, joints) [rad], by the gears alone."""
     readings = [drive.readings[pose] for drive in system.drives]
-    own = system.gears.road(road, {}).answers(system.gear_trials(trials, np.zeros((len(trials), 0))), readings)
+    own = system.gears.method(method, {}).answers(system.gear_trials(trials, np.zeros((len(trials), 0))), readings)
     return np.stack([own.values[reading.name][:, 0] for reading in readings], axis=1)
 
 

@@ -91,7 +91,7 @@ def gearbox_of(text: str, folder: Path) -> MachineSystem:
     return found
 
 
-def values(system: System, road: str, deviations: Mapping[str, Array], turns: Array) -> dict[str, Array]:
+def values(system: System, method: str, deviations: Mapping[str, Array], turns: Array) -> dict[str, Array]:
     """Measures (trials,) [mm, rad] of builds; deviations (trials,) by column without unit, all others 0."""
     columns = [column.rpartition(" ")[0] for own in system.contributors for column in own.columns]
     assert set(deviations) <= set(columns), columns
@@ -99,7 +99,7 @@ def values(system: System, road: str, deviations: Mapping[str, Array], turns: Ar
     for name, own in deviations.items():
         rows[:, columns.index(name)] = own
     trials = Trials(rows, system.positions(dict.fromkeys(system.streams, turns)))
-    found = system.road(road, system.materials(road)).answers(trials, list(system.measures))
+    found = system.method(method, system.materials(method)).answers(trials, list(system.measures))
     for name, codes in found.status.items():
         assert not np.any(codes), name
     return {name: own[:, 0] for name, own in found.values.items()}

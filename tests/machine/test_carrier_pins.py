@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from tol3d import SceneError
 from tol3d.study.columns import columns_of
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.regressors import regressor_count
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -94,8 +94,8 @@ def of_plate(out: Array, along: Array, x: Array, y: Array) -> dict[str, Array]:
     return found | {f"{word} {k + 1}": own[k] for word, own in (("out", out), ("along", along)) for k in range(3)}
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_pins_of_a_plate_are_pins_of_planets(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_pins_of_a_plate_are_pins_of_planets(method: str, tmp_path: Path) -> None:
     """Pins off their places in the plate, and off its bearing, are `planet_pin` deviations trial by trial."""
     rng = np.random.default_rng(1)
     of, turns, own = planetary.drawn_at_random(rng, COUNT, 3), rng.random(COUNT), offsets(rng)
@@ -103,15 +103,15 @@ def test_pins_of_a_plate_are_pins_of_planets(road: str, tmp_path: Path) -> None:
     radial, tangential = seen(*own)
     pins = {f"outwards.planet {k + 1}": of[f"outwards.planet {k + 1}"] + radial[k] for k in range(3)}
     pins |= {f"round.planet {k + 1}": of[f"round.planet {k + 1}"] + tangential[k] for k in range(3)}
-    found = values(gearbox_of(drawn(ALONE, RADIUS), tmp_path), road, of | of_plate(*own), turns)
+    found = values(gearbox_of(drawn(ALONE, RADIUS), tmp_path), method, of | of_plate(*own), turns)
     alone = system_of(ALONE, tmp_path, "alone")
-    wanted, without = values(alone, road, of | pins, turns), values(alone, road, of, turns)
+    wanted, without = values(alone, method, of | pins, turns), values(alone, method, of, turns)
     assert np.ptp(wanted["lost motion"] - without["lost motion"]) > 1e-5
     np.testing.assert_allclose(found["lost motion"], wanted["lost motion"], rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_holes_of_a_plate_are_holes_of_an_rv_reducer_s_carrier(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_holes_of_a_plate_are_holes_of_an_rv_reducer_s_carrier(method: str, tmp_path: Path) -> None:
     rng = np.random.default_rng(2)
     of, turns, own = rv.drawn_at_random(rng, COUNT), rng.random(COUNT), offsets(rng)
     of = {name: each for name, each in of.items() if " bore " not in name}
@@ -120,9 +120,9 @@ def test_holes_of_a_plate_are_holes_of_an_rv_reducer_s_carrier(road: str, tmp_pa
     around = np.exp(2j * np.pi * np.arange(3) / 3)[:, None] * (radial + 1j * tangential)
     holes = {f"holes.hole {k + 1} x": around[k].real for k in range(3)}
     holes |= {f"holes.hole {k + 1} y": around[k].imag for k in range(3)}
-    found = values(gearbox_of(drawn(OF_RV, 15.0), tmp_path), road, of | of_plate(*own), turns)
+    found = values(gearbox_of(drawn(OF_RV, 15.0), tmp_path), method, of | of_plate(*own), turns)
     alone = system_of(text, tmp_path, "alone")
-    wanted, without = values(alone, road, of | holes, turns), values(alone, road, of, turns)
+    wanted, without = values(alone, method, of | holes, turns), values(alone, method, of, turns)
     assert np.ptp(wanted["lost motion"] - without["lost motion"]) > 1e-5
     np.testing.assert_allclose(found["lost motion"], wanted["lost motion"], rtol=0, atol=1e-12)
 
@@ -140,7 +140,7 @@ def test_each_pin_has_the_share_that_differences_of_the_lost_motion_give_it(kind
     (measure,) = system.measures
 
     def read(deviations: Array) -> Array:
-        found = system.road(ANALYTIC_ROAD, None).answers(Trials(deviations, trials.positions), [measure])
+        found = system.method(ANALYTIC_METHOD, None).answers(Trials(deviations, trials.positions), [measure])
         return np.asarray(found.values["lost motion"][:, 0] * measure.per_internal)
 
     regressed = {each.name: np.full((regressor_count(each), COUNT), np.nan) for each in system.contributors}

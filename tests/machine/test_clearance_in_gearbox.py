@@ -51,8 +51,8 @@ def test_a_clearance_follows_the_part_that_it_is_of(path: Path) -> None:
     system = simulation.system
     trials = drawn(simulation, 0, 40)
     height = trials.deviations[:, component_slices(system)["guard height"]][:, 0]
-    for road in ("exact", "analytic"):
-        found = system.road(road, system.materials(road)).answers(trials, system.measures)
+    for method in ("exact", "analytic"):
+        found = system.method(method, system.materials(method)).answers(trials, system.measures)
         assert found.values["guard over foot"][:, 0] == pytest.approx(0.3 + height, abs=1e-9)
         assert all((codes == 0).all() for codes in found.status.values())
 
@@ -74,7 +74,7 @@ def test_parts_that_overlap_have_the_status(path: Path) -> None:
     simulation = simulation_of(load(path))
     system, trials = simulation.system, drawn(simulation, 0, 2)
     trials.deviations[:, component_slices(system)["guard height"]] = [[-0.4], [0.1]]
-    found = system.road("exact", system.materials("exact")).answers(trials, system.measures)
+    found = system.method("exact", system.materials("exact")).answers(trials, system.measures)
     codes = found.status["guard over foot"]
     assert system.statuses.by_code[codes].tolist() == ["overlap", "ok"]
     assert np.isnan(found.values["guard over foot"][:, 0]).tolist() == [True, False]

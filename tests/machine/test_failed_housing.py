@@ -29,7 +29,7 @@ def test_a_housing_out_of_reach_is_a_status_of_its_gears(tmp_path: Path) -> None
     system = gearbox_of(text(), tmp_path)
     rows = np.array([[0.0, -0.02], [125.0, -0.02], [-5.0, -0.02]])
     trials = Trials(rows, system.positions(dict.fromkeys(system.streams, np.zeros(3))))
-    found = system.road("exact", {}).answers(trials, system.measures)
+    found = system.method("exact", {}).answers(trials, system.measures)
     texts = [system.statuses.texts[code] for code in found.status["backlash"]]
     assert texts == ["ok", "singular", "ok"]
     values = found.values["backlash"][:, 0]

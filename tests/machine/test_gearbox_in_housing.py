@@ -34,7 +34,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 @pytest.mark.parametrize("measure", STAGES)
 def test_backlashes_follow_from_the_columns_of_the_run(measure: str, run: Run) -> None:
-    """The analytic road is the same sum; the exact one is within a hundredth of a um of involutes that lean."""
+    """The analytic method is the same sum; the exact one is within a hundredth of a um of involutes that lean."""
     columns = run.columns()
     summed, rolled = (1000 * own(BOX, columns, STAGES[measure]) for own in (to_first_order, by_involutes))
     np.testing.assert_allclose(columns[f"analytic:{measure}"], summed, rtol=0, atol=1e-6)
@@ -72,9 +72,9 @@ def test_mean_sigma_and_correlation_of_both_backlashes_are_those_of_other_draws(
     found = run.columns()
     apart = 1 / TRIALS + 1 / count
     for name, own in drawn.items():
-        for road in ("analytic", "geometric"):
-            summary = run.summary["measures"][name][road]
-            bent = 0.05 if road == "geometric" else 0.0  # of second order: what is warm bends the involute
+        for method in ("analytic", "geometric"):
+            summary = run.summary["measures"][name][method]
+            bent = 0.05 if method == "geometric" else 0.0  # of second order: what is warm bends the involute
             assert summary["mean"] == pytest.approx(own.mean(), abs=4 * own.std() * math.sqrt(apart) + bent)
             assert summary["sigma"] == pytest.approx(own.std(), rel=4 * math.sqrt(apart / 2) + bent / own.std())
         form = run.summary["measures"][name]["analytic_closed_form"]
@@ -116,9 +116,9 @@ def test_the_moments_of_the_cover_s_gap_by_hand(run: Run) -> None:
         own = run.summary["measures"][name]
         form = own["analytic_closed_form"]
         assert (form["mean"], form["sigma"]) == pytest.approx((mean, sigma), abs=1e-3)
-        for road in ("analytic", "geometric"):
-            assert own[road]["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(TRIALS))
-            assert own[road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * TRIALS))
+        for method in ("analytic", "geometric"):
+            assert own[method]["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(TRIALS))
+            assert own[method]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * TRIALS))
 
 
 def test_a_dowel_hole_that_stands_upright_lets_the_output_bores_meet(tmp_path: Path) -> None:

@@ -53,8 +53,8 @@ def trials(arm: MachineSystem, tmp_path_factory: pytest.TempPathFactory) -> Tria
     return drawn(simulation, 0, SMALL)
 
 
-def answers(system: MachineSystem, trials: Trials, road: str) -> dict[str, Array]:
-    found = system.road(road, system.materials(road)).answers(trials, system.measures)
+def answers(system: MachineSystem, trials: Trials, method: str) -> dict[str, Array]:
+    found = system.method(method, system.materials(method)).answers(trials, system.measures)
     return {name: values[:, 0] for name, values in found.values.items()}
 
 
@@ -141,8 +141,8 @@ def test_a_chain_of_other_numbers_is_where_matrices_have_it(tmp_path: Path) -> N
 
 
 def test_the_worst_is_the_largest_over_poses_and_flanks(arm: MachineSystem, trials: Trials) -> None:
-    for road in ("exact", "analytic"):
-        found = answers(arm, trials, road)
+    for method in ("exact", "analytic"):
+        found = answers(arm, trials, method)
         assert (found["worst"] == np.maximum(found["size home"], found["size up"])).all()
     found, largest, ends = answers(arm, trials, "exact"), np.zeros(SMALL), bores(arm, trials, 3)
     for pose, inputs in POSES.items():
@@ -178,7 +178,7 @@ def test_a_closed_form_adds_up_what_joints_and_bores_do(tmp_path: Path) -> None:
     assert geometric == pytest.approx(100.0, abs=3.0)
 
 
-def test_a_joint_that_turns_the_other_way_on_one_road_is_told(tmp_path: Path, monkeypatch: Any) -> None:
+def test_a_joint_that_turns_the_other_way_on_one_method_is_told(tmp_path: Path, monkeypatch: Any) -> None:
     from tol3d.assembly.torsors.torsor import cross_matrix
 
     def turned_back(self: Chain, world: Any) -> Any:
@@ -205,7 +205,7 @@ def test_what_a_jammed_train_carries_is_not_built_and_says_which(tmp_path: Path)
     place.write_text(text, "utf-8")
     system = system_of(text, tmp_path)
     trials = drawn(simulation_of(load_scene(place), Overrides()), 0, 400)
-    found = system.road("exact", {}).answers(trials, system.measures)
+    found = system.method("exact", {}).answers(trials, system.measures)
     jams = plays(system, trials, "home")[:, 0] < 0.0
     assert 0 < np.count_nonzero(jams) < 400
     codes = np.array([system.statuses.texts[code] for code in found.status["y home"]])
@@ -311,8 +311,8 @@ def test_a_difference_is_read_in_the_pose_of_both(tmp_path: Path) -> None:
     more = "\n  d: {kind: difference, of: x up, minus: z up}"
     system = system_of(arm_scene(bores=False, measures=errors() + more), tmp_path)
     trials = loose(np.random.default_rng(6), flanks=1)
-    for road in ("exact", "analytic"):
-        found = answers(system, trials, road)
+    for method in ("exact", "analytic"):
+        found = answers(system, trials, method)
         assert found["d"] == pytest.approx(found["x up"] - found["z up"], abs=1e-9)
         assert np.abs(found["d"]).max() > 0.1
 
@@ -329,8 +329,8 @@ def test_a_chain_on_a_chain_is_one_chain(tmp_path: Path) -> None:
     apart = apart.replace(last, "").replace("\nmeasures:", f"{own}{poses}\nmeasures:")
     systems = [system_of(text, tmp_path) for text in (whole, apart)]
     trials = loose(np.random.default_rng(7), flanks=1)
-    for road in ("exact", "analytic"):
-        one, two = (answers(system, trials, road) for system in systems)
+    for method in ("exact", "analytic"):
+        one, two = (answers(system, trials, method) for system in systems)
         for name in one:
             assert two[name] == pytest.approx(one[name], abs=1e-9), name
 

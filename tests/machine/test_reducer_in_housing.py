@@ -11,8 +11,8 @@ from oracles.whole_reducer import Numbers, WholeReducer
 
 from tol3d import SceneError
 from tol3d.study.columns import columns_of
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.regressors import regressor_count
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -119,13 +119,13 @@ def test_first_order_and_exact_differ_by_squares(tolerances: str, tmp_path: Path
     off = []
     for size in (1.0, 0.5):
         sized = {name: size * own for name, own in of.items()}
-        exact, analytic = (values(system, road, sized, turns)["lost motion"] for road in ("exact", "analytic"))
+        exact, analytic = (values(system, method, sized, turns)["lost motion"] for method in ("exact", "analytic"))
         off.append(float(np.sqrt(np.mean((exact - analytic) ** 2))))
     assert off[0] / off[1] == pytest.approx(4.0, rel=0.3)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_reducer_in_a_true_housing_is_the_reducer_by_itself(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_reducer_in_a_true_housing_is_the_reducer_by_itself(method: str, tmp_path: Path) -> None:
     """Read where the sun stands at 500 degrees, and the carrier so at 20."""
     rng, count = np.random.default_rng(8), 20
     of, turns = drawn_at_random(rng, count), rng.random(count)
@@ -137,8 +137,8 @@ def test_a_reducer_in_a_true_housing_is_the_reducer_by_itself(road: str, tmp_pat
         row for row in alone.splitlines() if " laid:" not in row and "base:" not in row and "train:" not in row
     )
     alone = alone.replace("lost_motion, of: train, over: {at: 500", "cycloid_lost_motion, of: rv, over: {at: 20")
-    found = values(gearbox_of(text, tmp_path), road, of, turns)["lost motion"]
-    wanted = values(system_of(alone, tmp_path, "alone"), road, of, turns)["lost motion"]
+    found = values(gearbox_of(text, tmp_path), method, of, turns)["lost motion"]
+    wanted = values(system_of(alone, tmp_path, "alone"), method, of, turns)["lost motion"]
     assert np.ptp(wanted) > 1e-4
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
 
@@ -156,7 +156,7 @@ def test_each_bore_has_the_share_that_differences_of_the_lost_motion_give_it(tol
     (measure,) = system.measures
 
     def read(deviations: Array) -> Array:
-        own = system.road(ANALYTIC_ROAD, None).answers(Trials(deviations, trials.positions), [measure])
+        own = system.method(ANALYTIC_METHOD, None).answers(Trials(deviations, trials.positions), [measure])
         return np.asarray(own.values["lost motion"][:, 0] * measure.per_internal)
 
     found = {own.name: np.full((regressor_count(own), count), np.nan) for own in system.contributors}

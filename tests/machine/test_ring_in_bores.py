@@ -1,4 +1,4 @@
-"""A ring on a shaft in bores: its mesh lies where the bores are, on both roads."""
+"""A ring on a shaft in bores: its mesh lies where the bores are, on both methods."""
 
 import math
 from pathlib import Path

@@ -110,9 +110,10 @@ def test_a_joint_alone_is_its_own_scene(arm: Simulation, system: MachineSystem, 
     for reading in {each.name: each for each in drive.readings.values()}.values():
         angle = float(reading.name.rpartition(" ")[2])
         seen = Trials(own, {alone.own.name: np.full(FEW, angle / (2 * np.pi) % float(alone.own.period))})
-        for road in ("exact", "analytic"):
-            by_itself = alone.road(road, alone.materials(road)).answers(seen, (measure,)).values["lost motion"][:, 0]
-            gears = system.gears.road(road, {}).answers(system.gear_trials(trials, np.zeros((FEW, 0))), (reading,))
+        for method in ("exact", "analytic"):
+            answers = alone.method(method, alone.materials(method)).answers(seen, (measure,))
+            by_itself = answers.values["lost motion"][:, 0]
+            gears = system.gears.method(method, {}).answers(system.gear_trials(trials, np.zeros((FEW, 0))), (reading,))
             assert gears.values[reading.name][:, 0] == pytest.approx(by_itself, abs=1e-12)
 
 

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 SAME = 1e-9  # mm: a thousandth of a nanometre
 THICK = "\n  thickness: {kind: tooth_thickness, of: pinion, distribution: {kind: normal, lower: -60 um, upper: -30 um}}"
 LAW = "distribution: {kind: normal, lower: -30 um, upper: 30 um}"
-ROADS = ("exact", "analytic")
+METHODS = ("exact", "analytic")
 ALONE = """
   first in bores: {kind: shaft_in_bores, shaft: pinion, in: [housing.bore 1]}
   last in bores: {kind: shaft_in_bores, shaft: wheel, in: [housing.bore 2]}
@@ -34,11 +34,11 @@ def spread(seed: int, count: int = 60, size: float = 0.03) -> Array:
     return np.random.default_rng(seed).uniform(-size, size, count)
 
 
-def both(housed: System, plain: System, road: str, mine: dict[str, Array], its: dict[str, Array]) -> None:
+def both(housed: System, plain: System, method: str, mine: dict[str, Array], its: dict[str, Array]) -> None:
     """The same backlashes; the wheel of the plain scene lies at another azimuth, which a gear without eccentricity
     does not see."""
     count = len(next(iter(mine.values())))
-    found, expected = values(housed, road, mine, turns(count)), values(plain, road, its, turns(count))
+    found, expected = values(housed, method, mine, turns(count)), values(plain, method, its, turns(count))
     assert np.ptp(expected["backlash"]) > 1e-3  # the deviations do something
     np.testing.assert_allclose(found["backlash"], expected["backlash"], rtol=0, atol=SAME)
 
@@ -55,13 +55,13 @@ def test_a_bore_s_dimension_is_a_centre_distance_trial_by_trial(tmp_path: Path) 
         for path in (housed, plain)
     ]
     assert np.array_equal(runs[0]["f [um]"], runs[1]["f [um]"])
-    for road in ("analytic", "geometric"):
-        name = f"{road}:backlash"
+    for method in ("analytic", "geometric"):
+        name = f"{method}:backlash"
         np.testing.assert_allclose(runs[0][name], runs[1][name], rtol=0, atol=1e-6, err_msg=name)  # um
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_a_bore_s_position_in_a_flat_zone_is_a_centre_distance(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_a_bore_s_position_in_a_flat_zone_is_a_centre_distance(method: str, tmp_path: Path) -> None:
     """Law `process` with the distribution of the centre distance; both ends of the bore lie aside alike."""
     zone = f"zone: {{width: 100 um, along: {DIRECTION}}}, law: {{kind: process, {LAW}}}"
     position = f"\n  f: {{kind: position, of: housing.bore 2, datums: [floor, side, front], {zone}}}"
@@ -70,11 +70,11 @@ def test_a_bore_s_position_in_a_flat_zone_is_a_centre_distance(road: str, tmp_pa
         plain_scene(tolerances=f"\n  f: {{kind: centre_distance, of: stage, {LAW}}}", parts=GEARS), tmp_path, "plain"
     )
     aside = spread(1)
-    both(housed, plain, road, {"f.start": aside, "f.end": aside}, {"f": aside})
+    both(housed, plain, method, {"f.start": aside, "f.end": aside}, {"f": aside})
 
 
-@pytest.mark.parametrize("road", ROADS)
-def test_bores_that_lie_aside_tilt_a_shaft_as_bearings_with_clearance_do(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_bores_that_lie_aside_tilt_a_shaft_as_bearings_with_clearance_do(method: str, tmp_path: Path) -> None:
     """Each bore where a bearing is, and half of its clearance away; both shafts, in any direction."""
     bores = {"bore 1": -34.0, "bore 1b": 26.0, "bore 2": -32.0, "bore 2b": 28.0}  # along the shafts
     shafts = dict(zip(bores, ("first shaft",) * 2 + ("last shaft",) * 2, strict=True))
@@ -102,12 +102,12 @@ def test_bores_that_lie_aside_tilt_a_shaft_as_bearings_with_clearance_do(road: s
     text = plain_scene(tolerances=its, parts=SHAFTS + GEARS + bearings, mesh=f", azimuth: {along} deg")
     plain = system_of(text, tmp_path, "plain")
     deviations = {f"of {bore}": spread(k) for k, bore in enumerate(bores)}
-    both(housed, plain, road, deviations, {name: 2 * own for name, own in deviations.items()})
+    both(housed, plain, method, deviations, {name: 2 * own for name, own in deviations.items()})
 
 
-@pytest.mark.parametrize("road", ROADS)
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("datums", ["", ", datums: [floor, side, front]", ", datums: [floor, bore 1]"])
-def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(road: str, datums: str, tmp_path: Path) -> None:
+def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(method: str, datums: str, tmp_path: Path) -> None:
     """a alpha (T - 20 degC), whatever the datums to which the bores are toleranced; the gears grow by themselves."""
     law = "distribution: {kind: uniform, lower: -50 K, upper: 80 K}"
     warm = f"\n  warm: {{kind: temperature, of: [housing, pinion, wheel], {law}}}"
@@ -121,7 +121,7 @@ def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(road: str,
         plain_scene(tolerances=warm, parts=SHAFTS + GEARS + old, mesh=", housing: housing"), tmp_path, "plain"
     )
     kelvin = 1000 * spread(3)
-    both(housed, plain, road, {"warm": kelvin}, {"warm": kelvin})
+    both(housed, plain, method, {"warm": kelvin}, {"warm": kelvin})
     assert housed.closed_form(housed.measures[0]) is not None
 
 

@@ -14,8 +14,8 @@ from oracles.whole_set import WholeSet
 from tol3d import SceneError, check_scene
 from tol3d.machine.system import MachineSystem
 from tol3d.study.columns import columns_of
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.regressors import regressor_count
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
 
 Array = NDArray[np.float64]
@@ -120,7 +120,7 @@ def turns_of(system: MachineSystem, turns: Array) -> Array:
     return np.asarray(system.positions(dict.fromkeys(system.streams, turns))["set"])
 
 
-# both roads against a search ------------------------------------------------------------------------------------------
+# both methods against a search ----------------------------------------------------------------------------------------
 
 
 def check_against_search(seed: int, count: int, folder: Path) -> float:
@@ -165,7 +165,7 @@ def test_first_order_and_exact_differ_by_squares(roles: tuple[str, str, str], tm
     off = []
     for size in (1.0, 0.5, 0.25):
         sized = {name: size * own for name, own in of.items()}
-        exact, analytic = (values(system, road, sized, turns)["lost motion"] for road in ("exact", "analytic"))
+        exact, analytic = (values(system, method, sized, turns)["lost motion"] for method in ("exact", "analytic"))
         off.append(float(np.sqrt(np.mean((exact - analytic) ** 2))))
     for k in range(2):
         assert off[k] / off[k + 1] == pytest.approx(4.0, rel=0.08)
@@ -174,8 +174,8 @@ def test_first_order_and_exact_differ_by_squares(roles: tuple[str, str, str], tm
 # housings that change nothing -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_set_in_a_true_housing_is_the_set_by_itself(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_set_in_a_true_housing_is_the_set_by_itself(method: str, tmp_path: Path) -> None:
     """Read where the sun stands at 100 degrees, and the carrier so at 100 / 4.25."""
     alone = f"""scene: alone
 parts:{PARTS.format(*TEETH)}
@@ -190,8 +190,8 @@ measures:
     of, turns = drawn_at_random(rng, count, PLANETS), rng.random(count)
     of = {name: own for name, own in of.items() if not name.endswith((" x", " y"))}
     housed = gearbox_of(scene(over=", over: {at: 100 deg}"), tmp_path)
-    found = values(housed, road, of, turns)["lost motion"]
-    wanted = values(system_of(alone, tmp_path, "alone"), road, of, turns)["lost motion"]
+    found = values(housed, method, of, turns)["lost motion"]
+    wanted = values(system_of(alone, tmp_path, "alone"), method, of, turns)["lost motion"]
     assert np.ptp(wanted) > 1e-4
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
 
@@ -209,22 +209,22 @@ def test_a_housing_that_stands_askew_as_a_whole_changes_nothing(tmp_path: Path) 
     rng, count = np.random.default_rng(2), 20
     of, turns = drawn_at_random(rng, count, PLANETS), rng.random(count)
     askew = of | {pair: rng.uniform(-1, 1, count) for pair in PAIRS}
-    for road in ("exact", "analytic"):
-        still, moved = (values(system, road, own, turns)["lost motion"] for own in (of, askew))
+    for method in ("exact", "analytic"):
+        still, moved = (values(system, method, own, turns)["lost motion"] for own in (of, askew))
         np.testing.assert_allclose(moved, still, rtol=0, atol=1e-11)
     acting = {own.name for own in system.acting(system.measures[0])}
     assert acting == {own.name for own in system.contributors} - set(PAIRS)
 
 
 def test_bores_that_all_lie_aside_alike_change_nothing(tmp_path: Path) -> None:
-    """As far as both roads see one line where it lies; the part with the first bore does not go along."""
+    """As far as both methods see one line where it lies; the part with the first bore does not go along."""
     system = gearbox_of(scene(), tmp_path)
     rng, count = np.random.default_rng(4), 20
     of, turns = drawn_at_random(rng, count, PLANETS), rng.random(count)
     aside = {axis: rng.uniform(-0.02, 0.02, count) for axis in "xy"}
     alike = of | {f"{name} {axis}": of[f"{name} {axis}"] + aside[axis] for name in SHAFTS for axis in "xy"}
-    for road in ("exact", "analytic"):
-        still, moved = (values(system, road, own, turns)["lost motion"] for own in (of, alike))
+    for method in ("exact", "analytic"):
+        still, moved = (values(system, method, own, turns)["lost motion"] for own in (of, alike))
         np.testing.assert_allclose(moved, still, rtol=0, atol=1e-12)
 
 
@@ -246,8 +246,8 @@ def test_a_shaft_in_two_bores_has_its_sun_where_its_line_passes_the_teeth(tmp_pa
     near, far_x = rng.uniform(-0.01, 0.01, (2, count))
     lies = of | {"sun x": 2 * far_x - near, "sun y": np.zeros(count)}
     bored = of | {"sun x": near, "far x": far_x, "sun y": np.zeros(count)}
-    for road in ("exact", "analytic"):
-        found, wanted = values(two, road, bored, turns), values(one, road, lies, turns)
+    for method in ("exact", "analytic"):
+        found, wanted = values(two, method, bored, turns), values(one, method, lies, turns)
         np.testing.assert_allclose(found["lost motion"], wanted["lost motion"], rtol=0, atol=1e-12)
 
 
@@ -279,7 +279,7 @@ def test_each_bore_has_the_share_that_differences_of_the_lost_motion_give_it(tmp
     (measure,) = system.measures
 
     def read(deviations: Array) -> Array:
-        own = system.road(ANALYTIC_ROAD, None).answers(Trials(deviations, trials.positions), [measure])
+        own = system.method(ANALYTIC_METHOD, None).answers(Trials(deviations, trials.positions), [measure])
         return np.asarray(own.values["lost motion"][:, 0] * measure.per_internal)
 
     rows = {own.name: np.full((regressor_count(own), count), np.nan) for own in system.contributors}

@@ -85,8 +85,8 @@ def test_meshes_that_share_a_bore_vary_together_as_worked_out_by_hand(angle: flo
     # of products of two variables of which each is bounded; 4 standard errors of a covariance of normals are more
     error = 4 * math.sqrt((variances[0] * variances[1] + expected**2) / count)
     columns = run.columns()
-    for road in ("analytic", "geometric"):
-        one, two = columns[f"{road}:one"] / 1000, columns[f"{road}:two"] / 1000
+    for method in ("analytic", "geometric"):
+        one, two = columns[f"{method}:one"] / 1000, columns[f"{method}:two"] / 1000
         assert abs(np.cov(one, two)[0, 1] - expected) < error + 2e-3 * abs(expected)  # and what is of second order
         for own, variance in ((one, variances[0]), (two, variances[1])):
             assert own.var() == pytest.approx(variance, rel=4 * math.sqrt(2 / count) + 2e-3)
@@ -95,8 +95,8 @@ def test_meshes_that_share_a_bore_vary_together_as_worked_out_by_hand(angle: flo
         assert form["sigma"] == pytest.approx(1000 * math.sqrt(variance), rel=1e-6)
 
 
-@pytest.mark.parametrize("road", ["exact", "analytic"])
-def test_a_housing_that_stands_askew_as_a_whole_changes_no_backlash(road: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_housing_that_stands_askew_as_a_whole_changes_no_backlash(method: str, tmp_path: Path) -> None:
     """Locators move and turn it by up to a millimetre over its length; both axes go along."""
     locators = "".join(
         f"\n  {pair}: {{kind: locator, of: base, pair: {pair}, {LAW.replace('30 um', '1 mm')}}}" for pair in PAIRS
@@ -112,8 +112,9 @@ def test_a_housing_that_stands_askew_as_a_whole_changes_no_backlash(road: str, t
     draws = np.random.default_rng(2)
     count = 40
     turns, own = draws.random(count), draws.uniform(-0.03, 0.03, count)
-    still = values(system, road, {"f": own}, turns)["backlash"]
-    moved = values(system, road, {"f": own} | {pair: draws.uniform(-1, 1, count) for pair in PAIRS}, turns)["backlash"]
+    still = values(system, method, {"f": own}, turns)["backlash"]
+    drawn = {"f": own} | {pair: draws.uniform(-1, 1, count) for pair in PAIRS}
+    moved = values(system, method, drawn, turns)["backlash"]
     assert np.ptp(still) > 1e-3
     np.testing.assert_allclose(moved, still, rtol=0, atol=1e-9)
     assert [each.name for each in system.acting(system.measures[0])] == ["f"]
@@ -126,8 +127,8 @@ def test_where_a_housing_stands_does_not_matter(placed: str, tmp_path: Path) -> 
     turns, own = draws.random(30), draws.uniform(-0.03, 0.03, 30)
     plain = gearbox_of(housed_scene(tolerances=f), tmp_path)
     other = gearbox_of(housed_scene(tolerances=f, placed=placed), tmp_path)
-    for road in ("exact", "analytic"):
-        found, expected = (values(system, road, {"f": own}, turns)["backlash"] for system in (other, plain))
+    for method in ("exact", "analytic"):
+        found, expected = (values(system, method, {"f": own}, turns)["backlash"] for system in (other, plain))
         # azimuths count from another x, so that other points of the teeth touch where an axis leans
         np.testing.assert_allclose(found, expected, rtol=0, atol=5e-7)
 

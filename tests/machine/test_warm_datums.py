@@ -95,10 +95,10 @@ measures:
 def test_axes_move_apart_and_nothing_else(datums: str, tmp_path: Path) -> None:
     system = gearbox_of(scene(datums), tmp_path)
     kelvin = np.array([0.0, 40.0, -60.0])
-    found = {road: values(system, road, {"T": kelvin}, np.full(3, 0.3)) for road in ("exact", "analytic")}
+    found = {method: values(system, method, {"T": kelvin}, np.full(3, 0.3)) for method in ("exact", "analytic")}
     np.testing.assert_allclose(found["exact"]["j"], [backlash(APART * (1 + ALPHA * t)) for t in kelvin], atol=1e-8)
     slope = 2 * math.sqrt(1 - (BASE / APART) ** 2) * APART * ALPHA
     np.testing.assert_allclose(found["analytic"]["j"], backlash(APART) + slope * kelvin, atol=1e-8)
     away = math.dist((-70, 10, 5), (20, -30, 15))
-    for road in found:
-        np.testing.assert_allclose(found[road]["d"], away * (1 + ALPHA * kelvin), rtol=0, atol=1e-9)
+    for method in found:
+        np.testing.assert_allclose(found[method]["d"], away * (1 + ALPHA * kelvin), rtol=0, atol=1e-9)

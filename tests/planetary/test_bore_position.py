@@ -14,7 +14,7 @@ from tol3d.planetary.system import PlanetarySystem
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
-from tol3d.system.road import ANALYTIC_ROAD
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.trials import Trials
 
 TEXT = (SCENES / "reducer_3k.yaml").read_text("utf-8")
@@ -43,7 +43,7 @@ def scene_of(
 def lost(system: PlanetarySystem, trials: Trials) -> np.ndarray:
     """[rad]"""
     (own,) = (own for own in system.measures if own.name == "lost motion")
-    found = columns_of(system, None, trials, (own,))[f"{ANALYTIC_ROAD}:{own.name}"]
+    found = columns_of(system, None, trials, (own,))[f"{ANALYTIC_METHOD}:{own.name}"]
     return np.asarray(found) / own.per_internal
 
 

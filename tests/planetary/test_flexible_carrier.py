@@ -1,4 +1,4 @@
-"""Flexible carriers: the published adjustment curve, what unequal gaps leave, springs against torques, both roads."""
+"""Flexible carriers: the published adjustment curve, what unequal gaps leave, springs against torques, both methods."""
 
 import math
 import re
@@ -37,8 +37,8 @@ from tol3d.study.overrides import simulation_of
 Array = NDArray[np.float64]
 
 
-def lost_motion(road: StackUp | Contact, deviated: Deviated, shaft: str = "ring 2") -> float:
-    found = road.free(deviated, np.zeros(1), shaft, road.own.opposite(shaft))
+def lost_motion(method: StackUp | Contact, deviated: Deviated, shaft: str = "ring 2") -> float:
+    found = method.free(deviated, np.zeros(1), shaft, method.own.opposite(shaft))
     assert found.status[0] == 0
     return float(found.ends[0, 1] - found.ends[0, 0])
 
@@ -47,13 +47,13 @@ PUBLISHED = {0.0: 10.856, 0.01: 10.639, 0.02: 10.422, 0.03: 9.433, 0.04: 5.742, 
 
 
 @pytest.mark.parametrize(("adjustment", "minutes"), PUBLISHED.items())
-@pytest.mark.parametrize("road", [StackUp, Contact])
+@pytest.mark.parametrize("method", [StackUp, Contact])
 def test_lost_motion_falls_with_the_adjustment_as_published(
-    road: type[StackUp | Contact], adjustment: float, minutes: float
+    method: type[StackUp | Contact], adjustment: float, minutes: float
 ) -> None:
     """Wang et al., 0.54 of the adjustment at each planet: half the sun's free arc is 4c/(1 - kappa) - 4s and so on."""
     s, c = 0.54 * adjustment, CLEARANCE
-    found = lost_motion(road(flexible(s)), thinned(c, c, c))
+    found = lost_motion(method(flexible(s)), thinned(c, c, c))
     half = 4 * c / (1 - KAPPA) - 4 * s
     if s > c / 2:
         half = 2 * c - 4 * s + 2 * ((1 + 3 * KAPPA) * c - 4 * KAPPA * s) / (1 - KAPPA)
@@ -71,9 +71,9 @@ def test_no_lost_motion_is_left_where_the_adjustment_is_c_and_none_fits_beyond()
 
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("springs", [ONE, PAIRS], ids=["one spring", "two pairs"])
-@pytest.mark.parametrize("road", [StackUp, Contact])
+@pytest.mark.parametrize("method", [StackUp, Contact])
 def test_springs_leave_what_unequal_gaps_do_not_close(
-    road: type[StackUp | Contact], springs: tuple[Spring, ...], seed: int
+    method: type[StackUp | Contact], springs: tuple[Spring, ...], seed: int
 ) -> None:
     """2 |D|/rR2, D = c_c - kappa c_b - (1 - kappa)(c_a + c_b)/2; by rows of the digest's.
 
@@ -81,7 +81,7 @@ def test_springs_leave_what_unequal_gaps_do_not_close(
     """
     c_a, c_b, c_c = np.random.default_rng(seed).uniform(0.02, 0.04, 3)
     off = c_c - KAPPA * c_b - (1 - KAPPA) * (c_a + c_b) / 2
-    found = lost_motion(road(flexible(springs=springs)), thinned(c_a, c_b, c_c))
+    found = lost_motion(method(flexible(springs=springs)), thinned(c_a, c_b, c_c))
     assert found == pytest.approx(2 * abs(off) / R_R2, abs=1e-9)
 
 
@@ -139,7 +139,7 @@ def test_placed_gears_differ_from_first_order_by_second(springs: tuple[Spring, .
     off = []
     for size in (1.0, 0.5):
         half = Deviated(*(size * array for array in vars(deviated).values()))
-        found = [road.free(half, turns, "ring 2", "sun").ends for road in (StackUp(own), Contact(own))]
+        found = [method.free(half, turns, "ring 2", "sun").ends for method in (StackUp(own), Contact(own))]
         assert np.isfinite(found).all()
         off.append(float(np.sqrt(np.mean((found[0] - found[1]) ** 2))))
     assert 3.6 < off[0] / off[1] < 4.4
@@ -160,7 +160,7 @@ def _lost_motions(path: Path, trials: int) -> Array:
     scene = load_scene(path)
     system = planetary_system(scene)
     drawn_trials = drawn(simulation_of(scene, Overrides(trials=trials)), 0, trials)
-    answers = system.road("exact", None).answers(drawn_trials, system.measures[:1])
+    answers = system.method("exact", None).answers(drawn_trials, system.measures[:1])
     return np.asarray(answers.values["lost motion"][:, 0] / ARCMIN)
 
 

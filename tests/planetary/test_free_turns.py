@@ -187,13 +187,13 @@ def test_eccentricities_of_central_gears_count_from_the_middle_of_their_tooth_0(
     taken = -1.0 if name == "sun" else 1.0
     for direction in (0.0, 1.0, 2.5):
         deviated = thinned(own, dict.fromkeys(gears, 1e-4))
-        roads: tuple[StackUp | Contact, ...] = (StackUp(own), Contact(own))
-        nothing = [road.free(deviated, NONE, "sun", "carrier").ends[0] for road in roads]
+        methods: tuple[StackUp | Contact, ...] = (StackUp(own), Contact(own))
+        nothing = [method.free(deviated, NONE, "sun", "carrier").ends[0] for method in methods]
         deviated.add(own, Acts("offset", name), off * np.array([[math.cos(direction), math.sin(direction)]]))
         towards = off * math.cos(direction + tooth_0_at_rest(gears[name], planet))
         wanted = taken * 2 * math.sin(ALPHA) * towards / gears["sun"].base_radius
-        for road, ends in zip(roads, nothing, strict=True):
-            free = road.free(deviated, NONE, "sun", "carrier").ends[0]
+        for method, ends in zip(methods, nothing, strict=True):
+            free = method.free(deviated, NONE, "sun", "carrier").ends[0]
             # the sun turns by 3e-5 rad either way within its play, and its offset with it: 1e-4 of 1e-6 rad
             assert np.ptp(free) - np.ptp(ends) == pytest.approx(wanted, abs=1e-9)
         back = deviated.of(own, Acts("offset", name))

@@ -52,13 +52,13 @@ def test_ends_at_positions_are_those_of_a_general_solver() -> None:
 
 @pytest.mark.parametrize("own", [reducer_3k(), flexible(), flexible(springs=PAIRS), flexible(0.01)])
 def test_a_position_that_goes_on_from_another_is_the_same_as_alone(own: PlanetarySet) -> None:
-    """Both roads; placed gears within twice 1e-11 rad, at which their turns stand still."""
+    """Both methods; placed gears within twice 1e-11 rad, at which their turns stand still."""
     deviated = random_deviations(own, 12, np.random.default_rng(5))
-    for road, within in ((StackUp(own), 1e-14), (Contact(own), 2e-11)):
+    for method, within in ((StackUp(own), 1e-14), (Contact(own), 2e-11)):
         for end, _ in EITHER:
-            curves = road.followed(deviated, TURNS, own.output, own.input, end)
+            curves = method.followed(deviated, TURNS, own.output, own.input, end)
             for place, turns in enumerate(TURNS):
-                alone = road.free(deviated, np.full(12, turns), own.output, own.input)
+                alone = method.free(deviated, np.full(12, turns), own.output, own.input)
                 np.testing.assert_allclose(curves.ends[:, place], alone.ends[:, end], rtol=0, atol=within)
 
 
@@ -84,13 +84,13 @@ def test_slopes_are_differences_of_the_sum(own: PlanetarySet) -> None:
     rng = np.random.default_rng(8)
     deviated = random_deviations(own, 2, rng)
     coefficients = rng.normal(size=(2, len(TURNS)))
-    road = StackUp(own)
+    method = StackUp(own)
 
     def summed(deviated: Deviated) -> np.ndarray:
-        ends = road.followed(deviated, TURNS, own.output, own.input, 0).ends
+        ends = method.followed(deviated, TURNS, own.output, own.input, 0).ends
         return np.asarray((coefficients * ends).sum(axis=1))
 
-    slopes = road.slopes(deviated, TURNS, own.output, own.input, 0, coefficients)
+    slopes = method.slopes(deviated, TURNS, own.output, own.input, 0, coefficients)
     for field in fields(Deviated):
         array, found = getattr(deviated, field.name), getattr(slopes, field.name)
         step = 1e-7 if "clocking" in field.name else 1e-6

@@ -199,7 +199,7 @@ def test_a_trial_replayed_alone_has_its_bits(tmp_path: Path) -> None:
     row = run.frame()
     for trial in (0, 41):
         seen = replay(run, trial)
-        column = seen.simulation.system.road("exact", None).answers(seen.trials, seen.simulation.system.measures)
+        column = seen.simulation.system.method("exact", None).answers(seen.trials, seen.simulation.system.measures)
         value = column.values["lost motion"][0, 0] * seen.simulation.system.measures[0].per_internal
         assert float(np.asarray(row["geometric:lost motion"])[trial]) == pytest.approx(value, rel=0, abs=0)
 

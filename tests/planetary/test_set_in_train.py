@@ -30,7 +30,7 @@ ALPHA = math.radians(20)
 COS, SIN = math.cos(ALPHA), math.sin(ALPHA)
 RATIO = 1368 / 25
 R_WHEEL = 28.5 * COS  # mm, of the base circle
-ROADS = ("analytic", "geometric")
+METHODS = ("analytic", "geometric")
 SAME = 1e-9  # arcmin
 
 
@@ -118,16 +118,16 @@ def test_with_planets_alike_the_play_is_the_closed_form_of_both_stages(tmp_path:
     reducer = 2 * (abs(by_sun) * sun + abs(by_first) * first + second / r_r2)
     spur = -(columns[f"{names[0]} [um]"] + columns[f"{names[1]} [um]"]) * 1e-3 / 28.5
     wanted = (reducer + spur / RATIO) / ARCMIN
-    for road in ROADS:
-        np.testing.assert_allclose(columns[f"{road}:lost motion"], wanted, rtol=0, atol=1e-6)
-        np.testing.assert_allclose(columns[f"{road}:lost motion of the reducer"], reducer / ARCMIN, rtol=0, atol=SAME)
+    for method in METHODS:
+        np.testing.assert_allclose(columns[f"{method}:lost motion"], wanted, rtol=0, atol=1e-6)
+        np.testing.assert_allclose(columns[f"{method}:lost motion of the reducer"], reducer / ARCMIN, rtol=0, atol=SAME)
 
 
 def test_the_spur_stage_contributes_its_play_over_the_ratio_of_the_set(run: Run) -> None:
     columns = run.columns()
-    for road in ROADS:
-        whole, reducer = (columns[f"{road}:lost motion{which}"] for which in ("", " of the reducer"))
-        spur = columns[f"{road}:lost motion of the countershaft"]
+    for method in METHODS:
+        whole, reducer = (columns[f"{method}:lost motion{which}"] for which in ("", " of the reducer"))
+        spur = columns[f"{method}:lost motion of the countershaft"]
         np.testing.assert_allclose(whole - reducer, spur / RATIO, rtol=0, atol=1e-12)
         assert spur.std() > 1.0
 
@@ -181,8 +181,8 @@ def test_a_carrier_drives_the_stage_behind_it(tmp_path: Path) -> None:
     lacking = {name: -columns[f"{name} teeth [um]"] * 1e-3 for name in ("sun", "ring", "pinion")}
     carrier = (lacking["sun"] + lacking["ring"]) / 45
     wanted = (carrier / 2 + lacking["pinion"] / 20) / ARCMIN
-    for road in ROADS:
-        np.testing.assert_allclose(columns[f"{road}:lost motion"], wanted, rtol=0, atol=1e-6)
+    for method in METHODS:
+        np.testing.assert_allclose(columns[f"{method}:lost motion"], wanted, rtol=0, atol=1e-6)
 
 
 # against other programmes --------------------------------------------------------------------------------------------
@@ -203,7 +203,7 @@ def test_first_order_is_that_of_another_programme_in_a_thousand_trials(run: Run)
     assert compared(run.columns(), 1000) < 1e-8
 
 
-def test_both_roads_differ_by_what_is_of_second_order() -> None:
+def test_both_methods_differ_by_what_is_of_second_order() -> None:
     """All deviations halved, thicknesses too: differences fall to a quarter. Teeth are without clearance nominally."""
     system = gear_system(load_scene(SCENES / "reducer_3k_train.yaml"))
     rng = np.random.default_rng(3)
@@ -213,7 +213,7 @@ def test_both_roads_differ_by_what_is_of_second_order() -> None:
     rms = []
     for size in (1.0, 0.5):
         trials = Trials(size * drawn, system.positions(uniforms))
-        found = (system.road(road, None).answers(trials, system.measures) for road in ("exact", "analytic"))
+        found = (system.method(method, None).answers(trials, system.measures) for method in ("exact", "analytic"))
         exact, first_order = (answers.values["lost motion"] for answers in found)
         rms.append(float(np.sqrt(np.mean((exact - first_order) ** 2))))
     assert rms[0] / ARCMIN == pytest.approx(0.001, rel=0.5)
@@ -228,8 +228,8 @@ def test_contributors_of_both_stages_have_their_shares(run: Run) -> None:
     columns = run.columns()
     whole, own = columns["geometric:lost motion"], columns["geometric:lost motion of the countershaft"] / RATIO
     wanted = 100 * float(np.cov(own, whole)[0, 1] / whole.var(ddof=1))
-    assert stage["roads"]["geometric"]["share_percent"] == pytest.approx(wanted, abs=1e-6)
-    assert reducer["roads"]["geometric"]["share_percent"] == pytest.approx(100 - wanted, abs=1e-6)
+    assert stage["methods"]["geometric"]["share_percent"] == pytest.approx(wanted, abs=1e-6)
+    assert reducer["methods"]["geometric"]["share_percent"] == pytest.approx(100 - wanted, abs=1e-6)
     shares = {own["name"]: own for own in run.summary["measures"]["lost motion"]["contributors"]}
     assert len(shares) == 19
     assert sum(own["analytic_percent"] for own in shares.values()) == pytest.approx(100, abs=0.2)
@@ -362,8 +362,8 @@ def test_a_set_that_goes_up_and_turns_back_drives_a_train(tmp_path: Path) -> Non
     columns = ran(tmp_path, up, 50).columns()
     lacking = {name: -columns[f"{name} teeth [um]"] * 1e-3 for name in ("sun", "ring", "pinion")}
     wanted = ((lacking["sun"] + lacking["ring"]) / 10 / 2 + lacking["pinion"] / 20) / ARCMIN
-    for road in ROADS:
-        np.testing.assert_allclose(columns[f"{road}:lost motion"], wanted, rtol=0, atol=1e-6)
+    for method in METHODS:
+        np.testing.assert_allclose(columns[f"{method}:lost motion"], wanted, rtol=0, atol=1e-6)
 
 
 # shown ----------------------------------------------------------------------------------------------------------

@@ -14,8 +14,8 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.system.contributor import Contributor
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.regressors import regressor_count
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
@@ -39,7 +39,7 @@ class Sample:
 
     def of(self, trials: Trials) -> Array:
         found = columns_of(self.system, None, trials, (self.own,))
-        return np.asarray(found[f"{ANALYTIC_ROAD}:{self.own.name}"])
+        return np.asarray(found[f"{ANALYTIC_METHOD}:{self.own.name}"])
 
     def share(self, contributor: str) -> float:
         both = np.cov(self.rows[contributor][0], self.values)

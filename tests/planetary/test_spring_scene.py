@@ -13,7 +13,7 @@ from tol3d.planetary.spring_curve import displaced_ends
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
-from tol3d.system.road import ANALYTIC_ROAD
+from tol3d.system.method import ANALYTIC_METHOD
 
 FLEXIBLE = SCENES / "reducer_3k_flexible.yaml"
 TEXT = FLEXIBLE.read_text("utf-8")
@@ -59,7 +59,7 @@ def low_stiffness(path: Path, trials: int) -> np.ndarray:
     system = planetary_system(scene)
     (own,) = (own for own in system.measures if own.name == "turn against the spring")
     found = columns_of(system, None, drawn(simulation_of(scene, Overrides(trials=trials)), 0, trials), (own,))
-    return np.asarray(found[f"{ANALYTIC_ROAD}:{own.name}"])
+    return np.asarray(found[f"{ANALYTIC_METHOD}:{own.name}"])
 
 
 def test_the_region_of_low_stiffness_is_what_displaced_planets_leave_at_most_less_what_the_spring_leaves() -> None:

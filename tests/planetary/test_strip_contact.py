@@ -43,8 +43,8 @@ def chords(own: PlanetarySet, strips: dict[str, FlankStrips]) -> list[float]:
     return [strips[mesh.central.name].chord_error + strips[mesh.planet.name].chord_error for mesh in own.meshes]
 
 
-def lost(road: Contact | StripContact, deviated: Deviated, turns: Array, shaft: str) -> Array:
-    free = road.free(deviated, turns, shaft, road.own.opposite(shaft))
+def lost(method: Contact | StripContact, deviated: Deviated, turns: Array, shaft: str) -> Array:
+    free = method.free(deviated, turns, shaft, method.own.opposite(shaft))
     assert (free.status == 0).all()
     return free.ends[:, 1] - free.ends[:, 0]
 
@@ -89,9 +89,9 @@ def test_plays_by_fcl_are_those_of_the_exact_engine_within_what_chords_may_do(
     own = replace(system.own, springs=system.own.springs if scene == "reducer_3k_flexible" else ())
     rng = np.random.default_rng(9)
     deviated, turns = random_deviations(own, 4, rng), rng.uniform(0, 20, 4)
-    road = StripContact(own, system.made, StripGaps(own, strips))
+    method = StripContact(own, system.made, StripGaps(own, strips))
     for shaft in (own.output, own.input):
-        off = lost(road, deviated, turns, shaft) - lost(Contact(own), deviated, turns, shaft)
+        off = lost(method, deviated, turns, shaft) - lost(Contact(own), deviated, turns, shaft)
         # each last step may leave 1e-7 mm of each gap, see LAST_MOVE
         bound = 2 * play_bound(own, shaft, chords(own, strips)) + 2 * play_bound(own, shaft, [2e-7] * 3)
         assert np.abs(off).max() < bound

@@ -71,7 +71,7 @@ def test_its_scene_is_the_oracles() -> None:
     assert f"radius: 15 mm, gap: {NOMINAL:g} um" in scene
 
 
-def test_both_roads_are_what_the_columns_say_trial_by_trial(run: Run) -> None:
+def test_both_methods_are_what_the_columns_say_trial_by_trial(run: Run) -> None:
     """By hand, from the deviations in the run's columns: pins k at 60° k, the peg at (x, y)."""
     frame = run.frame()
     x, y = frame["peg offset.x [um]"].to_numpy(), frame["peg offset.y [um]"].to_numpy()
@@ -86,7 +86,7 @@ def test_both_roads_are_what_the_columns_say_trial_by_trial(run: Run) -> None:
     assert frame["geometric:smallest gap"].to_numpy() == pytest.approx(np.min(placed, axis=0), abs=1e-8)
 
 
-def test_the_roads_differ_by_the_square_of_the_offset_and_no_more(run: Run) -> None:
+def test_the_methods_differ_by_the_square_of_the_offset_and_no_more(run: Run) -> None:
     """|R u - e| is R - e·u + (e × u)² / 2 R to second order: never less, at most e² / 2 R more."""
     frame = run.frame()
     difference = (frame["geometric:smallest gap"] - frame["analytic:smallest gap"]).to_numpy()
@@ -121,9 +121,9 @@ def test_the_smallest_of_six_pins_has_the_mean_and_sigma_of_that_order_statistic
     path.write_text(text.replace(law, "{kind: constant, value: 0 um}"), "utf-8")
     found = tol3d.run_scene(path, out=tmp_path / "run").summary["measures"]["smallest gap"]
     mean, sigma = (SIGMA * moment for moment in smallest_of_normals(PINS))
-    for road in ("analytic", "geometric"):
-        assert found[road]["mean"] == pytest.approx(NOMINAL + mean, abs=4 * sigma / math.sqrt(TRIALS))
-        assert found[road]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(TRIALS))
+    for method in ("analytic", "geometric"):
+        assert found[method]["mean"] == pytest.approx(NOMINAL + mean, abs=4 * sigma / math.sqrt(TRIALS))
+        assert found[method]["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(TRIALS))
 
 
 TWO_GAUGES = """\
@@ -165,9 +165,9 @@ def test_gauges_of_one_scene_have_their_own_sizes_and_tolerances(names: dict[str
     small = [30 + frame[f"pins of small.pin {k} [um]"] + frame[f"more of small.pin {k} [um]"] for k in (1, 2, 3)]
     assert frame["analytic:large gap"].to_numpy() == pytest.approx(np.min(large, axis=0), abs=1e-8)
     assert frame["geometric:large gap"].to_numpy() == pytest.approx(np.min(placed, axis=0), abs=1e-8)
-    for road in ("analytic", "geometric"):
-        assert frame[f"{road}:small gap"].to_numpy() == pytest.approx(np.min(small, axis=0), abs=1e-8)
-        assert frame[f"{road}:bare gap"].to_numpy() == pytest.approx(7.0, abs=1e-8)
+    for method in ("analytic", "geometric"):
+        assert frame[f"{method}:small gap"].to_numpy() == pytest.approx(np.min(small, axis=0), abs=1e-8)
+        assert frame[f"{method}:bare gap"].to_numpy() == pytest.approx(7.0, abs=1e-8)
     shares = {name: [own.name for own in found.contributors] for name, found in run.found.measures.items()}
     assert shares == {
         "large gap": ["pins of large", "offset of large"],

@@ -90,8 +90,8 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     ),
     "linkages": (
         rf"kernel, pointing error at rest +│ +loops │ +{NUMBER} │ +{NUMBER}",
-        rf"exact road, pointing error at far +│ +trials │ +{NUMBER} │ +{NUMBER}",
-        rf"exact road, worst pointing error +│ +reads │ +{NUMBER} │ +{NUMBER}",
+        rf"exact method, pointing error at far +│ +trials │ +{NUMBER} │ +{NUMBER}",
+        rf"exact method, worst pointing error +│ +reads │ +{NUMBER} │ +{NUMBER}",
     ),
     "memory": tuple(rf"{own}, +100 trials, exact: +{NUMBER} MB" for own in ("spur_pair", "cover_on_base")),
     "pairs": tuple(
@@ -100,7 +100,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
     "planetary": (
         rf"programme, first order +│ +1 │ +{NUMBER} │ +{NUMBER}",
         rf"programme, placed gears +│ +1 │ +{NUMBER} │ +{NUMBER}",
-        rf"whole study, both roads +│ +1 │ +{NUMBER} │ +{NUMBER}",
+        rf"whole study, both methods +│ +1 │ +{NUMBER} │ +{NUMBER}",
     ),
     "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +[\d.]+ │ +[\d.]+ │ +{NUMBER}",),
     "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),

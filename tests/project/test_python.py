@@ -93,7 +93,7 @@ def test_a_curve_has_a_column_a_position_or_none(tmp_path: Path) -> None:
     assert np.array_equal(split.to_numpy(), curve)
     dropped = run.frame(curves="drop")
     assert set(run.frame().columns) - set(dropped.columns) == {
-        f"{road}:normal backlash curve:{45 * k} deg" for road in ("analytic", "geometric") for k in range(9)
+        f"{method}:normal backlash curve:{45 * k} deg" for method in ("analytic", "geometric") for k in range(9)
     }
     with pytest.raises(tol3d.InputError, match="split"):
         run.frame(curves="flat")  # type: ignore[arg-type]

@@ -54,7 +54,7 @@ FACTORS = (28 / 110, 1.0, 1.0)
 SHAFTS = ("motor", "reducer output", "spline shaft", "shoulder flange")
 
 
-def road(own: dict[str, float], share: float) -> dict[str, float]:
+def method(own: dict[str, float], share: float) -> dict[str, float]:
     sigma = (own["high_3sigma"] - own["low_3sigma"]) / 6
     return own | {
         "sigma": sigma,
@@ -86,7 +86,7 @@ def stage(
         "ratio": ratio,
         "working_flank": flank,
         "factor": factor,
-        "roads": {name: road(own, share) for name in ("analytic", "geometric")},
+        "methods": {name: method(own, share) for name in ("analytic", "geometric")},
         "published": {"paper, 3DCS": own} if teeth else {},
     }
 
@@ -145,7 +145,7 @@ MEASURES = {
 def summary_of(
     stages: list[dict[str, Any]], measures: dict[str, Any] = MEASURES, lever: float | None = LEVER
 ) -> dict[str, Any]:
-    own = [each["roads"]["geometric"] for each in stages]
+    own = [each["methods"]["geometric"] for each in stages]
     sums = sums_at_output(own, [each["factor"] for each in stages])
     return {
         "scene": "robot shoulder",
@@ -304,15 +304,15 @@ def test_a_run_without_trains_prints_none() -> None:
     assert train_report(typed_run(summary)) == []
 
 
-def test_an_analytic_study_is_told_by_its_own_road() -> None:
+def test_an_analytic_study_is_told_by_its_own_method() -> None:
     summary = shoulder()
     train = summary["trains"]["shoulder swing"]
     for each in train["stages"]:
-        del each["roads"]["geometric"]
-        each["roads"]["analytic"] |= {"mean": 2.0}
+        del each["methods"]["geometric"]
+        each["methods"]["analytic"] |= {"mean": 2.0}
     del train["sums"]["geometric"]
     text = all_printed(summary)
-    assert "by the analytic road" in text
+    assert "by the analytic method" in text
     assert "3D simulation" not in text
     assert row_of(text, "spur pair")[5] == "2′00.0″"
 
@@ -320,7 +320,7 @@ def test_an_analytic_study_is_told_by_its_own_road() -> None:
 def test_numbers_that_nobody_knows_are_dashes() -> None:
     summary = shoulder()
     train = summary["trains"]["shoulder swing"]
-    train["stages"][1]["roads"]["geometric"] = dict.fromkeys(train["stages"][1]["roads"]["geometric"])
+    train["stages"][1]["methods"]["geometric"] = dict.fromkeys(train["stages"][1]["methods"]["geometric"])
     train["sums"]["geometric"] = dict.fromkeys(KEYS)
     assert row_of(all_printed(summary), "spur pair")[4:9] == ["–"] * 5
     assert row_of(all_printed(summary), "sum of the stages' highs") == ["9′59.4″", "–", "9′59.4″"]
@@ -425,7 +425,7 @@ def test_ends_that_are_those_of_a_data_sheet_are_told_so_and_no_other_ones() -> 
     """A reducer's play of sigma 1.5′ about 5′ that its law ends at 2′ and 9′; 3 sigma would be 0.5′ and 9.5′."""
     summary = shoulder()
     law = {"low_3sigma": 2.0, "mean": 5.0, "high_3sigma": 9.0, "sigma": 1.5}
-    for own in summary["trains"]["shoulder swing"]["stages"][0]["roads"].values():
+    for own in summary["trains"]["shoulder swing"]["stages"][0]["methods"].values():
         own |= law
     texts = texts_of(chain_figure(typed_run(summary), "shoulder swing"))
     assert [text for text in texts if text.endswith("law's")] == ["2′00.0″ … 9′00.0″, its law's"]
@@ -473,7 +473,7 @@ def test_a_long_title_and_many_published_names_stand_apart_and_every_one_is_name
         "held": "the shaft that the brake holds",
     }
     for each in (*train["stages"], train["sums"]):
-        own = train["sums"]["geometric"] if each is train["sums"] else each["roads"]["geometric"]
+        own = train["sums"]["geometric"] if each is train["sums"] else each["methods"]["geometric"]
         each["published"] = {f"{k}: a column of somebody's own long paper": own for k in range(others)}
     figure = chain_figure(typed_run(summary), name)
     assert_labels_apart(figure, 36)

@@ -267,10 +267,10 @@ def test_curves_stand_over_their_positions(tmp_path: Path) -> None:
     assert {f"{name} over its positions" for name in curves} <= set(page.inside("title"))
 
 
-def test_an_analytic_run_has_one_road_and_no_difference(tmp_path: Path) -> None:
+def test_an_analytic_run_has_one_method_and_no_difference(tmp_path: Path) -> None:
     run = run_scene("door", overrides=Overrides(trials=60, engine="analytic"), out=tmp_path / "run")
     page = _no_way_out(report_html([run], in_3d=False))
-    assert "difference of both roads" not in page.inside("title")
+    assert "difference of both methods" not in page.inside("title")
     assert "3D simulation" not in "".join(page.inside("figcaption"))
 
 

@@ -40,8 +40,8 @@ def correlation_table(run: Run) -> Table:
 
 
 def test_the_yield_is_a_line_below_the_verdict_of_every_run(run: Run) -> None:
-    within = {road: own["within"] for road, own in run.summary["joint"]["yields"].items()}
-    shares = {road: f"{100 * count / TRIALS:.2f} %" for road, count in within.items()}
+    within = {method: own["within"] for method, own in run.summary["joint"]["yields"].items()}
+    shares = {method: f"{100 * count / TRIALS:.2f} %" for method, count in within.items()}
     low, high = (f"{bound / 1e4:.2f} %" for bound in run.summary["joint"]["yields"]["geometric"]["yield_ppm_95"])
     expected = (
         f" yield: {shares['geometric']} of all trials are within all limits ({low} to {high}, 95 % confidence); "
@@ -54,11 +54,11 @@ def test_the_yield_is_a_line_below_the_verdict_of_every_run(run: Run) -> None:
 def test_correlations_are_printed_with_the_tables_of_every_measure(run: Run) -> None:
     columns = run.columns()
     values = {}
-    for road in ("analytic", "geometric"):
+    for method in ("analytic", "geometric"):
         for name in SCALARS:
-            values[road, name] = np.array(columns[f"{road}:{name}"])
-            if road == "geometric":
-                values[road, name][columns[f"status:{name}"] != "ok"] = np.nan
+            values[method, name] = np.array(columns[f"{method}:{name}"])
+            if method == "geometric":
+                values[method, name][columns[f"status:{name}"] != "ok"] = np.nan
     rows = {row.label: row for row in correlation_table(run).rows}
     assert len(rows) == 6
     for label, row in rows.items():
@@ -81,9 +81,9 @@ def test_numbers_of_the_table_have_all_digits_in_csv(run: Run) -> None:
     found = {row["measures"]: row for row in csv.DictReader(io.StringIO(correlation_table(run).csv()))}
     assert float(found["height · anywhere"]["3D simulation"]) == own["r"][0][1]
     assert int(found["height · room"]["trials"]) == own["trials"][0][3]
-    rows = {row["road"]: row for row in csv.DictReader(io.StringIO(comparison_report([run]).tables[-1].csv()))}
-    for road, heading in (("analytic", "analytic"), ("geometric", "3D simulation")):
-        joint = run.summary["joint"]["yields"][road]
+    rows = {row["method"]: row for row in csv.DictReader(io.StringIO(comparison_report([run]).tables[-1].csv()))}
+    for method, heading in (("analytic", "analytic"), ("geometric", "3D simulation")):
+        joint = run.summary["joint"]["yields"][method]
         assert float(rows[heading]["yield"]) == joint["yield_ppm"] / 1e4
         assert float(rows[heading]["from"]) == joint["yield_ppm_95"][0] / 1e4
         assert (rows[heading]["unit"], rows[heading]["measures with limits"]) == ("%", "4")

@@ -46,16 +46,16 @@ def test_a_page_writes_its_tables_below_their_titles() -> None:
 
 
 def test_a_run_s_table_of_a_measure_is_that_of_its_columns(run: Run) -> None:
-    columns = {road: f"{road}:normal backlash" for road in ("analytic", "geometric")}
-    values = {road: run.columns(column)[column] for road, column in columns.items()}
+    columns = {method: f"{method}:normal backlash" for method in ("analytic", "geometric")}
+    values = {method: run.columns(column)[column] for method, column in columns.items()}
     text = run_report(run.found).csv().split("normal backlash\n", 1)[1]
     heads, *rows = rows_of(text.split("\n\n", 1)[0])
     found = {row[0]: dict(zip(heads, row, strict=True)) for row in rows}
-    for road, heading in (("analytic", "analytic (same trials)"), ("geometric", "3D simulation")):
-        assert float(found["mean"][heading]) == pytest.approx(values[road].mean(), rel=1e-12)
-        assert float(found["smallest"][heading]) == values[road].min()
+    for method, heading in (("analytic", "analytic (same trials)"), ("geometric", "3D simulation")):
+        assert float(found["mean"][heading]) == pytest.approx(values[method].mean(), rel=1e-12)
+        assert float(found["smallest"][heading]) == values[method].min()
         below = next(own for label, own in found.items() if label.startswith("below"))
-        assert float(below[heading]) == 1e6 * np.mean(values[road] < 15)
+        assert float(below[heading]) == 1e6 * np.mean(values[method] < 15)
         assert below["unit"] == "ppm"
     assert found["mean"]["unit"] == "um"
 

@@ -42,7 +42,7 @@ BACKLASH: dict[str, Any] = {"kind": "normal_backlash", "of": "gear pair", "gear"
 
 
 def sample_of(values: np.ndarray) -> dict[str, Any]:
-    """What summary.json holds of a road's values, as far as pictures read it."""
+    """What summary.json holds of a method's values, as far as pictures read it."""
     mean, sigma = float(values.mean()), float(values.std(ddof=1))
     quantiles = dict(zip(("p0.135", "p50", "p99.865"), np.quantile(values, [0.00135, 0.5, 0.99865]), strict=True))
     ends = {"low_3sigma": mean - 3 * sigma, "high_3sigma": mean + 3 * sigma}
@@ -52,14 +52,14 @@ def sample_of(values: np.ndarray) -> dict[str, Any]:
 
 
 def measure_of(values: np.ndarray, names: tuple[str, ...] = (), **said: Any) -> dict[str, Any]:
-    """A measure whose roads found the same values; its contributors have equal shares."""
+    """A measure whose methods found the same values; its contributors have equal shares."""
     counts, edges = np.histogram(values, 64)
     sample = sample_of(values)
     counted = {"lower_edge": edges[0], "bin_width": edges[1] - edges[0]}
     shares = {"analytic_percent": 100 / max(len(names), 1), "geometric_percent": 100 / max(len(names), 1)}
     measure = BACKLASH | {"unit": "um", "over": "random", "take": "value", "lower_limit": None, "upper_limit": None}
     measure |= {"analytic": sample, "geometric": sample, "published": {}}
-    measure |= {"histogram": counted | {"counts": {road: counts.tolist() for road in ("analytic", "geometric")}}}
+    measure |= {"histogram": counted | {"counts": {method: counts.tolist() for method in ("analytic", "geometric")}}}
     return measure | {"contributors": [{"name": name} | shares for name in names]} | said
 
 
@@ -330,7 +330,7 @@ def jammed() -> dict[str, Any]:
 
 
 def test_what_failed_is_missing_in_the_bars_and_makes_the_others_no_more() -> None:
-    """Both roads found the same values of what seated: their bars are as high there, and 2/3 of 100 % in all."""
+    """Both methods found the same values of what seated: their bars are as high there, and 2/3 of 100 % in all."""
     bars = bars_of(typed_measure(jammed()))
     assert float(np.sum(bars["geometric"].density * np.diff(bars["geometric"].edges))) == pytest.approx(200 / 3)
     assert float(np.sum(bars["analytic"].density * np.diff(bars["analytic"].edges))) == pytest.approx(100.0)

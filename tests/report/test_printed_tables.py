@@ -42,7 +42,7 @@ study: {{trials: 4000, seed: 11, witness: 0}}
 THICKNESS = ((-0.060, 0.010), (-0.024, 0.004))  # mm; mean and sigma of both, limits being those of 3 sigma
 ECCENTRICITY = 0.030  # mm; of either component
 LOWER, UPPER = 250.0, 320.0  # um
-ROADS = {"analytic (same trials)": "analytic", "3D simulation": "geometric"}
+METHODS = {"analytic (same trials)": "analytic", "3D simulation": "geometric"}
 BY_CLOSED_FORM = "analytic (closed form)"
 
 
@@ -120,24 +120,24 @@ ROUNDING = 0.0006  # um; three digits are printed
 BIN = 0.4  # um; quantiles are counted on a grid, and in the tails of 4000 trials neighbours lie a few tenths apart
 
 
-@pytest.mark.parametrize("heading", ROADS)
+@pytest.mark.parametrize("heading", METHODS)
 @pytest.mark.parametrize("label", STATISTICS)
 def test_a_row_holds_what_its_label_says_of_the_column_that_its_heading_names(
     table: Table, run: Run, label: str, heading: str
 ) -> None:
-    column = f"{ROADS[heading]}:play"
+    column = f"{METHODS[heading]}:play"
     expected = STATISTICS[label](run.columns(column)[column])
     assert shown(table, label, heading) == pytest.approx(expected, abs=BIN if "quantile" in label else ROUNDING)
 
 
 def test_the_rows_are_told_apart_by_more_than_they_may_be_off(run: Run) -> None:
-    """Swapped labels or headings fail above: any two statistics, and both roads' means, are further apart than that."""
-    roads = [run.columns(f"{road}:play")[f"{road}:play"] for road in ROADS.values()]
-    for values in roads:
+    """Swapped labels or headings fail above: any two statistics, and both means, are further apart than that."""
+    methods = [run.columns(f"{method}:play")[f"{method}:play"] for method in METHODS.values()]
+    for values in methods:
         numbers = sorted(statistic(values) for label, statistic in STATISTICS.items() if label not in ("sigma", "mean"))
         assert min(np.diff(numbers)) > 2 * BIN
-    assert abs(roads[0].mean() - roads[1].mean()) > 2 * ROUNDING
-    assert abs(roads[0].std() - roads[1].std()) > 2 * ROUNDING
+    assert abs(methods[0].mean() - methods[1].mean()) > 2 * ROUNDING
+    assert abs(methods[0].std() - methods[1].std()) > 2 * ROUNDING
 
 
 def test_the_closed_form_is_that_of_the_drawing(table: Table) -> None:
@@ -153,7 +153,7 @@ def test_the_closed_form_is_that_of_the_drawing(table: Table) -> None:
 
 def test_the_nominal_build_and_the_one_at_all_means_stand_in_their_rows(table: Table) -> None:
     """An eccentricity at all its means is none; 79 um lie between the two rows."""
-    for heading in ROADS:
+    for heading in METHODS:
         assert shown(table, "nominal build", heading) == pytest.approx(nominal_play(), abs=ROUNDING)
         assert shown(table, "build at all means", heading) == pytest.approx(mean_play(), abs=ROUNDING)
 
@@ -168,9 +168,9 @@ def labelled(table: Table, word: str) -> str:
     return next(label for label in table if label.startswith(word))
 
 
-@pytest.mark.parametrize("heading", ROADS)
+@pytest.mark.parametrize("heading", METHODS)
 def test_what_lies_below_and_above_the_limits_is_counted(table: Table, run: Run, heading: str) -> None:
-    column = f"{ROADS[heading]}:play"
+    column = f"{METHODS[heading]}:play"
     values = run.columns(column)[column]
     counted = {"below": np.mean(values < LOWER), "above": np.mean(values > UPPER)}
     assert 0.01 < counted["below"] < counted["above"] / 2  # swapped labels would be seen

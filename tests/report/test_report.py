@@ -150,9 +150,9 @@ def test_a_sheet_shows_every_cell_once_within_its_width(rows: list[list[str]], w
 
 def test_rows_hold_the_statistics_of_the_columns(run: Run) -> None:
     text = printed(run_report(run.found), 120)
-    values = {road: run.columns(f"{road}:free play")[f"{road}:free play"] for road in ("analytic", "geometric")}
+    values = {method: run.columns(f"{method}:free play")[f"{method}:free play"] for method in ("analytic", "geometric")}
     means = row_of(text, "mean")
-    assert means[1:3] == [f"{values[road].mean():.3f}" for road in ("analytic", "geometric")]
+    assert means[1:3] == [f"{values[method].mean():.3f}" for method in ("analytic", "geometric")]
     assert means[3] == "71.5"
     lows = [f"{v.mean() - 3 * v.std(ddof=1):.3f}" for v in values.values()]
     assert row_of(text, "low (−3 sigma)")[1:3] == lows
@@ -223,8 +223,8 @@ def test_a_curve_says_how_many_of_its_positions_are_shown(run: Run) -> None:
     shape = run.summary["measures"]["shape"]
     assert "positions shown" not in printed(run_report(run.found), 120)
     curve = {
-        road: own | {key: own[key] * 6 for key in ("mean", "sigma", "min", "max")}
-        for road, own in shape["curve"].items()
+        method: own | {key: own[key] * 6 for key in ("mean", "sigma", "min", "max")}
+        for method, own in shape["curve"].items()
     }
     long = dict(shape) | {"curve": curve, "position_deg": [float(k) for k in range(30)]}
     text = printed(run_report(typed_run(dict(run.summary) | {"measures": {"shape": long}})), 120)
@@ -384,7 +384,7 @@ def test_an_error_that_jumps_over_the_swing_has_no_mean_in_the_comparison(tmp_pa
         == 1
     )
     others = len(swing.summary["measures"]) - len(errors)
-    assert [text.count(f" {road} ") for road in ("analytic   ", "3D   ")] == [others, others]
+    assert [text.count(f" {method} ") for method in ("analytic   ", "3D   ")] == [others, others]
     for name in errors:
         below = text.split(f"\n{name}\n")[1].split("\n\n")[0]
         assert len(below.splitlines()) == 2

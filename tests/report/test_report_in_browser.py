@@ -113,9 +113,9 @@ def test_numbers_in_the_page_are_those_of_the_summary_to_the_digits_shown(page: 
     )
     summary = json.loads((spur.path / "summary.json").read_text("utf-8"))
     own = summary["measures"]["normal backlash"]
-    for road in ("analytic", "geometric"):
+    for method in ("analytic", "geometric"):
         for key in ("mean", "sigma", "low_3sigma", "high_3sigma", "p50", "sample_min", "sample_max"):
-            assert f"{own[road][key]:.3f}" in {text for value, text in cells if float(value) == own[road][key]}, key
+            assert f"{own[method][key]:.3f}" in {text for value, text in cells if float(value) == own[method][key]}, key
     plain = [(float(value), text) for value, text in cells if re.fullmatch(r"-?\d+\.\d+", text)]
     assert len(plain) > 40
     for value, text in plain:

@@ -100,7 +100,7 @@ def test_rows_of_several_runs_each_have_their_run_and_numbers_not_known_are_empt
     files = _csv(write_report([run, other], tmp_path / "tables", format="csv"))
     rows = next(own for name, own in files.items() if "lost-motion" in name)
     assert _column(rows, "run") == ["spur", "spur", "other", "other"]
-    assert _column(rows, "road") == ["analytic", "3D"] * 2
+    assert _column(rows, "method") == ["analytic", "3D"] * 2
     assert not any("–" in row for row in rows)
 
 

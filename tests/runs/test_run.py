@@ -84,13 +84,14 @@ def test_the_worst_trial_is_the_one_nearest_to_the_limit(spur_run: Run) -> None:
 def test_summary_agrees_with_the_columns(spur_run: Run) -> None:
     columns, summary = spur_run.columns(), json.loads((spur_run.path / "summary.json").read_text("utf-8"))
     for name, measure in summary["measures"].items():
-        for road in ("analytic", "geometric"):
-            values = columns[f"{road}:{name}"]
-            assert measure[road]["mean"] == pytest.approx(values.mean(), rel=1e-12)
-            assert measure[road]["sigma"] == pytest.approx(values.std(ddof=1), rel=1e-10)
-            assert measure[road]["sample_min"] == values.min()
+        for method in ("analytic", "geometric"):
+            values = columns[f"{method}:{name}"]
+            assert measure[method]["mean"] == pytest.approx(values.mean(), rel=1e-12)
+            assert measure[method]["sigma"] == pytest.approx(values.std(ddof=1), rel=1e-10)
+            assert measure[method]["sample_min"] == values.min()
             # the grid's quantile lies in the bin of the order statistic
-            assert measure[road]["p50"] == pytest.approx(np.sort(values)[149], abs=2 * measure[road]["quantile_error"])
+            bound = 2 * measure[method]["quantile_error"]
+            assert measure[method]["p50"] == pytest.approx(np.sort(values)[149], abs=bound)
         difference = columns[f"geometric:{name}"] - columns[f"analytic:{name}"]
         assert measure["agreement"]["max_abs_difference"] == pytest.approx(np.abs(difference).max(), rel=1e-12)
 

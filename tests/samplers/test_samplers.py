@@ -23,8 +23,8 @@ from printing import printed as of_rich
 
 from tol3d import Scene, SceneError, load_scene
 from tol3d.errors import InputError
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Model, Positions
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import gear_model
 from tol3d.report.table import run_report

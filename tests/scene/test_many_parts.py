@@ -105,12 +105,12 @@ def in_rows(features: dict[str, Any]) -> list[tuple[str, Any]]:
 
 
 def columns(scene: Scene) -> Mapping[str, bytes]:
-    """The bits of what both roads make of its first trials, and the names of its contributors."""
+    """The bits of what both methods make of its first trials, and the names of its contributors."""
     made = Assembled(simulation_of(scene))
     found = {
-        f"{road} {name}": values.tobytes()
-        for road in ("exact", "analytic")
-        for name, values in made.drawn(TRIALS, road).items()
+        f"{method} {name}": values.tobytes()
+        for method in ("exact", "analytic")
+        for name, values in made.drawn(TRIALS, method).items()
     }
     return found | {"contributors": "|".join(own.name for own in made.system.contributors).encode()}
 

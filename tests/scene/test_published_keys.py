@@ -12,11 +12,11 @@ from tol3d.scene import Grammar
 
 Schema = Mapping[str, Any]
 
-ROADS: Final = ("analytic.", "geometric.", "roads.")
+METHODS: Final = ("analytic.", "geometric.", "methods.")
 STATED: Final = {
     "blocks.*": "how the run lies on disk",
     "witness.*": "what our own engines find of each other",
-    "measures.*.agreement.explanation.*": "what our own roads leave out",
+    "measures.*.agreement.explanation.*": "what our own methods leave out",
     "study.until": "at which errors it was to stop",
     "study.profile_steps": "how finely our own witness measures",
     "measures.*.chord_error_um": "how finely our own meshes measure",
@@ -46,7 +46,7 @@ RENAMED: Final = {
     "measures.*.contributors.*.geometric_percent": "measures.*.contributors.*.percent",
     "measures.*.contributors.*.geometric_percent_se": "measures.*.contributors.*.percent_se",
 }
-"""Shares whose keys have the road's name."""
+"""Shares whose keys have the method's name."""
 
 
 def numbers(node: Any, whole: Schema, place: str = "") -> Iterator[str]:
@@ -60,17 +60,17 @@ def numbers(node: Any, whole: Schema, place: str = "") -> Iterator[str]:
     for key, own in node.get("properties", {}).items():
         yield from numbers(own, whole, f"{place}{key}.")
     if isinstance(others := node.get("additionalProperties"), dict):
-        of_roads = set(node.get("propertyNames", {}).get("enum", ())) == {"analytic", "geometric"}
-        yield from numbers(others, whole, place if of_roads else f"{place}*.")
+        of_methods = set(node.get("propertyNames", {}).get("enum", ())) == {"analytic", "geometric"}
+        yield from numbers(others, whole, place if of_methods else f"{place}*.")
     if items := node.get("items"):
         yield from numbers(items, whole, f"{place}*." if "$ref" in items else place)
 
 
-def without_roads(place: str) -> str:
+def without_methods(place: str) -> str:
     """A number's place as published keys have it."""
     found = f"{place}."
-    for road in ("analytic_closed_form.", *ROADS):
-        found = found.replace(f".{road}", ".")
+    for method in ("analytic_closed_form.", *METHODS):
+        found = found.replace(f".{method}", ".")
     bare = found.removesuffix(".")
     return RENAMED.get(bare, bare)
 
@@ -105,7 +105,7 @@ def _quantities_as_numbers(node: Any) -> Any:
 
 def test_every_number_of_a_summary_may_be_published_or_is_named_here_with_the_reason() -> None:
     schema = summary_kinds().run.model_json_schema()
-    ours = {without_roads(place) for place in numbers(schema, schema)}
+    ours = {without_methods(place) for place in numbers(schema, schema)}
     allowed = {place for place in ours if any(fnmatchcase(place, own) for own in STATED)}
     assert ours - allowed - column_numbers() == set()
     assert {own for own in STATED if not any(fnmatchcase(place, own) for place in ours)} == set()
@@ -114,7 +114,7 @@ def test_every_number_of_a_summary_may_be_published_or_is_named_here_with_the_re
 def test_nothing_else_may_be_published() -> None:
     """But the short forms of a share and of a correlation, which is by both names."""
     schema = summary_kinds().run.model_json_schema()
-    ours = {without_roads(place) for place in numbers(schema, schema)}
+    ours = {without_methods(place) for place in numbers(schema, schema)}
     pair = "joint.correlations.*.*"
     short = {"measures.*.contributors.*", pair}
     short |= {f"{pair}.{key}" for key in ("r", "r_low_95", "r_high_95", "trials")}

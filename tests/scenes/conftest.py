@@ -12,7 +12,7 @@ from tol3d import Overrides, Run, run_scene
 
 @pytest.fixture(scope="session")
 def run_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Run]:
-    """A run of a scene with the trials of its file, on both roads."""
+    """A run of a scene with the trials of its file, on both methods."""
 
     @cache
     def run(scene: str) -> Run:

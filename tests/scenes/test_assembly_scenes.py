@@ -44,7 +44,7 @@ def test_an_assembly_meets_its_expected_numbers(scene: str, run_of: Callable[[st
 
 
 @pytest.mark.parametrize("scene", EACH)
-def test_both_roads_of_an_assembly_differ_by_nothing_that_is_not_explained(
+def test_both_methods_of_an_assembly_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
     summary = run_of(scene).summary
@@ -65,8 +65,8 @@ def test_the_cover_s_numbers_follow_by_hand(tmp_path: Any) -> None:
         "flush": (0.0, math.sqrt(2) * 100 / 3),
     }
     for name, (mean, sigma) in by_hand.items():
-        for road in ("analytic", "geometric"):
-            own = found["measures"][name][road]
+        for method in ("analytic", "geometric"):
+            own = found["measures"][name][method]
             assert own["mean"] == pytest.approx(mean, abs=4 * sigma / math.sqrt(count))
             assert own["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * count))
 

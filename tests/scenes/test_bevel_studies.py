@@ -72,13 +72,13 @@ def closed_mean(model: Model) -> float:
 
 
 def check(name: str, trials: int) -> None:
-    """The roads' difference is sampled, and the closed form's mean is known: so few trials tell the mean closely."""
+    """The methods' difference is sampled, and the closed form's mean is known: so few trials tell the mean closely."""
     case = CASES[name]
     model = model_of(case)
     columns = gear_columns(model, exact_engine(model), drawn_trials(model, 1, 0, trials))
     assert set(columns["status"]) == {"ok"}
     geometric, analytic = (
-        np.asarray(columns[f"{road}:{model.measures[0].name}"], dtype=np.float64) for road in ("geometric", "analytic")
+        np.asarray(columns[f"{own}:{model.measures[0].name}"], dtype=np.float64) for own in ("geometric", "analytic")
     )
     difference = geometric - analytic
     by_chance = difference.std() / math.sqrt(trials)

@@ -30,7 +30,7 @@ def test_an_rv_reducer_meets_its_expected_numbers(scene: str, run_of: Callable[[
 
 @pytest.mark.slow
 @pytest.mark.parametrize("scene", sorted(SCENES - {"every_cycloid_field"}))  # few trials tell too little of counts
-def test_both_roads_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
+def test_both_methods_of_an_rv_reducer_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
     compared = [own for own in run_of(scene).summary["measures"].values() if own["take"] != "curve"]

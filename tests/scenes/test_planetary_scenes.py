@@ -26,7 +26,7 @@ def test_a_planetary_set_meets_its_expected_numbers(scene: str, run_of: Callable
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_both_roads_of_a_planetary_set_differ_by_nothing_that_is_not_explained(
+def test_both_methods_of_a_planetary_set_differ_by_nothing_that_is_not_explained(
     scene: str, run_of: Callable[[str], Run]
 ) -> None:
     summary = run_of(scene).summary

@@ -313,12 +313,12 @@ def test_a_sample_lies_within_four_standard_errors_of_the_closed_form(
     scene: str, measure: str, run_of: Callable[[str], Run]
 ) -> None:
     found, form = run_of(scene).summary["measures"][measure], MOMENTS[scene, measure](BY_HAND[scene]())
-    for road in ("analytic", "geometric"):
-        count = found[road]["count"]
+    for method in ("analytic", "geometric"):
+        count = found[method]["count"]
         assert count == expected(scene)["trials"]
-        assert abs(found[road]["mean"] - form.mean) <= 4 * form.sigma / math.sqrt(count)
+        assert abs(found[method]["mean"] - form.mean) <= 4 * form.sigma / math.sqrt(count)
         # for a normal; flat parts such as temperature's only make it smaller
-        assert abs(found[road]["sigma"] - form.sigma) <= 4 * form.sigma / math.sqrt(2 * count)
+        assert abs(found[method]["sigma"] - form.sigma) <= 4 * form.sigma / math.sqrt(2 * count)
 
 
 def test_shares_by_regression_are_within_four_standard_errors_of_the_closed_form(run_of: Callable[[str], Run]) -> None:

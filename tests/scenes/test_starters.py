@@ -45,9 +45,9 @@ def test_a_starter_runs_as_it_is_and_every_trial_has_its_values(starter: Starter
     assert scene.read_text("utf-8") == starter.text
     run = run_scene(scene, overrides=Overrides(trials=TRIALS), out=here / "run")
     for name, measure in run.summary["measures"].items():
-        for road in ("analytic", "geometric"):
-            assert measure[road]["count"] == TRIALS, name
-            assert measure[road]["sigma"] > 0.0, name
+        for method in ("analytic", "geometric"):
+            assert measure[method]["count"] == TRIALS, name
+            assert measure[method]["sigma"] > 0.0, name
 
 
 @pytest.mark.parametrize("starter", STARTERS.values(), ids=STARTERS)

@@ -198,10 +198,10 @@ def test_a_train_meets_its_expected_numbers(scene: str, run_of: Callable[[str], 
         if "closed_form" in own:
             form = found["analytic_closed_form"]
             error = form["sigma"] / math.sqrt(trials)
-            for road in ("analytic", "geometric"):
-                assert abs(found[road]["mean"] - form["mean"]) < 4 * error
+            for method in ("analytic", "geometric"):
+                assert abs(found[method]["mean"] - form["mean"]) < 4 * error
                 # of a normal; flat parts only make it smaller
-                assert abs(found[road]["sigma"] - form["sigma"]) < 4 * error / math.sqrt(2)
+                assert abs(found[method]["sigma"] - form["sigma"]) < 4 * error / math.sqrt(2)
 
 
 @pytest.mark.parametrize(("scene", "train"), [("robot_shoulder", "shoulder swing"), ("three_stage_train", "indexing")])
@@ -212,9 +212,9 @@ def test_stages_of_a_train_meet_their_expected_numbers(scene: str, train: str, r
     for stage in stages:
         wanted = own[stage["link"]]
         assert stage["factor"] == pytest.approx(wanted["factor"], abs=PRINTED)
-        found = {name: stage["roads"]["geometric"][name] for name in wanted["geometric"]}
+        found = {name: stage["methods"]["geometric"][name] for name in wanted["geometric"]}
         assert found == pytest.approx(wanted["geometric"], abs=2 * PRINTED)
-    assert sum(stage["roads"]["geometric"]["share_percent"] for stage in stages) == pytest.approx(100.0)
+    assert sum(stage["methods"]["geometric"]["share_percent"] for stage in stages) == pytest.approx(100.0)
 
 
 @pytest.mark.parametrize("scene", SCENES)

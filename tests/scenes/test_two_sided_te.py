@@ -69,15 +69,15 @@ def test_the_mean_build_is_the_reference_pair(run_of: Callable[[str], Run]) -> N
         assert 60 * measures[name]["mean_build"]["geometric"] == pytest.approx(value, abs=0.01), name
 
 
-@pytest.mark.parametrize(("road", "exact"), [("geometric", True), ("analytic", False)])
-def test_every_trial_is_a_pair_of_its_own(road: str, exact: bool, run_of: Callable[[str], Run]) -> None:
+@pytest.mark.parametrize(("method", "exact"), [("geometric", True), ("analytic", False)])
+def test_every_trial_is_a_pair_of_its_own(method: str, exact: bool, run_of: Callable[[str], Run]) -> None:
     columns = run_of("two_sided_te").columns()
     for trial in range(0, expected("two_sided_te")["trials"], 10):
         for name, value in extremes(pair_of(columns, trial), exact=exact).items():
             # the first order counts the wheel's phase from its nominal angle, half the play off, and takes the nominal
             # pressure angle: 15 um of centre distance are 5e-4 of the wave
             bound = 2 * SEEN if exact else 0.01
-            assert columns[f"{road}:{name}"][trial] == pytest.approx(value, abs=bound), (trial, name)
+            assert columns[f"{method}:{name}"][trial] == pytest.approx(value, abs=bound), (trial, name)
 
 
 def test_a_comparison_counts_the_positions_of_a_long_period_on_and_those_of_a_turn_within_it(tmp_path: Path) -> None:

@@ -158,9 +158,9 @@ def round_ones(e: Elsewhere) -> set[str]:
 )
 def test_coordinates_and_names_of_a_file_change_no_measure(e: Elsewhere, here: Assembled, tmp_path: Path) -> None:
     there = made(tmp_path, e, turned_round=True)
-    for road in ("exact", "analytic"):
-        found = there.drawn(TRIALS, road)
-        for name, values in here.drawn(TRIALS, road).items():
+    for method in ("exact", "analytic"):
+        found = there.drawn(TRIALS, method)
+        for name, values in here.drawn(TRIALS, method).items():
             assert np.ptp(values) > 1e-3, name
             if name not in round_ones(e):
-                np.testing.assert_allclose(found[name], values, atol=WITHIN, rtol=0, err_msg=f"{road}: {name}")
+                np.testing.assert_allclose(found[name], values, atol=WITHIN, rtol=0, err_msg=f"{method}: {name}")

@@ -130,9 +130,9 @@ def test_selected_features_give_the_columns_of_their_numbers_bit_by_bit(folder: 
         run_scene(path, overrides=Overrides(trials=400), out=tmp_path / path.stem)
         for path in (selected(folder), typed(folder, by_hand))
     ]
-    for road in ("geometric", "analytic"):
+    for method in ("geometric", "analytic"):
         for name in MEASURES:
-            one, other = (run.columns(f"{road}:{name}")[f"{road}:{name}"] for run in runs)
+            one, other = (run.columns(f"{method}:{name}")[f"{method}:{name}"] for run in runs)
             assert np.array_equal(one, other)
             assert np.ptp(one) > 0.0
 

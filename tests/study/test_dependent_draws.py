@@ -53,9 +53,9 @@ def test_each_reads_the_trial_in_which_it_is(run: Run) -> None:
     assert (np.abs(mark) / np.abs(tip)).max() > 0.4999
 
 
-@pytest.mark.parametrize("road", ["geometric", "analytic"])
-def test_moments_are_those_of_the_mixed_laws(run: Run, road: str) -> None:
-    found = run.summary["measures"]["reach"][road]
+@pytest.mark.parametrize("method", ["geometric", "analytic"])
+def test_moments_are_those_of_the_mixed_laws(run: Run, method: str) -> None:
+    found = run.summary["measures"]["reach"][method]
     assert found["mean"] == pytest.approx(100_050, abs=4 * SIGMA / math.sqrt(COUNT))
     assert found["sigma"] == pytest.approx(SIGMA, rel=4 * 1.5 / math.sqrt(2 * COUNT))
 

@@ -1,6 +1,6 @@
-"""Differences of the roads of parts, of gears in a housing and of transmission errors: explained, or warned of.
+"""Differences of the methods of parts, of gears in a housing and of transmission errors: explained, or warned of.
 
-What is wrong in an analytic road is put in by scaling the deviations of one contributor that it sees. Without it, no
+What is wrong in an analytic method is put in by scaling the deviations of one contributor that it sees. Without it, no
 shipped scene is warned of.
 """
 
@@ -15,9 +15,9 @@ from shipped import shipped
 from thinned import thinned
 
 from tol3d import Overrides, load_scene
-from tol3d.assembly.roads import TorsorRoad
-from tol3d.gearing.roads.analytic import AnalyticRoad
-from tol3d.machine.roads import MachineRoad
+from tol3d.assembly.methods import TorsorMethod
+from tol3d.gearing.methods.analytic import AnalyticMethod
+from tol3d.machine.methods import MachineMethod
 from tol3d.simulate import simulation_of
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
@@ -28,11 +28,11 @@ from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
 LONG = ("every_assembly_field", "hole_and_slot", "gearbox_in_housing", "housed_gears", "bolted_cover", "box_with_discs")
-ROADS: Mapping[str, Any] = {
-    "door": TorsorRoad,
-    "cover_on_base": TorsorRoad,
-    "housed_gears": MachineRoad,
-    "two_sided_te": AnalyticRoad,
+METHODS: Mapping[str, Any] = {
+    "door": TorsorMethod,
+    "cover_on_base": TorsorMethod,
+    "housed_gears": MachineMethod,
+    "two_sided_te": AnalyticMethod,
 }
 
 
@@ -40,21 +40,21 @@ def explained(scene: str, trials: int) -> Mapping[str, Explanation]:
     """What explains the differences of a scene's first trials, without its files."""
     simulation = simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides(trials=trials))
     system = simulation.system
-    road = system.road("exact", system.materials("exact"))
-    columns = columns_of(system, road, drawn(simulation, 0, trials))
+    method = system.method("exact", system.materials("exact"))
+    columns = columns_of(system, method, drawn(simulation, 0, trials))
     grids = grids_of(system, {name: column[:PILOT_TRIALS] for name, column in columns.items()})
-    return explanations(simulation, road, Tally.of(simulation, grids, columns))
+    return explanations(simulation, method, Tally.of(simulation, grids, columns))
 
 
 @contextmanager
 def scaled(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> Iterator[None]:
-    """The analytic road of a scene sees other deviations of one contributor."""
+    """The analytic method of a scene sees other deviations of one contributor."""
     simulation = simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides())
-    own, kind = component_slices(simulation.system)[name], ROADS[scene]
+    own, kind = component_slices(simulation.system)[name], METHODS[scene]
     right: Any = kind.answers
 
     def wrong(self: Any, trials: Trials, measures: Any) -> Any:
-        if getattr(self, "exact", False):  # of gears in a housing both roads are of one kind
+        if getattr(self, "exact", False):  # of gears in a housing both methods are of one kind
             return right(self, trials, measures)
         deviations = trials.deviations.copy()
         deviations[:, own] *= factor
@@ -101,4 +101,4 @@ def test_a_wrong_effect_of_a_contributor_is_named(
     with scaled(monkeypatch, scene, name, factor):
         found = explained(scene, 1000)[measure]
     assert [part.contributor for part in found.linear if not part.by] == [name]
-    assert any(f"the two roads disagree on {name}:" in fault for fault in found.faults)
+    assert any(f"the two methods disagree on {name}:" in fault for fault in found.faults)

@@ -1,4 +1,4 @@
-"""The difference of the two roads is explained where both are right, and warned of where one of them was sabotaged.
+"""The difference of the two methods is explained where both are right, and warned of where one of them was sabotaged.
 
 The paper's pair has alpha_w = 20 deg, 28 and 110 teeth: what a sabotage changes follows by hand. Every contributor's
 own effect is known to 5e-4 of itself after 2000 trials (rms of what is left 0.002 um, over sqrt(2000) 4e-5 um, against
@@ -29,8 +29,8 @@ from tol3d import Overrides, load_scene, run_scene
 from tol3d.distributions import Constant
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import exact_engine
+from tol3d.gearing.methods.geometric import GeometricMethod
 from tol3d.gearing.model import Model, Scalar, model_from_scene
-from tol3d.gearing.roads.geometric import GeometricRoad
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import BevelGear
 from tol3d.report.table import run_report
@@ -66,7 +66,7 @@ def explained(model: Model, trials: int = 2000) -> Mapping[str, Explanation]:
     pilot = {name: column[:PILOT_TRIALS] for name, column in columns.items()}
     simulation = simulated(model)
     tally = Tally.of(simulation, grids_of(simulation.system, pilot), columns)
-    return explanations(simulation, GeometricRoad(model, exact_engine(model)), tally)
+    return explanations(simulation, GeometricMethod(model, exact_engine(model)), tally)
 
 
 @contextmanager
@@ -100,10 +100,10 @@ def sabotaged(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -
 def assert_blames(found: Explanation, name: str) -> None:
     """The contributor is named, and no other."""
     assert [part.contributor for part in found.linear if not part.by] == [name]
-    assert any(f"the two roads disagree on {name}:" in fault for fault in found.faults)
+    assert any(f"the two methods disagree on {name}:" in fault for fault in found.faults)
 
 
-# sabotage of the analytic road ----------------------------------------------------------------------
+# sabotage of the analytic method ----------------------------------------------------------------------
 
 
 def test_a_flipped_eccentricity_sign_is_named_with_twice_its_own_effect(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,11 +202,11 @@ def test_a_wrong_coefficient_of_what_does_not_vary_is_seen_in_the_mean(monkeypat
     assert found.linear == ()
 
 
-# sabotage of the geometric road ---------------------------------------------------------------------
+# sabotage of the geometric method ---------------------------------------------------------------------
 
 
 def bent(name: str, other: Callable[[np.ndarray], np.ndarray], model: Model) -> Callable[..., Any]:
-    """The geometric road with other deviations of one contributor [mm] than were drawn."""
+    """The geometric method with other deviations of one contributor [mm] than were drawn."""
 
     def make(right: Callable[..., Any]) -> Callable[..., Any]:
         def wrong(self: ExactEngine, deviations: np.ndarray) -> Any:
@@ -357,7 +357,7 @@ def test_what_is_decided_is_printed_and_a_fault_is_loud(tmp_path: Path, monkeypa
     assert "explained: no contributor's part in it is above 0.0" in printed(right)
     assert "terms of second order have rms 0.00" in printed(right)
     assert "NOT EXPLAINED" not in printed(right)
-    fault = "the two roads disagree on pinion eccentricity: their difference depends on it by 200 % of its own effect"
+    fault = "the two methods disagree on pinion eccentricity: their difference depends on it by 200 % of its own effect"
     assert f"NOT EXPLAINED: {fault}" in printed(wrong)
     assert f"warning: normal backlash: {fault}" in printed(wrong)
     assert "; explained:" not in printed(wrong)

@@ -196,7 +196,7 @@ def test_a_train_jammed_at_one_mesh_is_not_free_by_the_play_of_the_others(tmp_pa
     assert own["below_limit_ppm"] == pytest.approx(1e6 * thick.mean())
     assert own["out_ppm"] == own["below_limit_ppm"] == own["failed_ppm"]
     trains = run.summary["trains"]["t"]["stages"]
-    assert [stage["roads"]["geometric"]["sample_min"] > 0 for stage in trains] == [True, True]
+    assert [stage["methods"]["geometric"]["sample_min"] > 0 for stage in trains] == [True, True]
 
 
 @pytest.mark.parametrize(
@@ -259,7 +259,7 @@ def test_what_is_below_a_limit_is_counted_of_all_builds_jams_included(run: Run, 
     assert (own["out_ppm"], own["out_ppm_95"]) == (own["below_limit_ppm"], own["below_limit_ppm_95"])
     assert own["ppk"] == pytest.approx(stats.norm.isf(below / TRIALS) / 3, abs=1e-12)
     assert own["ppk_by"] == "share out of limits"
-    # the stack-up, which seats them all, is within the few builds that lie between both roads of the limit
+    # the stack-up, which seats them all, is within the few builds that lie between both methods of the limit
     analytic = run.summary["measures"]["normal backlash"]["analytic"]
     assert abs(analytic["below_limit_ppm"] - own["below_limit_ppm"]) < 300
     assert analytic["ppk_by"] == "mean and sigma"

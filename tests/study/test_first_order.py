@@ -13,7 +13,7 @@ from tol3d.report.sheet import as_text
 from tol3d.study.first_order import FirstOrder, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.system.draw import Ball, Each, Planar, Scalar
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainContributor, PlainMeasure, PlainSystem
@@ -22,7 +22,7 @@ from tol3d.system.trials import Trials
 UM = 1e-3  # mm
 SLOPES = {"size": (3.0,), "anywhere": (3.0, -4.0), "eastwards": (3.0, -4.0), "point": (1.0, 2.0, 2.0)}
 SLOPES |= {"pins": (0.0, 1.0, -2.0), "fixed": (7.0,)}
-BEND = 40.0  # 1/mm; of the exact road, in the size
+BEND = 40.0  # 1/mm; of the exact method, in the size
 MEAN, SIGMA = 20.0, 2.0  # um, of the size; its ends are 14 and 26
 
 
@@ -53,7 +53,7 @@ def simulation(engine: str = "exact", *, adds_up: bool = True) -> Simulation:
 
 def found_by(engine: str = "exact") -> dict[str, FirstOrder]:
     asked = simulation(engine)
-    return first_orders(asked, road_of(asked, materials_of(asked)), asked.system.measures)["gap"]
+    return first_orders(asked, method_of(asked, materials_of(asked)), asked.system.measures)["gap"]
 
 
 def test_slopes_are_those_of_the_sum_and_of_a_parabola_at_its_mean() -> None:
@@ -62,7 +62,7 @@ def test_slopes_are_those_of_the_sum_and_of_a_parabola_at_its_mean() -> None:
     Eastwards only the first component counts; a constant is moved by a um to see what it would do. Each of the pins has
     a slope of its own, of which the greatest is shown, with its sign.
     """
-    slopes = {road: {own.name: own.slope for own in found.effects} for road, found in found_by().items()}
+    slopes = {method: {own.name: own.slope for own in found.effects} for method, found in found_by().items()}
     expected = {"size": 3.0, "anywhere": 5.0, "eastwards": 3.0, "point": 3.0, "pins": -2.0, "fixed": 7.0}
     assert slopes["analytic"] == pytest.approx(expected, rel=1e-9)
     assert slopes["geometric"] == pytest.approx(expected | {"size": 4.6}, rel=1e-9)
@@ -85,7 +85,7 @@ def test_slopes_of_each_of_several_are_alike_or_the_greatest_of_them() -> None:
         assert effect.slope == pytest.approx(-2.0)
 
 
-def test_builds_are_worked_out_by_both_roads() -> None:
+def test_builds_are_worked_out_by_both_methods() -> None:
     """Means: the size at 20, east at 2, pins at 1 each: 60 + 6 + 0 + 1 - 2 = 65 um, and 40 * 0.02² mm = 16 um."""
     found = found_by()
     assert [own.nominal for own in found.values()] == pytest.approx([1000.0, 1000.0])
@@ -140,7 +140,7 @@ def test_check_prints_contributors_measures_and_what_each_does() -> None:
     assert lines[-1] == "study: 2000 trials, seed 1, monte_carlo, engine exact"
 
 
-def test_without_an_engine_there_is_the_analytic_road_alone() -> None:
+def test_without_an_engine_there_is_the_analytic_method_alone() -> None:
     assert list(found_by("analytic")) == ["analytic"]
     assert "exact" not in as_text(check_report(simulation("analytic")), 120)
 

@@ -15,7 +15,7 @@ from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
 from tol3d.study.high_low_mean import high_low_mean_percents, to_first_order
 from tol3d.study.overrides import simulation_of
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.system.measure import Measure
 from tol3d.system.stated import mean_deviations
 
@@ -151,13 +151,13 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
     """Three of four zones are taken to first order: their shares differ by what is not linear."""
     simulation = simulation_of(load_scene("cover_on_base"), Overrides())
     system = simulation.system
-    road = road_of(simulation, materials_of(simulation))
+    method = method_of(simulation, materials_of(simulation))
     assert to_first_order(system, system.measures) == 0
     rows: list[int] = []
 
     def read(builds: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
         rows.append(len(builds))
-        return Evaluation(system, road).values(builds, measures)
+        return Evaluation(system, method).values(builds, measures)
 
     exact = high_low_mean_percents(system, system.measures, read)
     built = sum(rows)

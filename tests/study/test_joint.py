@@ -68,20 +68,20 @@ def scene_with(folder: Path, *changes: tuple[str, str]) -> Path:
     return folder / "spring.yaml"
 
 
-def values_of(run: Run, road: str, name: str) -> NDArray[np.float64]:
+def values_of(run: Run, method: str, name: str) -> NDArray[np.float64]:
     """Kept values of the trials, nan where one did not seat."""
-    column = f"{road}:{name}"
+    column = f"{method}:{name}"
     values = np.array(run.columns(column)[column], dtype=np.float64)
-    if road == "geometric":
+    if method == "geometric":
         values[run.columns(f"status:{name}")[f"status:{name}"] != "ok"] = np.nan
     return values
 
 
-def good(run: Run, road: str) -> NDArray[np.bool_]:
+def good(run: Run, method: str) -> NDArray[np.bool_]:
     """Trials within all limits, one measure and one position at a time."""
     found = np.ones(run.trials, dtype=bool)
     for name, (lower, upper) in LIMITS.items():
-        for values in np.atleast_2d(values_of(run, road, name).T):
+        for values in np.atleast_2d(values_of(run, method, name).T):
             found &= ~np.isnan(values)
             found &= True if lower is None else ~(values < lower)
             found &= True if upper is None else ~(values > upper)
@@ -91,15 +91,15 @@ def good(run: Run, road: str) -> NDArray[np.bool_]:
 # yield --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_the_yield_is_of_all_trials_failed_ones_are_out(road: str, run: Run) -> None:
-    own = run.summary["joint"]["yields"][road]
-    within = np.count_nonzero(good(run, road))
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_the_yield_is_of_all_trials_failed_ones_are_out(method: str, run: Run) -> None:
+    own = run.summary["joint"]["yields"][method]
+    within = np.count_nonzero(good(run, method))
     assert (own["trials"], own["within"]) == (TRIALS, within)
     assert own["yield_ppm"] == pytest.approx(1e6 * within / TRIALS)
     exact = stats.binomtest(within, TRIALS).proportion_ci(0.95, "exact")
     assert own["yield_ppm_95"] == pytest.approx([1e6 * exact.low, 1e6 * exact.high])
-    alone = [run.summary["measures"][name].get(road, {}).get("out_ppm", 0.0) for name in LIMITS]
+    alone = [run.summary["measures"][name].get(method, {}).get("out_ppm", 0.0) for name in LIMITS]
     assert max(alone) <= 1e6 - own["yield_ppm"] <= sum(alone) + 1e-6  # Bonferroni; `highest` has the curve's limit
     assert run.summary["joint"]["limited"] == list(LIMITS)
 
@@ -114,8 +114,8 @@ def test_of_one_limited_measure_the_yield_is_what_is_not_out(tmp_path: Path) -> 
     scene.write_text(scene.read_text("utf-8").replace(", upper_limit: 100 um", ""), "utf-8")
     summary = run_scene(scene, overrides=Overrides(trials=3000), out=tmp_path / "run").summary
     assert summary["joint"]["limited"] == ["room"]
-    for road, own in summary["joint"]["yields"].items():
-        alone = summary["measures"]["room"][road]
+    for method, own in summary["joint"]["yields"].items():
+        alone = summary["measures"]["room"][method]
         assert own["yield_ppm"] == pytest.approx(1e6 - alone["out_ppm"])
         assert own["yield_ppm_95"] == pytest.approx([1e6 - bound for bound in reversed(alone["out_ppm_95"])])
 
@@ -168,12 +168,12 @@ def test_two_measures_that_share_a_contributor_have_the_correlation_worked_out_b
 # correlation --------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_correlations_are_numpys_of_the_kept_trials_that_have_both(road: str, run: Run) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_correlations_are_numpys_of_the_kept_trials_that_have_both(method: str, run: Run) -> None:
     joint = run.summary["joint"]
     assert joint["correlated"] == list(SCALARS)  # no curve
-    own = joint["correlations"][road]
-    values = [values_of(run, road, name) for name in SCALARS]
+    own = joint["correlations"][method]
+    values = [values_of(run, method, name) for name in SCALARS]
     for i, x in enumerate(values):
         for j, y in enumerate(values):
             both = ~np.isnan(x) & ~np.isnan(y)
@@ -207,8 +207,8 @@ def test_the_table_of_correlations_has_numpys_of_every_pair_of_measures_the_larg
     assert {frozenset(pair) for pair in found} == {frozenset(pair) for pair in combinations(SCALARS, 2)}
     assert len(found) == len(SCALARS) * (len(SCALARS) - 1) // 2
     for (one, other), line in found.items():
-        for road, words in (("analytic", "analytic"), ("geometric", "3D simulation")):
-            x, y = values_of(run, road, one), values_of(run, road, other)
+        for method, words in (("analytic", "analytic"), ("geometric", "3D simulation")):
+            x, y = values_of(run, method, one), values_of(run, method, other)
             both = ~np.isnan(x) & ~np.isnan(y)
             assert float(line[f"r, {words}"]) == pytest.approx(np.corrcoef(x[both], y[both])[0, 1], abs=ROUNDING)
             assert int(line[f"trials, {words}"]) == np.count_nonzero(both)
@@ -230,9 +230,9 @@ def test_of_more_measures_than_fit_the_summary_has_the_most_correlated(
     assert own["correlated"] == [SCALARS[k] for k in which]
     assert own["correlated_of"] == len(SCALARS)
     assert "correlated_of" not in whole
-    for road in ("analytic", "geometric"):
-        matrix = whole["correlations"][road]["r"]
-        assert own["correlations"][road]["r"] == [[matrix[i][j] for j in which] for i in which]
+    for method in ("analytic", "geometric"):
+        matrix = whole["correlations"][method]["r"]
+        assert own["correlations"][method]["r"] == [[matrix[i][j] for j in which] for i in which]
     assert pairs_of(again) == pairs_of(run)
     assert f"the largest of {len(SCALARS)} measures" in printed(run_report(again.found))
 

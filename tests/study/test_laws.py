@@ -1,4 +1,4 @@
-"""A law that a mechanism registers: read, described, drawn, carried through both roads of gears and of a toy, shown.
+"""A law that a mechanism registers: read, described, drawn, carried through both methods of gears and of a toy, shown.
 
 Oracle: scipy's powerlaw, which shares nothing with the toy, and the closed form of the spur pair of ISO 21771: j falls
 by cos(alpha) of what the teeth grow.
@@ -99,7 +99,7 @@ def test_deviations_are_drawn_by_it(run: Run) -> None:
     assert stats.kstest(drawn, LAW.cdf).statistic < math.sqrt(math.log(2 / 1e-6) / (2 * TRIALS))
 
 
-def test_both_roads_and_the_closed_form_have_its_mean_and_sigma(run: Run) -> None:
+def test_both_methods_and_the_closed_form_have_its_mean_and_sigma(run: Run) -> None:
     own = run.found.measures["play"]
     cos = math.cos(math.radians(20.0))
     other = stats.uniform(-60.0, 30.0)

@@ -30,7 +30,7 @@ from tol3d.study.regressors import regressor_set
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.task import Task, task_of
 from tol3d.study.versions import installed_versions
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, METHODS
 
 HEAD = """scene: many
 parts:
@@ -199,7 +199,7 @@ def test_measures_that_lack_trials_are_regressed_on_those_that_they_have(tmp_pat
     columns = task_of(simulation, "lacking", keep_trials=False).columns(0, 200)
     good = random.random(200) > 0.05
     measures, name = system.measures, system.measures[0].name
-    values = {(road, own.name): columns[f"{road}:{own.name}"].copy() for own in measures for road in ROADS}
+    values = {(method, own.name): columns[f"{method}:{own.name}"].copy() for own in measures for method in METHODS}
     values[GEOMETRIC, name][~good] = np.nan
     found, _ = target_sums(system, measures, columns, values, plain_products)
     others = {key: own[good] for key, own in columns.items()}

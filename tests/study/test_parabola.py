@@ -21,7 +21,7 @@ from printing import printed
 from runs.test_kill import HANGS, SMALL_BLOCKS
 from schemas import validate
 from scipy import integrate, stats
-from toys.parabola import PARABOLA, roads
+from toys.parabola import PARABOLA, methods
 from toys.parabola.cumulants import Cumulants, parabola, uniform
 from toys.parabola.springs import LOST_LEVER, coil_weights
 from toys.parabola.system import KNOTS_TO, ParabolaSystem
@@ -36,7 +36,7 @@ from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Watch, replay, simulation_of
 from tol3d.study import blocks, replaying
 from tol3d.study import task as task_module
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.trials import Trials
 
 SPRING = TOYS / "parabola" / "spring.yaml"
@@ -74,8 +74,8 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(blocks, "BLOCK_TRIALS", 1000)
 
 
-def found(run: Run, name: str, road: str = "geometric") -> Mapping[str, Any]:
-    own: Mapping[str, Any] = run.summary["measures"][name][road]
+def found(run: Run, name: str, method: str = "geometric") -> Mapping[str, Any]:
+    own: Mapping[str, Any] = run.summary["measures"][name][method]
     return own
 
 
@@ -100,10 +100,10 @@ MOMENTS = {
 
 
 @pytest.mark.parametrize("name", MOMENTS)
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_moments_are_those_of_the_closed_form(name: str, road: str, run: Run) -> None:
-    known_moments = MOMENTS[name][road == "geometric"]
-    own = found(run, name, road)
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_moments_are_those_of_the_closed_form(name: str, method: str, run: Run) -> None:
+    known_moments = MOMENTS[name][method == "geometric"]
+    own = found(run, name, method)
     bend = known_moments.excess_kurtosis if name != "highest" else own["kurtosis"]
     assert own["count"] == own["trials"] == TRIALS
     assert abs(own["mean"] - known_moments.k1) < SURE * known_moments.sigma / math.sqrt(TRIALS)
@@ -167,10 +167,10 @@ def test_a_curve_has_the_moments_of_each_position(run: Run) -> None:
     assert curve["out_ppm"] == pytest.approx(found(run, "highest")["out_ppm"], abs=1e6 / TRIALS)
 
 
-@pytest.mark.parametrize("road", ["analytic", "geometric"])
-def test_a_curve_s_spectrum_is_pooled_over_the_trials(run: Run, road: str) -> None:
+@pytest.mark.parametrize("method", ["analytic", "geometric"])
+def test_a_curve_s_spectrum_is_pooled_over_the_trials(run: Run, method: str) -> None:
     """w sin of the position: order 1 has |w|, a half normal, of which the mean curve shows nothing."""
-    spectrum = run.summary["measures"]["profile"]["curve"][road]["spectrum"]
+    spectrum = run.summary["measures"]["profile"]["curve"][method]["spectrum"]
     assert spectrum["order"] == [1.0, 2.0, 5.0]
     sigma = math.sqrt(HALF_NORMAL.k2)
     assert abs(spectrum["mean"][0] - HALF_NORMAL.k1) < SURE * sigma / math.sqrt(TRIALS)
@@ -192,7 +192,7 @@ def test_terms_of_a_breakdown_are_pooled_and_shown(run: Run) -> None:
     assert bow["share_percent"] == pytest.approx(100 * 2 * (B * X**2) ** 2 / EXACT.k2, abs=0.5)
     assert sum(term["share_percent"] for term in terms.values()) == pytest.approx(100.0)
     assert run.summary["terms"]["height"]["analytic"]["bow"] == {"mean": 0.0, "sigma": 0.0, "share_percent": 0.0}
-    columns = run.columns("geometric:height", *(f"geometric:height:{term} [um]" for term in roads.TERMS))
+    columns = run.columns("geometric:height", *(f"geometric:height:{term} [um]" for term in methods.TERMS))
     whole = columns.pop("geometric:height")
     np.testing.assert_allclose(sum(columns.values()), whole, atol=1e-9)
 
@@ -244,7 +244,7 @@ def test_the_worst_trial_is_the_one_that_overlaps_most(run: Run) -> None:
     assert columns["status:room"][deepest] == "too long"
 
 
-# what explains the roads' difference ----------------------------------------------------------------
+# what explains the methods' difference ----------------------------------------------------------------
 
 
 def test_what_the_theory_leaves_out_explains_the_difference(run: Run) -> None:
@@ -258,21 +258,21 @@ def test_what_the_theory_leaves_out_explains_the_difference(run: Run) -> None:
     curved = parabola(0.0, B, X) + parabola(0.0, Q, RIPPLES)
     assert own["second_order_mean"] == pytest.approx(curved.k1, rel=0.3)
     assert own["second_order_of"] == ["x"]
-    assert not [text for text in run.summary["warnings"] if "roads" in text]
+    assert not [text for text in run.summary["warnings"] if "methods" in text]
 
 
 def test_a_wrong_coefficient_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    made = roads.Theory.answers
+    made = methods.Theory.answers
 
-    def wrong(self: roads.Theory, trials: Trials, measures: Any) -> Answers:
+    def wrong(self: methods.Theory, trials: Trials, measures: Any) -> Answers:
         spring = replace(self.springs.spring, a=1.04 * self.springs.spring.a)
         return made(replace(self, springs=replace(self.springs, spring=spring)), trials, measures)
 
-    monkeypatch.setattr(roads.Theory, "answers", wrong)
+    monkeypatch.setattr(methods.Theory, "answers", wrong)
     run = run_scene(SPRING, overrides=Overrides(trials=20_000), out=tmp_path / "run")
     faults = run.summary["measures"]["height"]["agreement"]["explanation"]["faults"]
     assert faults
-    assert faults[0].startswith("the two roads disagree on x: ")
+    assert faults[0].startswith("the two methods disagree on x: ")
     assert not any(" ripple" in fault or " offset" in fault for fault in faults)
 
 
@@ -292,7 +292,7 @@ def test_the_witness_knows_its_own_errors(run: Run) -> None:
 
 
 def test_a_witness_that_is_further_off_than_it_says_is_told_of(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(roads.Chords, "bounds", lambda self, measure: (0.1 * 1e3 * self.chord_error, 0.0))
+    monkeypatch.setattr(methods.Chords, "bounds", lambda self, measure: (0.1 * 1e3 * self.chord_error, 0.0))
     run = run_scene(SPRING, overrides=Overrides(trials=2000, witness=20), out=tmp_path / "run")
     (first, *_) = (text for text in run.summary["warnings"] if text.startswith("witness"))
     assert first.startswith("witness: CHORDS finds ")
@@ -502,7 +502,7 @@ def test_a_file_that_makes_no_sense_and_a_system_that_cannot_be_studied_are_refu
         simulation_of(load_scene(path))
 
 
-def test_road_tasks_pickle_without_the_registry(run: Run) -> None:
+def test_method_tasks_pickle_without_the_registry(run: Run) -> None:
     simulation = simulation_of(load_scene(SPRING))
     task = task_module.task_of(simulation, "x", keep_trials=True)
     again = pickle.loads(pickle.dumps(task))

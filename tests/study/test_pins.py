@@ -72,8 +72,8 @@ def test_the_minimum_over_forty_contacts_has_its_closed_form(pins: None, tmp_pat
     first, second = (integrate.quad(lambda z, n=n: z**n * density(z), -9.0, 9.0)[0] for n in (1, 2))
     mean = ROOM + PIN_SIGMA * first
     sigma = math.hypot(ROOM_SIGMA, PIN_SIGMA * math.sqrt(second - first**2))
-    for road in ("analytic", "geometric"):
-        own = run.summary["measures"]["least gap"][road]
+    for method in ("analytic", "geometric"):
+        own = run.summary["measures"]["least gap"][method]
         assert abs(own["mean"] - mean) < SURE * sigma / math.sqrt(TRIALS)
         assert abs(own["sigma"] - sigma) < SURE * sigma / math.sqrt(2 * TRIALS) * 1.2
     agreement = run.summary["measures"]["least gap"]["agreement"]
@@ -91,7 +91,7 @@ def test_off_centre_the_sample_is_that_of_an_independent_one(run: Run) -> None:
     assert stats.ks_2samp(gaps.min(axis=1), seen).pvalue > 1e-4
 
 
-def test_both_roads_agree_to_second_order_and_that_is_explained(run: Run) -> None:
+def test_both_methods_agree_to_second_order_and_that_is_explained(run: Run) -> None:
     for name in ("least gap", "slide"):
         own = run.summary["measures"][name]["agreement"]
         assert own["max_abs_difference"] < 40.0**2 / (2 * 1e3 * RADIUS) / STEEPEST  # um: off^2/2R, off up to 40

@@ -252,11 +252,11 @@ def test_each_stands_beside_ours_in_print(whole: Run) -> None:
     assert any("at most 2.000 µm, of 90 trials" in line for line in lines)
 
 
-def test_a_correlation_is_that_of_its_road() -> None:
+def test_a_correlation_is_that_of_its_method() -> None:
     found = {"analytic": {"r": [[1.0, 0.25], [0.25, 1.0]]}, "geometric": {"r": [[1.0, 0.5], [0.5, 1.0]]}}
     joint: Any = SimpleNamespace(correlated=["a", "b"], correlations=found)
-    of_roads = [shown._correlation(joint, ("a", "b"), road) for road in ("analytic", "geometric")]
-    assert of_roads == [0.25, 0.5]
+    of_methods = [shown._correlation(joint, ("a", "b"), method) for method in ("analytic", "geometric")]
+    assert of_methods == [0.25, 0.5]
 
 
 def test_the_picture_has_the_published_histogram_at_its_density(whole: Run) -> None:
@@ -303,7 +303,7 @@ def test_a_train_has_what_is_said_of_it_and_else_what_its_meshes_give(tmp_path: 
     stages = {stage["link"]: stage for stage in train["stages"]}
     assert stages["spur pair"]["published"]["bench"] == pytest.approx({"mean": 1.0, "high_3sigma": 1.5})
     assert stages["bevel pair"]["published"]["bench"]["mean"] == pytest.approx(3.0)
-    reducer = stages["planetary reducer"]["roads"]["analytic"]["high_3sigma"]
+    reducer = stages["planetary reducer"]["methods"]["analytic"]["high_3sigma"]
     expected = 4.0 + stages["spur pair"]["factor"] * 1.5 + stages["planetary reducer"]["factor"] * reducer
     assert train["sums"]["published"]["bench"]["high_3sigma"] == pytest.approx(expected)
     assert train["sums"]["published"]["said"] == {"high_3sigma": 5.0}

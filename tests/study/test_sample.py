@@ -1,4 +1,4 @@
-"""Statistics of one road's sample, as summary.json shows them."""
+"""Statistics of one method's sample, as summary.json shows them."""
 
 import json
 

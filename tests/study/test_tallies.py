@@ -16,7 +16,7 @@ DEEPEST, LARGEST = -900.0, 700.0  # um; far beyond all other trials
 
 
 def columns_of(model: Model, deepest_at: int, largest_at: int) -> dict[str, np.ndarray]:
-    """The stack-up's columns of 600 trials, and made-up ones of a geometric road of which a part is jammed."""
+    """The stack-up's columns of 600 trials, and made-up ones of a geometric method of which a part is jammed."""
     columns = dict(gear_columns(model, None, drawn_trials(model, 1, 0, CUTS[-1])))
     rng = np.random.default_rng(1)
     columns["status"] = rng.choice(["ok", "interferes", "no contact"], CUTS[-1], p=[0.7, 0.2, 0.1])

@@ -60,10 +60,10 @@ def test_the_distribution_of_a_train_told_by_its_tip_is_the_turn_that_moves_the_
         summary_of(tmp_path / "b", LOST),
     )
     train = trains_of(typed_run(by_tip))["t"]
-    for road in ("analytic", "geometric"):
-        found = distributions_of(train, typed_run(by_tip))[road].high
+    for method in ("analytic", "geometric"):
+        found = distributions_of(train, typed_run(by_tip))[method].high
         # a chord is shorter than its arc by the turn squared over 24: 4e-7 of it at 10 minutes of arc
-        assert found == pytest.approx(by_turn["measures"]["lost"][road]["high_3sigma"], rel=1e-6)
+        assert found == pytest.approx(by_turn["measures"]["lost"][method]["high_3sigma"], rel=1e-6)
     shown = {row.label: row.cells for row in sums_table(train, typed_run(by_tip)).rows}
     assert float(shown["tip of arm, mean + 3 sigma [mm]"][1]) == pytest.approx(
         by_tip["measures"]["tip"]["geometric"]["high_3sigma"], abs=5.1e-5
@@ -100,7 +100,7 @@ def test_trials_in_which_ways_bind_are_left_out_of_the_stages_too(tmp_path: Path
     assert 0 < bound == 300 - measure["geometric"]["count"]
     (stage,) = train["stages"]  # the load paths are all that there is: what they leave is the lost motion
     for key in ("mean", "high_3sigma", "sample_min"):
-        assert stage["roads"]["geometric"][key] == pytest.approx(measure["geometric"][key], rel=1e-12)
+        assert stage["methods"]["geometric"][key] == pytest.approx(measure["geometric"][key], rel=1e-12)
 
 
 def test_ways_that_bind_in_the_mean_build_are_refused(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.simulate import load, simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.witness import witness_summary, witness_warnings, witnessed_trials
-from tol3d.system.road import Road
+from tol3d.system.method import Method
 
 EVERY_FIELD = SCENES / "every_field.yaml"
 MEASURES = ("normal backlash", "lost motion")
@@ -162,7 +162,7 @@ def test_an_engine_that_sees_other_gears_is_warned_of(model_of: Modelling) -> No
     text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     apart = model_of(text.replace("centre_distance: 172.5 mm", "centre_distance: 172.51 mm"))
-    witness = witness_summary(model, exact_road(apart), 2000)
+    witness = witness_summary(model, exact_method(apart), 2000)
     # 10 um further apart: 2 sin 20 deg of that more backlash, and FCL sees that much less
     assert witness["measures"]["normal backlash"]["mean_difference"] == pytest.approx(-6.840, abs=0.05)
     warnings = witness_warnings(model, witness)
@@ -182,7 +182,7 @@ def test_gears_that_lie_a_quarter_of_a_micrometre_otherwise_are_warned_of(
     text = SPUR_PAIR.read_text("utf-8")
     model = model_of(text)
     other = model_of(text.replace("centre_distance: 172.5 mm", f"centre_distance: {172.5 + apart / 1000} mm"))
-    witness = witness_summary(model, exact_road(other), 2000)
+    witness = witness_summary(model, exact_method(other), 2000)
     assert bool(witness_warnings(model, witness)) == told
 
 
@@ -214,9 +214,9 @@ def model_of(tmp_path: Path) -> Modelling:
     return lambda text: simulation_of(load(scene_of(text, tmp_path)))
 
 
-def exact_road(model: Simulation) -> Road:
-    return model.system.road("exact", None)
+def exact_method(model: Simulation) -> Method:
+    return model.system.method("exact", None)
 
 
 def summary_of(model: Simulation) -> WitnessSummary:
-    return witness_summary(model, exact_road(model), model.study.trials)
+    return witness_summary(model, exact_method(model), model.study.trials)

@@ -28,7 +28,7 @@ from tol3d.scene.reference import Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.mechanism import Mechanism
 from tol3d.system.plain import LengthSpec, PlainSystem, contributors_of, measures_of
-from tol3d.system.road import RoadKind
+from tol3d.system.method import MethodKind
 
 class BlockSpec(PartSpec):
     words: ClassVar = "a block"
@@ -53,7 +53,7 @@ class TopSpec(LengthSpec):
 
 @dataclass(frozen=True)
 class Block(PlainSystem):
-    roads: ClassVar = {name: RoadKind("block", threads=False) for name in ("analytic", "exact")}
+    methods: ClassVar = {name: MethodKind("block", threads=False) for name in ("analytic", "exact")}
 
     def analytic(self, trials, measure):
         return self.deviations(trials, "height")[:, 0]
@@ -104,10 +104,10 @@ FAULTS = {
         "('height',)",
         "expected a tol3d.system.contributor.Contributor, got str without name, kind",
     ),
-    "the analytic road fails": (ANALYTIC, "def analytic(self, *_): return {}['lost']", "KeyError: 'lost'"),
-    "the exact road fails": (EXACT, "def exact(self, *_): return 1 / 0", "ZeroDivisionError: division by zero"),
-    "the analytic road is missing": (ANALYTIC, "", "Block lacks analytic(trials, measure), its values by theory"),
-    "the exact road is missing": (EXACT, "", "Block lacks exact(trials, measure), its values of placed parts"),
+    "the analytic method fails": (ANALYTIC, "def analytic(self, *_): return {}['lost']", "KeyError: 'lost'"),
+    "the exact method fails": (EXACT, "def exact(self, *_): return 1 / 0", "ZeroDivisionError: division by zero"),
+    "the analytic method is missing": (ANALYTIC, "", "Block lacks analytic(trials, measure), its values by theory"),
+    "the exact method is missing": (EXACT, "", "Block lacks exact(trials, measure), its values of placed parts"),
     "a column too many": (
         EXACT,
         EXACT.replace("[:, 0]", ""),
@@ -129,7 +129,7 @@ FAULTS = {
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A folder with the scene, in which `broken_blocks` is found."""
-    (tmp_path / "block.yaml").write_text(SCENE.replace("a block", tmp_path.name), "utf-8")  # a process keeps roads
+    (tmp_path / "block.yaml").write_text(SCENE.replace("a block", tmp_path.name), "utf-8")  # a process keeps methods
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(kinds, "_registered", {})

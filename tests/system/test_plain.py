@@ -1,4 +1,4 @@
-"""A plain system: units by what a tolerance and a measure are of, deviations by kind, roads as functions."""
+"""A plain system: units by what a tolerance and a measure are of, deviations by kind, methods as functions."""
 
 from typing import ClassVar, Literal
 
@@ -120,7 +120,7 @@ def test_deviations_of_a_kind_add_up_and_are_0_where_there_is_none(system: Plain
     assert len(nominal_build(system)) == 1
 
 
-def test_roads_are_its_two_functions() -> None:
+def test_methods_are_its_two_functions() -> None:
     class Sums(PlainSystem):
         def analytic(self, trials, measure):  # type: ignore[no-untyped-def]
             return trials.deviations.sum(axis=1)
@@ -131,7 +131,7 @@ def test_roads_are_its_two_functions() -> None:
     made: Scene = Grammar((BLOCKS,)).scene.model_validate(ENTRIES)
     sums = Sums("sums", contributors_of(made, {ShiftSpec: lambda law, tolerance: Planar(law, None)}), measures_of(made))
     trials = stated(sums, np.array([[3.0, 4.0, 0.0, 1.0]]))
-    found = {name: sums.road(name, sums.materials(name)).answers(trials, sums.measures) for name in sums.roads}
+    found = {name: sums.method(name, sums.materials(name)).answers(trials, sums.measures) for name in sums.methods}
     assert {name: answers.values["height"].tolist() for name, answers in found.items()} == {
         "analytic": [[8.0]],
         "exact": [[5.0]],

@@ -21,8 +21,8 @@ from tol3d.numerics.arrays import Array
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
+from tol3d.system.method import Method
 from tol3d.system.outcome import value_column
-from tol3d.system.road import Road
 from tol3d.units import ARCMIN
 
 USUAL_REACH: Final = math.pi / 3
@@ -38,7 +38,7 @@ class Swing:
         output: the output's angles [rad], (positions,).
         turned: where the load acts on the other side than at the start, (positions,).
         jumps: the output's angles where it changes side [rad].
-        curves: the tip's error with its sign by road and state, (robots, positions) [mm].
+        curves: the tip's error with its sign by method and state, (robots, positions) [mm].
         flanks: by mesh of the way from the held shaft: its driver's flank that works at the start, and the other.
     """
 
@@ -78,15 +78,15 @@ def usual_swing(model: Model, train: Train) -> tuple[Measure, LostMotion] | None
 
 
 def swing_of(
-    simulation: Simulation, road: Road | None, train: Train, robots: Robots, batch: Mapping[str, float]
+    simulation: Simulation, method: Method | None, train: Train, robots: Robots, batch: Mapping[str, float]
 ) -> Swing | None:
     """The first swing that the scene measures, or the usual one, of the same robots; None where the load stays.
 
     Args:
-        simulation, road: the scene's; no road for an analytic study.
+        simulation, method: the scene's; no method for an analytic study.
         train: which.
         robots: with their own means.
-        batch: mean of what is compensated, by road [arcmin].
+        batch: mean of what is compensated, by method [arcmin].
     """
     model = gear_model(simulation.system)
     found = next(swings_of(model, train), None) or usual_swing(model, train)
@@ -95,7 +95,7 @@ def swing_of(
     measure, kind = found
     angle = replace(kind, quantity="lost_motion", tip=None, turned=())
     own = replace(measure, name=f"lost motion of {measure.name}", kind=angle)
-    columns = columns_of(simulation.system, road, drawn(simulation, 0, robots.count), (own,))
+    columns = columns_of(simulation.system, method, drawn(simulation, 0, robots.count), (own,))
     lost = {name: np.asarray(columns[value_column(name, own.name)], dtype=np.float64) for name in batch}
     seated = robots.seated & ~np.any([np.isnan(values).any(axis=1) for values in lost.values()], axis=0)
     return Swing(
@@ -108,18 +108,18 @@ def swing_of(
     )
 
 
-def _curves(kind: LostMotion, road: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
+def _curves(kind: LostMotion, method: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
     """Tip errors [mm] of lost motions (robots, positions) [arcmin], less what the motor goes on by."""
     return {
-        "before": tip_error(kind, road, lost),
-        "batch": tip_error(kind, road, lost - batch),
-        "robot": tip_error(kind, road, lost - own[:, None]),
+        "before": tip_error(kind, method, lost),
+        "batch": tip_error(kind, method, lost - batch),
+        "robot": tip_error(kind, method, lost - own[:, None]),
     }
 
 
-def tip_error(kind: LostMotion, road: str, angle: Array) -> Array:
-    """The tip's error [mm] by what is left of the lost motion [arcmin], as each road sees a tip move."""
-    return first_order(kind, angle / ARCMIN) if road == "analytic" else moved(kind, angle / ARCMIN)
+def tip_error(kind: LostMotion, method: str, angle: Array) -> Array:
+    """The tip's error [mm] by what is left of the lost motion [arcmin], as each method sees a tip move."""
+    return first_order(kind, angle / ARCMIN) if method == "analytic" else moved(kind, angle / ARCMIN)
 
 
 def _flanks(

@@ -33,7 +33,7 @@ from tol3d.scene.nearest import hint
 from tol3d.simulate import Overrides, simulation_of
 from tol3d.study.overrides import AS_WRITTEN
 from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.units import ARCMIN
 
@@ -60,7 +60,7 @@ class CompensationQuestion:
 
 @dataclass(frozen=True, eq=False)
 class Remaining:
-    """What a road leaves at a random position: each robot's error with its sign, (robots,) by state.
+    """What a method leaves at a random position: each robot's error with its sign, (robots,) by state.
 
     Args:
         angles: of the shaft that is read [arcmin].
@@ -87,8 +87,8 @@ class Compensation:
         tip: what it moves; None without an arm.
         compensated, left_out: the stages whose mean is known, and those of which only the maximum is.
         positions: at how many a robot's own mean was taken.
-        corrections: by column; roads, the closed form and who published.
-        remaining: by road.
+        corrections: by column; methods, the closed form and who published.
+        remaining: by method.
         form_sigmas: of the error at the shaft by the closed form [arcmin], by state; empty where there is none.
         swing: the tip over the swing; None where the scene measures none.
         robots, failed: how many were drawn, and how many of these could not be seated.
@@ -115,8 +115,8 @@ class Compensation:
         return gear_model(self.simulation.system)
 
     @property
-    def road(self) -> str:
-        """The leading road: the 3D simulation where there is one."""
+    def method(self) -> str:
+        """The leading method: the 3D simulation where there is one."""
         return "geometric" if "geometric" in self.remaining else "analytic"
 
     @property
@@ -169,8 +169,8 @@ def compensation(
     stages = stages_of(measure)
     compensated = tuple(stage for stage in stages if stage.backlash or _law_of(model, stage))
     alone = replace(simulation, system=GearSystem(replace(model, measures=(measure,))))
-    road = road_of(alone, materials_of(alone))
-    robots = simulated_robots(alone, road, measure, compensated, question.positions)
+    method = method_of(alone, materials_of(alone))
+    robots = simulated_robots(alone, method, measure, compensated, question.positions)
     corrections = dict(corrections_of(simulation, train, measure, compensated, robots))
     batch = {name: at_shaft(compensated, corrections[name]) for name in robots.lost}
     return Compensation(
@@ -185,7 +185,7 @@ def compensation(
         corrections=corrections,
         remaining={name: _remaining(robots, name, tip, batch[name]) for name in batch},
         form_sigmas=_form_sigmas(model, measure, question.positions),
-        swing=swing_of(simulation, road, train, robots, batch),
+        swing=swing_of(simulation, method, train, robots, batch),
         robots=robots.count,
         failed=int(np.sum(~robots.seated)),
     )
@@ -259,12 +259,12 @@ def _law_of(model: Model, stage: AnyStage) -> Contributor | None:
 # what is left -------------------------------------------------------------------------------------
 
 
-def _remaining(robots: Robots, road: str, tip: LostMotion | None, batch: float) -> Remaining:
-    angles = robots.errors(road, batch)
+def _remaining(robots: Robots, method: str, tip: LostMotion | None, batch: float) -> Remaining:
+    angles = robots.errors(method, batch)
     if tip is None:
         return Remaining(angles, {})
     still = replace(tip, turned=())
-    return Remaining(angles, {state: tip_error(still, road, angle) for state, angle in angles.items()})
+    return Remaining(angles, {state: tip_error(still, method, angle) for state, angle in angles.items()})
 
 
 def _form_sigmas(model: Model, measure: Measure, positions: int) -> Mapping[State, float]:

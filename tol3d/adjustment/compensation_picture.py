@@ -69,7 +69,7 @@ def compensation_figure(found: Sequence[Compensation]) -> Figure:
 
 def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
     """Edges of bins that hold every value, zero and the sums of highs of the scenes."""
-    values = [own.remaining[own.road].in_unit(unit)[state] for own in found for state in STATES]
+    values = [own.remaining[own.method].in_unit(unit)[state] for own in found for state in STATES]
     marks = [value for own in found for _, value, _ in _highs(own, unit)]
     every = np.concatenate([*values, np.array([0.0, *marks])])
     low, high = float(every.min()), float(every.max())
@@ -81,7 +81,7 @@ def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
 
 
 def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
-    _title(axes, own, f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.road]}")
+    _title(axes, own, f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.method]}")
     samples = [*_samples(own, unit, edges)]
     if not samples:
         say_instead(axes, "no robot could be seated", VERMILLION)
@@ -106,7 +106,7 @@ def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
 
 def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[DrawnSample]:
     """What is left in each state; nothing where no robot could be seated."""
-    values = own.remaining[own.road].in_unit(unit)
+    values = own.remaining[own.method].in_unit(unit)
     for state in STATES:
         if len(values[state]):
             spread = Spread(values[state])
@@ -126,8 +126,8 @@ def _ends_text(spread: Spread, unit: Unit) -> str:
 
 
 def _highs(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
-    """The sums of the stages' highs by the leading road, with their colours."""
-    correction = own.corrections[own.road]
+    """The sums of the stages' highs by the leading method, with their colours."""
+    correction = own.corrections[own.method]
     cases = (
         ("sum of highs", correction.before, STATE_COLOURS["before"]),
         ("sum of highs, compensated", correction.left, STATE_COLOURS["batch"]),
@@ -161,7 +161,7 @@ def _title(axes: Axes, own: Compensation, text: str) -> None:
 
 
 def _swing_span(found: Sequence[Compensation]) -> tuple[float, float]:
-    bands = [_band(own.swing.curves[own.road][state]) for own in found if own.swing for state in STATES]
+    bands = [_band(own.swing.curves[own.method][state]) for own in found if own.swing for state in STATES]
     low = min(float(np.nanmin(ends, initial=0.0)) for _, ends, _ in bands)
     high = max(float(np.nanmax(ends, initial=0.0)) for _, _, ends in bands)
     margin = MARGIN * (high - low) or 1e-3
@@ -181,9 +181,9 @@ def _draw_swing(axes: Axes, own: Compensation, span: tuple[float, float]) -> Non
         axes.set_axis_off()
         say_instead(axes, "no tip error over a swing in which the load changes side", GREY)
         return
-    _title(axes, own, f"{legible(own.swing.measure, 50)}: mean and ±3 sigma of the robots, {COLUMN_WORDS[own.road]}")
+    _title(axes, own, f"{legible(own.swing.measure, 50)}: mean and ±3 sigma of the robots, {COLUMN_WORDS[own.method]}")
     for state in STATES:
-        mean, low, high = _band(own.swing.curves[own.road][state])
+        mean, low, high = _band(own.swing.curves[own.method][state])
         for first, last in _stretches(own.swing):
             x = np.degrees(_reaching_the_jumps(own.swing, first, last))
             label = STATE_WORDS[state] if first == 0 else None

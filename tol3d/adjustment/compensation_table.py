@@ -105,7 +105,7 @@ def compensation_report(found: Sequence[Compensation]) -> Page:
         shown = [own for own in found if unit in own.units]
         if shown:
             blocks += [
-                *_section(f"what is left {words} at a random position, {_roads(shown)}"),
+                *_section(f"what is left {words} at a random position, {_methods(shown)}"),
                 left_table(shown, unit),
             ]
     blocks += [note(text) for text in LEFT_NOTES]
@@ -135,12 +135,12 @@ def _section(text: str) -> tuple[Line, Line]:
     return BLANK, line(text, "bold cyan")
 
 
-def _roads(found: Sequence[Compensation]) -> str:
-    return " and ".join(dict.fromkeys(COLUMN_WORDS[own.road] for own in found))
+def _methods(found: Sequence[Compensation]) -> str:
+    return " and ".join(dict.fromkeys(COLUMN_WORDS[own.method] for own in found))
 
 
 def _columns(found: Sequence[Compensation]) -> list[str]:
-    """Every source of a correction: closed form, roads, and who published."""
+    """Every source of a correction: closed form, methods, and who published."""
     first = [CLOSED_FORM, *COLUMN_WORDS]
     known = dict.fromkeys(column for own in found for column in own.corrections)
     return [*(column for column in first if column in known), *(column for column in known if column not in first)]
@@ -154,7 +154,7 @@ def _headings(found: Sequence[Compensation]) -> list[Heading]:
 
 
 def corrections_table(found: Sequence[Compensation]) -> Table:
-    """A block of rows for each road and publisher: the motor's turn, and from which means."""
+    """A block of rows for each method and publisher: the motor's turn, and from which means."""
     rows = []
     for column in _columns(found):
         known = [own.corrections.get(column) for own in found]
@@ -189,7 +189,7 @@ def left_table(found: Sequence[Compensation], unit: Unit) -> Table:
     """A block of rows each: without the correction, less the batch's mean, less the robot's own."""
     rows = []
     for state in STATES:
-        spreads = [Spread(own.remaining[own.road].in_unit(unit)[state]) for own in found]
+        spreads = [Spread(own.remaining[own.method].in_unit(unit)[state]) for own in found]
         rows.append(Row(STATE_WORDS[state], [""] * len(found), "bold"))
         for label, (value, error) in TAKEN.items():
             rows.append(Row(f"  {label}", [_with_error(value(own), error(own), unit) for own in spreads]))
@@ -211,7 +211,7 @@ def _form_sigma(own: Compensation, state: State, unit: Unit) -> float | None:
 
 
 def highs_table(found: Sequence[Compensation]) -> Table:
-    """A block of rows for each road and publisher: sums of the stages' highs, before and after."""
+    """A block of rows for each method and publisher: sums of the stages' highs, before and after."""
     rows = []
     for column in _columns(found):
         known = [own.corrections.get(column) for own in found]
@@ -259,7 +259,7 @@ def swing_table(found: Sequence[Compensation]) -> Table:
         flanks = [own.swing.flanks.get(link) for own in found if own.swing]
         rows.append(Row(f"{link}: flank of the driver{_which_change(found)}", [_flanks_text(each) for each in flanks]))
     for state in STATES:
-        jumps = [_jump(own.swing, own.road, state) for own in found if own.swing]
+        jumps = [_jump(own.swing, own.method, state) for own in found if own.swing]
         rows.append(Row(f"jump, {STATE_WORDS[state]} [mm]", [value_text(jump, "mm") for jump in jumps]))
     return Table("", _headings(found), rows)
 
@@ -280,6 +280,6 @@ def _flanks_text(flanks: tuple[Flank, Flank] | None) -> str:
     return NOTHING if flanks is None else " → ".join("left" if flank == LEFT else "right" for flank in flanks)
 
 
-def _jump(swing: Swing, road: str, state: State) -> float | None:
-    curve = swing.curves[road][state]
+def _jump(swing: Swing, method: str, state: State) -> float | None:
+    curve = swing.curves[method][state]
     return float(curve[:, swing.first_turned].mean()) if len(curve) else None

@@ -26,7 +26,7 @@ CLOSED_FORM: Final = "closed form"
 
 @dataclass(frozen=True)
 class Correction:
-    """The motor's correction by one column: a road, the closed form or who published it; None is what it lacks.
+    """The motor's correction by one column: a method, the closed form or who published it; None is what it lacks.
 
     Args:
         means: each compensated link's own lost motion, at its driven shaft [arcmin].
@@ -46,7 +46,7 @@ class Correction:
 def corrections_of(
     simulation: Simulation, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
-    """By the closed form, by each road, and by everybody who published every mesh of the train."""
+    """By the closed form, by each method, and by everybody who published every mesh of the train."""
     model = gear_model(simulation.system)
     of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
     known_of = replace(model, measures=(measure, *of_meshes))
@@ -57,14 +57,14 @@ def corrections_of(
     known_forms = {link: form for link, form in forms.items() if form is not None}
     if len(known_forms) == len(forms):
         yield CLOSED_FORM, _correction(model, train, measure, compensated, known_forms)
-    for road in robots.lost:
-        own = {stage.link: stage.roads.by(road) for stage in summary.stages}
-        yield road, _correction(model, train, measure, compensated, own)
+    for method in robots.lost:
+        own = {stage.link: stage.methods.by(method) for stage in summary.stages}
+        yield method, _correction(model, train, measure, compensated, own)
     meshes = [stage for stage in summary.stages if stage.gears]
     for column in summary.sums.published:
         if not all(column in stage.published for stage in meshes):
             continue
-        known = {stage.link: stage.published.get(column, stage.roads.analytic) for stage in summary.stages}
+        known = {stage.link: stage.published.get(column, stage.methods.analytic) for stage in summary.stages}
         yield column, _correction(model, train, measure, compensated, known)
 
 

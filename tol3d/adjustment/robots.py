@@ -23,8 +23,8 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 from tol3d.system.breakdown import Breakdown
-from tol3d.system.outcome import ROADS, SEATED, Columns, status_column, value_column
-from tol3d.system.road import Road
+from tol3d.system.method import Method
+from tol3d.system.outcome import METHODS, SEATED, Columns, status_column, value_column
 from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
 
@@ -41,8 +41,8 @@ class Robots:
     Args:
         seated: which of them could be seated at every position, (robots,).
         columns: at the study's own positions, see columns_of.
-        lost: lost motion there by road, (robots,) [arcmin].
-        own: each robot's mean of the part of it that is compensated, by road, (robots,) [arcmin].
+        lost: lost motion there by method, (robots,) [arcmin].
+        own: each robot's mean of the part of it that is compensated, by method, (robots,) [arcmin].
     """
 
     seated: NDArray[np.bool_]
@@ -55,55 +55,55 @@ class Robots:
         """How many were drawn."""
         return len(self.seated)
 
-    def errors(self, road: str, batch: float) -> Mapping[State, Array]:
+    def errors(self, method: str, batch: float) -> Mapping[State, Array]:
         """What is left of each robot that could be seated, (robots,) [arcmin], where `batch` is the batch's mean."""
-        lost, own = self.lost[road][self.seated], self.own[road][self.seated]
+        lost, own = self.lost[method][self.seated], self.own[method][self.seated]
         return {"before": lost, "batch": lost - batch, "robot": lost - own}
 
 
 def simulated_robots(
-    simulation: Simulation, road: Road | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
+    simulation: Simulation, method: Method | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
 ) -> Robots:
     """As many robots as the study has trials.
 
     Args:
         simulation: that measures the lost motion and nothing else.
-        road: of its 3D simulation; None for an analytic study.
+        method: of its 3D simulation; None for an analytic study.
         measure: the lost motion, at a random position.
         compensated: the stages that count for a robot's own mean.
         positions: P.
     """
     at_once, trials = max(1, ROWS_AT_ONCE // (positions + 1)), simulation.study.trials
     starts = range(0, trials, at_once)
-    pieces = [_columns(simulation, road, first, min(at_once, trials - first), positions) for first in starts]
+    pieces = [_columns(simulation, method, first, min(at_once, trials - first), positions) for first in starts]
     columns = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
-    roads = [road for road in ROADS if value_column(road, measure.name) in columns]
+    methods = [method for method in METHODS if value_column(method, measure.name) in columns]
     (breakdown,) = simulation.system.breakdowns
     return Robots(
         seated=_seated(columns, measure, trials),
         columns={name: each[:, -1] for name, each in columns.items()},
-        lost={road: columns[value_column(road, measure.name)][:, -1].astype(np.float64) for road in roads},
-        own={road: _own_mean(columns, road, breakdown, compensated) for road in roads},
+        lost={method: columns[value_column(method, measure.name)][:, -1].astype(np.float64) for method in methods},
+        own={method: _own_mean(columns, method, breakdown, compensated) for method in methods},
     )
 
 
 def _columns(
-    simulation: Simulation, road: Road | None, first: int, count: int, positions: int
+    simulation: Simulation, method: Method | None, first: int, count: int, positions: int
 ) -> dict[str, NDArray[np.generic]]:
     """Columns (robots, P + 1), the study's own position last."""
-    columns = columns_of(simulation.system, road, robots_trials(simulation, first, count, positions))
+    columns = columns_of(simulation.system, method, robots_trials(simulation, first, count, positions))
     return {name: values.reshape(count, positions + 1) for name, values in columns.items()}
 
 
 def _seated(columns: Columns, measure: Measure, robots: int) -> NDArray[np.bool_]:
-    """Robots whose measure seats at every position, (robots,); all of them on the analytic road."""
+    """Robots whose measure seats at every position, (robots,); all of them on the analytic method."""
     status = columns.get(status_column(measure.name))
     return np.ones(robots, bool) if status is None else np.all(status == SEATED, axis=1)
 
 
-def _own_mean(columns: Columns, road: str, breakdown: Breakdown, compensated: Sequence[AnyStage]) -> Array:
-    at_shaft = [stage.factor * _mean(columns[breakdown.column(road, stage.link)][:, :-1]) for stage in compensated]
-    return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[value_column(road, breakdown.measure)]))
+def _own_mean(columns: Columns, method: str, breakdown: Breakdown, compensated: Sequence[AnyStage]) -> Array:
+    at_shaft = [stage.factor * _mean(columns[breakdown.column(method, stage.link)][:, :-1]) for stage in compensated]
+    return np.sum(at_shaft, axis=0) if at_shaft else np.zeros(len(columns[value_column(method, breakdown.measure)]))
 
 
 def _mean(values: NDArray[np.generic]) -> Array:

@@ -1,6 +1,6 @@
 """The thickness of shims for a wanted minimum of backlash: by the formula, and by the geometry.
 
-The minimum at a thickness is what a study of the scene with shims of that thickness says, on the geometric road. All
+The minimum at a thickness is what a study of the scene with shims of that thickness says, on the geometric method. All
 studies share their draws (a draw depends on seed, contributor and trial only), so the minimum falls smoothly with the
 thickness, and a secant finds where it is the one that is wanted.
 """

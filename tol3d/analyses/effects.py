@@ -21,9 +21,9 @@ from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects, shapley_effects
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import Count, Known, Label, Ppm, Section, Sentence, made
+from tol3d.runs.summary.values import Count, Known, Label, MethodSection, Ppm, Section, Sentence, made
 from tol3d.system.measure import Measure
-from tol3d.system.road import ANALYTIC_ROAD
+from tol3d.system.method import ANALYTIC_METHOD
 
 PLACES: Final = 16
 """Positions at which changes are averaged."""
@@ -32,7 +32,7 @@ FEWEST_PLACES: Final = 2
 MOST_EVALUATIONS: Final = 150_000
 """Of pairs and what is mixed of them, for measures that are asked together."""
 MOST_MINUTES: Final = 0.1
-"""Of a processor that these may take, by the contacts a minute of the road."""
+"""Of a processor that these may take, by the contacts a minute of the method."""
 LEAST_MINUTES: Final = 1e-9
 LEAST_BASE: Final = 128
 MOST_BASE: Final = 2**14
@@ -86,11 +86,10 @@ class MeasureEffects(Section):
     contributors: Mapping[Label, ContributorEffects]
 
 
-class Effects(Section):
+class Effects(MethodSection):
     """Effects of contributors on measures."""
 
     scene: Label
-    road: Label
     seed: Count
     positions: PositionIs
     evaluations: Count
@@ -147,7 +146,7 @@ def effects(
     return made(
         Effects,
         scene=system.name,
-        road=ANALYTIC_ROAD if response.road is None else response.simulation.study.engine,
+        method=ANALYTIC_METHOD if response.method is None else response.simulation.study.engine,
         seed=seed,
         positions=("input" if position else "averaged") if system.streams else "none",
         evaluations=response.evaluations - before,

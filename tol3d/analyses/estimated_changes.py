@@ -36,15 +36,15 @@ from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import made
 from tol3d.study.simulation import Simulation
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.outcome import SEATED
-from tol3d.system.road import ANALYTIC_ROAD
 
 MOST_MEASURES: Final = 3
 STEEPEST: Final = 6
 """Contributors with the largest shares, whose slopes are taken."""
 MOST_ROWS: Final = 8
 SECONDS: Final = 0.2
-"""Of builds for a measure, by what the road says that one takes."""
+"""Of builds for a measure, by what the method says that one takes."""
 MOST_TRIALS: Final = 100_000
 """Of a run that are shifted and narrowed."""
 
@@ -62,7 +62,7 @@ def estimated_changes(run: Run, simulation: Simulation, accepted_ppm: float = AC
     asked = [name for name in bad if _can_be_estimated(run.found.measures[name])]
     if not asked:
         return None
-    response = response_of(_by_the_quickest_road(simulation))
+    response = response_of(_by_the_quickest_method(simulation))
     shown = asked[:MOST_MEASURES]
     return made(
         Changes,
@@ -79,12 +79,12 @@ def _can_be_estimated(measure: MeasureSummary) -> bool:
     return measure.take != "curve" and measure.unit not in COUNTED
 
 
-def _by_the_quickest_road(simulation: Simulation) -> Simulation:
+def _by_the_quickest_method(simulation: Simulation) -> Simulation:
     """By the 3D simulation that takes least."""
-    roads = {name: own for name, own in simulation.system.roads.items() if name != ANALYTIC_ROAD}
-    if not simulation.has_geometry or not roads:
+    methods = {name: own for name, own in simulation.system.methods.items() if name != ANALYTIC_METHOD}
+    if not simulation.has_geometry or not methods:
         return simulation
-    quickest = max(roads, key=lambda name: (roads[name].contacts_per_minute, name == simulation.study.engine))
+    quickest = max(methods, key=lambda name: (methods[name].contacts_per_minute, name == simulation.study.engine))
     return replace(simulation, study=replace(simulation.study, engine=quickest))
 
 
@@ -101,7 +101,7 @@ class _Told(Asked):
     def changes(self) -> MeasureChanges:
         now = self.trials()
         lower, upper = limits_of(self.measure)
-        nominal, spread = getattr(self.summary.nominal, self.summary.best_road), self.spread(now)
+        nominal, spread = getattr(self.summary.nominal, self.summary.best_method), self.spread(now)
         return made(
             MeasureChanges,
             unit=self.measure.unit,
@@ -119,11 +119,11 @@ class _Told(Asked):
 
     def trials(self) -> Array:
         """Values of the run's trials, nan of those that failed; of one that kept none by the bars of its histogram."""
-        name, road = self.measure.name, self.summary.best_road
+        name, method = self.measure.name, self.summary.best_method
         if not self.run.keeps_trials:
             return self._from_bars()
         found: list[Array] = []
-        columns = (f"{road}:{name}", f"status:{name}")
+        columns = (f"{method}:{name}", f"status:{name}")
         there = [own for own in columns if own in self.run.column_names]
         for piece in self.run.pieces(*there):
             values = np.array(piece[columns[0]], dtype=np.float64)
@@ -139,7 +139,7 @@ class _Told(Asked):
         failed = self.summary.trials - self.summary.seated
         if bars is None or bars.counts is None or bars.lower_edge is None or bars.bin_width is None:
             return np.full(max(failed, 1), np.nan)
-        counts = np.array([*bars.counts[self.summary.best_road], failed], dtype=np.float64)
+        counts = np.array([*bars.counts[self.summary.best_method], failed], dtype=np.float64)
         counts = np.rint(counts * min(1.0, MOST_TRIALS / max(counts.sum(), 1.0))).astype(np.int64)
         edges = bars.lower_edge + bars.bin_width * np.arange(len(counts) - 1)
         spread = [edge + bars.bin_width * (np.arange(n) + 0.5) / n for edge, n in zip(edges, counts, strict=False) if n]
@@ -148,7 +148,7 @@ class _Told(Asked):
     @property
     def shares(self) -> dict[str, float]:
         """Of the variance, the largest first."""
-        column = next((own for own in shares_of(self.summary) if own.road == self.summary.best_road), None)
+        column = next((own for own in shares_of(self.summary) if own.method == self.summary.best_method), None)
         if column is None:
             return {}
         known = {name: column.percents.get(name) for name in ranked_contributors(self.summary)}
@@ -180,7 +180,7 @@ class _Told(Asked):
     def slopes(self, names: Sequence[str]) -> tuple[Array, Array]:
         names = [name for name in names if name in self.response.slices]
         simulation = self.response.simulation
-        cost = max(simulation.system.cost(self.response.measures), 1) * 60.0 / simulation.road.contacts_per_minute
+        cost = max(simulation.system.cost(self.response.measures), 1) * 60.0 / simulation.method.contacts_per_minute
         columns = sum(self.response.slices[name].stop - self.response.slices[name].start for name in names)
         rows = min(max(int(SECONDS / cost / max(2 * columns, 1)), 1), MOST_ROWS)
         slopes, steadiness = few_slopes(self.response, names, *drawn_builds(self.response, rows))

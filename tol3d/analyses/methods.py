@@ -53,9 +53,9 @@ from tol3d.study.worst_case import (
 )
 from tol3d.study.worst_cases import price
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, SEATED, value_column
 from tol3d.system.region import region_of
-from tol3d.system.road import ANALYTIC_ROAD
 
 MOST_TRIALS: Final = 20_000
 """Of a scene whose study has more, where nobody says how many."""
@@ -161,8 +161,8 @@ def trials_of(subject: Subject, response: Response, count: int | None = None) ->
     """
     run = subject.run
     if run is not None and count is None and run.keeps_trials:
-        road = ANALYTIC if response.road is None else GEOMETRIC
-        names = {name: (value_column(road, name), f"status:{name}") for name in response.names}
+        method = ANALYTIC if response.method is None else GEOMETRIC
+        names = {name: (value_column(method, name), f"status:{name}") for name in response.names}
         if all(value in run.column_names for value, _ in names.values()):
             return Kept(response.simulation, {name: _kept(run, *own) for name, own in names.items()})
     return Drawn.of(response, count or min(response.simulation.study.trials, MOST_TRIALS))
@@ -195,7 +195,7 @@ def methods(
     return made(
         Methods,
         scene=response.simulation.system.name,
-        road="analytic" if response.road is None else "geometric",
+        method="analytic" if response.method is None else "geometric",
         measures=found,
         evaluations=response.evaluations - before,
     )
@@ -282,8 +282,8 @@ def _worst(
     response: Response, source: Measure, space: Space, built: Built, trials: Trials, values: Array
 ) -> WorstCase | None:
     """The worst case from the mean build, ends by slopes, the worst trials, and other positions, as far as it pays."""
-    road = ANALYTIC_ROAD if response.road is None else response.simulation.study.engine
-    builds = CONTACTS / price(response.simulation, road, source)
+    method = ANALYTIC_METHOD if response.method is None else response.simulation.study.engine
+    builds = CONTACTS / price(response.simulation, method, source)
     rows = builds / max(1, builds_a_row(space))
     at_rest = response.positions(1, "rest")
     if not len(space.acting) or FEWEST * builds_a_row(space) > TOO_MANY * builds:

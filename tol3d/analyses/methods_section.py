@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
-from tol3d.runs.summary.values import Count, Known, Label, NotNegative, Number, Road, Section, Unit
+from tol3d.runs.summary.values import Count, Known, Label, MethodSection, NotNegative, Number, Section, Unit
 
 
 class BuildFound(Section):
@@ -75,10 +75,9 @@ class MeasureMethods(Section):
     evaluations: Count
 
 
-class Methods(Section):
+class Methods(MethodSection):
     """Methods side by side."""
 
     scene: Label
-    road: Road
     measures: Mapping[Label, MeasureMethods]
     evaluations: Count

@@ -26,8 +26,8 @@ def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
         found: by all methods.
         contributors: of the scene.
     """
-    road = "analytic" if found.road == "analytic" else "3D simulation"
-    blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {road}", "")))]
+    method = "analytic" if found.method == "analytic" else "3D simulation"
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {method}", "")))]
     for name, own in found.measures.items():
         blocks += titled(f"{name}: {_limits(own)}", Table("", HEADS, [*_rows(own)]))
         blocks += _told(own)

@@ -1,6 +1,6 @@
 """What every analysis asks of a scene: values of its measures, in batches, of stated deviations or standard normals.
 
-A response is a simulation, one of its roads and some of its measures. It knows no mechanism: deviations are the columns
+A response is a simulation, one of its methods and some of its measures. It knows no mechanism; deviations are columns
 of the contributors, positions those of the system's streams.
 """
 
@@ -23,16 +23,16 @@ from tol3d.study.draws import sampler_of, streams_of
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.high_low_mean import ranges
 from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.system.contributor import Contributor
 from tol3d.system.copula import Copula
 from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Method
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
 from tol3d.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
 from tol3d.system.other_laws import scaled as scaled_draw
-from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
 from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
@@ -82,7 +82,7 @@ class Response:
     Args:
         simulation: of the scene.
         measures: which are read, one number a trial each; of a curve its lowest and its highest value.
-        road: that builds; None for the analytic one.
+        method: that builds; None for the analytic one.
         draws: by contributor, how it is drawn: the scene's, or other tolerances.
         curves: by the name of such an end of a curve, the curve.
         count: of evaluations.
@@ -91,7 +91,7 @@ class Response:
 
     simulation: Simulation
     measures: tuple[Measure, ...]
-    road: Road | None
+    method: Method | None
     draws: Mapping[str, Draw]
     curves: Mapping[str, Measure] = field(default_factory=dict)
     count: Count = field(default_factory=Count)
@@ -122,9 +122,9 @@ class Response:
 
     @property
     def minutes(self) -> float:
-        """What an evaluation takes of a processor, by the contacts that its road makes in a minute."""
+        """What an evaluation takes of a processor, by the contacts that its method makes in a minute."""
         asked = list({own.name: own for own in map(self.source, self.measures)}.values())
-        return self.simulation.system.cost(asked) / self.simulation.road.contacts_per_minute
+        return self.simulation.system.cost(asked) / self.simulation.method.contacts_per_minute
 
     @cached_property
     def components(self) -> int:
@@ -196,7 +196,7 @@ class Response:
         if self.batches is None:
             values, codes = self._evaluated(trials)
         else:
-            asked = repr((None if self.road is None else self.simulation.study.engine, self.names))
+            asked = repr((None if self.method is None else self.simulation.study.engine, self.names))
             builds = {"": trials.deviations, **{f"position {name}": own for name, own in trials.positions.items()}}
             values, codes = self.batches.evaluated(asked, builds, lambda: self._evaluated(trials))
         kept = np.array([own.keeps_overlap for own in self.measures])
@@ -210,14 +210,14 @@ class Response:
         codes = np.zeros(values.shape, dtype=np.int8)
         first = 0
         sources = [self.source(own) for own in self.measures]
-        evaluation = Evaluation(self.simulation.system, self.road)
+        evaluation = Evaluation(self.simulation.system, self.method)
         for asked in evaluation.asked(trials, [*{own.name: own for own in sources}.values()]):
             rows = slice(first, first + len(asked.trials))
             first = rows.stop
             for k, (own, source) in enumerate(zip(self.measures, sources, strict=True)):
                 found = asked.values[source.name]
                 values[rows, k] = found if source is own else ENDS[_end_of(own)](found)
-                if self.road is not None and (status := asked.answers.status.get(source.name)) is not None:
+                if self.method is not None and (status := asked.answers.status.get(source.name)) is not None:
                     codes[rows, k] = status
         return values, codes
 
@@ -452,16 +452,16 @@ class _Redrawn:
 
 
 def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
-    """The response of a simulation by its engine's road, or by the analytic one."""
-    exact = not analytic and simulation.study.engine != ANALYTIC_ROAD
-    road = road_of(simulation, materials_of(simulation)) if exact else None
+    """The response of a simulation by its engine's method, or by the analytic one."""
+    exact = not analytic and simulation.study.engine != ANALYTIC_METHOD
+    method = method_of(simulation, materials_of(simulation)) if exact else None
     measures, curves = list[Measure](), dict[str, Measure]()
     for own in simulation.system.measures:
         ends = _ends(own) if own.take == "curve" else (own,)
         measures += ends
         curves |= {end.name: own for end in ends if end is not own}
     return Response(
-        simulation, tuple(measures), road, {own.name: own.draw for own in simulation.system.contributors}, curves
+        simulation, tuple(measures), method, {own.name: own.draw for own in simulation.system.contributors}, curves
     )
 
 

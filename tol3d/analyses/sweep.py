@@ -222,7 +222,7 @@ def _key(scene: Scene, study: object) -> str:
 
 def _found(own: MeasureSummary) -> VariantMeasure:
     low, mean, high = ends_of(own)
-    sample = own.sample(own.best_road) if own.take != "curve" else None
+    sample = own.sample(own.best_method) if own.take != "curve" else None
     return made(
         VariantMeasure,
         unit=own.unit,

@@ -31,7 +31,7 @@ Target = Literal["middle of the limits", "accepted share", "Ppk 1.33"]
 
 TARGET_PPK: Final = 1.33
 SECONDS: Final = 20.0
-"""Of builds for a measure, by what the road says that one takes: a result must not hang on the clock."""
+"""Of builds for a measure, by what the method says that one takes: a result must not hang on the clock."""
 MOST_ROWS: Final = 16
 """At how many builds slopes are taken."""
 MOST_BUILDS: Final = 5000
@@ -218,9 +218,9 @@ class Effort:
 
     @classmethod
     def of(cls, response: Response, question: ChangesQuestion) -> "Effort":
-        """By what a build takes, as the road says, so that it is the same on every machine."""
+        """By what a build takes, as the method says, so that it is the same on every machine."""
         simulation = response.simulation
-        cost = max(simulation.system.cost(response.measures), 1) * 60.0 / simulation.road.contacts_per_minute
+        cost = max(simulation.system.cost(response.measures), 1) * 60.0 / simulation.method.contacts_per_minute
         rows = int(SECONDS / cost / max(BATCHES * response.components, 1))
         builds = int(SECONDS / cost / (TRIED + 2 * LEVERS + 1))
         builds = question.builds or min(max(builds, FEWEST_BUILDS), MOST_BUILDS)

@@ -8,7 +8,7 @@ import numpy as np
 
 from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, Relation, RoundPlane
 from tol3d.assembly.model.feature import nominal_size
-from tol3d.assembly.placing.road import features_placed
+from tol3d.assembly.placing.method import features_placed
 from tol3d.numerics.arrays import Array
 
 MEETS: Final = 2e-3

@@ -17,9 +17,9 @@ from tol3d.scene import Scene
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers, Codes, Method, MethodKind
 from tol3d.system.plain import PlainMeasure
 from tol3d.system.positions import Positions
-from tol3d.system.road import Answers, Codes, Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
 from tol3d.system.trials import Trials
@@ -77,20 +77,20 @@ class PosedSystem(AssemblySystem):
         return WITH_LOOPS if has_loops(self.assembly) else super().statuses
 
     @property
-    def _kinds(self) -> Mapping[str, Mapping[str, RoadKind]]:
-        return {pose: own.roads for pose, own in self.poses.items()}
+    def _kinds(self) -> Mapping[str, Mapping[str, MethodKind]]:
+        return {pose: own.methods for pose, own in self.poses.items()}
 
     @property
-    def roads(self) -> Mapping[str, RoadKind]:  # type: ignore[override]
+    def methods(self) -> Mapping[str, MethodKind]:  # type: ignore[override]
         """See System: those of any pose, one process each where solids are read."""
-        found: dict[str, RoadKind] = {}
+        found: dict[str, MethodKind] = {}
         for kinds in self._kinds.values():
             for name, kind in kinds.items():
                 if name not in found or not kind.threads:
                     found[name] = self._timed(kind)
         return found
 
-    def _timed(self, kind: RoadKind) -> RoadKind:
+    def _timed(self, kind: MethodKind) -> MethodKind:
         if not kind.threads or not has_loops(self.assembly):
             return kind
         return replace(kind, contacts_per_minute=CLOSED_A_MINUTE, block_contacts=CLOSED_A_MINUTE)
@@ -102,18 +102,18 @@ class PosedSystem(AssemblySystem):
     def _named(self, measure: Measure, pose: str) -> Measure:
         return next(own for own in self.poses[pose].measures if own.name == measure.name)
 
-    # its roads --------------------------------------------------------------------------------------
+    # its methods --------------------------------------------------------------------------------------
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System: of each pose, where there are any."""
-        found = {pose: own.materials(road) for pose, own in self.poses.items() if road in own.roads}
+        found = {pose: own.materials(method) for pose, own in self.poses.items() if method in own.methods}
         return found if any(own is not None for own in found.values()) else None
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """See System."""
         given = materials or {}
-        own = {pose: each.road(name, given.get(pose)) for pose, each in self.poses.items() if name in each.roads}
-        return PosedRoad(self.at, own)
+        own = {pose: each.method(name, given.get(pose)) for pose, each in self.poses.items() if name in each.methods}
+        return PosedMethod(self.at, own)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System: as a contact for each pose."""
@@ -180,35 +180,35 @@ class PosedSystem(AssemblySystem):
 
 
 @dataclass(frozen=True)
-class PosedRoad:
-    """A road of an assembly in several poses; implements WitnessRoad where those of its poses do.
+class PosedMethod:
+    """A method of an assembly in several poses; implements WitnessMethod where those of its poses do.
 
     Args:
         at: of each measure, the poses in which it is read.
-        roads: by pose.
+        methods: by pose.
     """
 
     at: Mapping[str, tuple[str, ...]]
-    roads: Mapping[str, Road]
+    methods: Mapping[str, Method]
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
-        return max(own.chord_error for own in self.roads.values())
+        """See Method."""
+        return max(own.chord_error for own in self.methods.values())
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad."""
-        own: Any = [self.roads.get(pose) for pose in self.at[measure.name]]
+        """See WitnessMethod."""
+        own: Any = [self.methods.get(pose) for pose in self.at[measure.name]]
         return all(each is not None and each.reads(measure) for each in own)
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad."""
-        roads: Any = [self.roads[pose] for pose in self.at[measure.name]]
-        own = [road.bounds(measure) for road in roads]
+        """See WitnessMethod."""
+        methods: Any = [self.methods[pose] for pose in self.at[measure.name]]
+        own = [method.bounds(measure) for method in methods]
         return max(each for each, _ in own), max(each for _, each in own)
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road: a trial whose value is lacking in one pose of a path has none."""
+        """See Method: a trial whose value is lacking in one pose of a path has none."""
         values = {own.name: np.empty((len(trials), len(self.at[own.name]))) for own in measures}
         status: dict[str, Codes] = {}
         details: dict[str, NDArray[np.generic]] = {}
@@ -218,7 +218,7 @@ class PosedRoad:
                 wanted.setdefault(pose, []).append((measure, k))
         several = {own.name for own in measures if len(self.at[own.name]) > 1}
         for pose, its in wanted.items():
-            found = self.roads[pose].answers(trials, [measure for measure, _ in its])
+            found = self.methods[pose].answers(trials, [measure for measure, _ in its])
             for measure, k in its:
                 values[measure.name][:, k] = found.values[measure.name][:, 0]
                 if (codes := found.status.get(measure.name)) is not None:

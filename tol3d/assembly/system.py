@@ -1,4 +1,4 @@
-"""All that a study asks of an assembly: two roads, what acts on a measure, closed forms."""
+"""All that a study asks of an assembly: two methods, what acts on a measure, closed forms."""
 
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
@@ -17,14 +17,14 @@ from tol3d.assembly.from_scene.idle import idle_forms
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, PoseErrorSpec
+from tol3d.assembly.methods import PlacingMethod, TorsorMethod
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely
 from tol3d.assembly.nominal_relations import misses
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.world import SolidReader
-from tol3d.assembly.roads import PlacingRoad, TorsorRoad
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.first_order import Slopes
 from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import ZoneDraw, laws_told
@@ -35,9 +35,9 @@ from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.system.plain import PlainSystem
 from tol3d.system.regressors import is_group
-from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath
@@ -46,15 +46,15 @@ T = TypeVar("T")
 Words = NDArray[np.str_]
 
 SAME: Final = 1e-6
-"""mm or rad: both roads read the same nominally to within this, or moves lay parts where they are not drawn."""
+"""mm or rad: both methods read the same nominally to within this, or moves lay parts where they are not drawn."""
 
 WITNESS: Final = "fcl"
-MESHED_WITNESS: Final = RoadKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
+MESHED_WITNESS: Final = MethodKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
 FINER: Final = 0.25
 """Of the chord error that is stated: what meshes of half the step have."""
 
 FRAME: Final = "datum frame "
-"""How messages of the roads begin that are of a datum frame; others begin with a place in the scene."""
+"""How messages of the methods begin that are of a datum frame; others begin with a place in the scene."""
 
 FLAT: Final = 1e-6
 """Change of a measure per deviation that is none: both sides of the mean raise it alike."""
@@ -78,8 +78,8 @@ class AssemblySystem(PlainSystem):
 
     statuses: ClassVar[Statuses] = STATUSES
 
-    def road(self, name: str, materials: Any) -> Road:
-        return TorsorRoad(self.assembly) if name == ANALYTIC_ROAD else PlacingRoad(self.assembly)
+    def method(self, name: str, materials: Any) -> Method:
+        return TorsorMethod(self.assembly) if name == ANALYTIC_METHOD else PlacingMethod(self.assembly)
 
     @property
     def warnings(self) -> Sequence[str]:  # type: ignore[override]
@@ -98,7 +98,7 @@ class AssemblySystem(PlainSystem):
         return {**super().describe(measure), "of": list(of), **({"component": component} if component else {}), **laws}
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
-        """Measures of the nominal assembly that the roads read differently, or not at all."""
+        """Measures of the nominal assembly that the methods read differently, or not at all."""
         rest = np.zeros((1, self.assembly.width))
         names = [measure.name for measure in self.measures]
         exact = placing.values(self.assembly, rest, names, self.solids)
@@ -193,7 +193,7 @@ class AssemblySystem(PlainSystem):
         return ClosedForm(slopes.nominal, middle, sigma, tuple(shares))
 
     def is_linear(self, measure: Measure) -> bool:
-        """Whether a measure is linear in all deviations by the analytic road, which then has a closed form."""
+        """Whether a measure is linear in all deviations by the analytic method, which then has a closed form."""
         return not self.slopes_of(measure.name).bends
 
     def slopes_of(self, name: str) -> Slopes:
@@ -219,35 +219,35 @@ class AssemblySystem(PlainSystem):
 class WitnessedSystem(AssemblySystem):
     """An assembly with measures that FCL reads too."""
 
-    roads: ClassVar[Mapping[str, RoadKind]] = {**PlainSystem.roads, WITNESS: MESHED_WITNESS}
+    methods: ClassVar[Mapping[str, MethodKind]] = {**PlainSystem.methods, WITNESS: MESHED_WITNESS}
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System: of the witness pairs of solids by measure, and those of half the step."""
-        return (solid_pairs(self.assembly), solid_pairs(self.assembly, FINER)) if road == WITNESS else None
+        return (solid_pairs(self.assembly), solid_pairs(self.assembly, FINER)) if method == WITNESS else None
 
-    def road(self, name: str, materials: Any) -> Road:
-        return witness_of(self.assembly, *materials) if name == WITNESS else super().road(name, materials)
+    def method(self, name: str, materials: Any) -> Method:
+        return witness_of(self.assembly, *materials) if name == WITNESS else super().method(name, materials)
 
 
 class ClearanceSystem(WitnessedSystem):
     """An assembly with clearances of whole parts, whose solids are meshed once."""
 
     statuses: ClassVar[Statuses] = WITH_CLEARANCES
-    roads: ClassVar[Mapping[str, RoadKind]] = {
-        ANALYTIC_ROAD: RoadKind("model"),
+    methods: ClassVar[Mapping[str, MethodKind]] = {
+        ANALYTIC_METHOD: MethodKind("model"),
         "exact": replace(MESHED_WITNESS, witness=False),
         WITNESS: MESHED_WITNESS,
     }
 
-    def materials(self, road: str) -> Any:
-        """See System: of the exact road pairs of solids, by measure."""
-        return solid_pairs(self.assembly) if road == "exact" else super().materials(road)
+    def materials(self, method: str) -> Any:
+        """See System: of the exact method pairs of solids, by measure."""
+        return solid_pairs(self.assembly) if method == "exact" else super().materials(method)
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         if name != "exact":
-            return super().road(name, materials)
+            return super().method(name, materials)
         error = max(pair.chord_error for pair in materials.values())
-        return PlacingRoad(self.assembly, reader_of(materials), error)
+        return PlacingMethod(self.assembly, reader_of(materials), error)
 
     @property
     def solids(self) -> SolidReader | None:

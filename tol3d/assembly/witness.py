@@ -1,4 +1,4 @@
-"""The witness of assemblies: gaps of round surfaces and clearances of parts by FCL, at the poses of the exact road.
+"""The witness of assemblies: gaps of round surfaces and clearances of parts by FCL, at the poses of the exact method.
 
 A round surface is a ball or a cylinder of FCL's, smaller than it is by a known amount that is taken off again: so
 surfaces that overlap by less than that have a gap below 0 as they should. Clearances are read of meshes of half the
@@ -15,14 +15,14 @@ from tol3d.assembly.clearances.distances import SolidDistances
 from tol3d.assembly.clearances.pair import SolidPair
 from tol3d.assembly.model import Assembly, Feature, Measured
 from tol3d.assembly.model.feature import nominal_size
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.surfaces import PARALLEL, kind_of
 from tol3d.assembly.witnessed import reads
 from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
 from tol3d.system.measure import Measure
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.trials import Trials
 
 CORE: Final = 0.5
@@ -39,11 +39,11 @@ FEW: Final = 1e-9
 
 @dataclass(frozen=True)
 class FclWitness:
-    """Implements WitnessRoad.
+    """Implements WitnessMethod.
 
     Args:
         assembly: the model.
-        given: pairs of solids of the road that is witnessed, by measure.
+        given: pairs of solids of the method that is witnessed, by measure.
         finer: the same with meshes of half the step.
     """
 
@@ -53,22 +53,22 @@ class FclWitness:
 
     @property
     def chord_error(self) -> float:
-        """See Road: that of the finer meshes."""
+        """See Method: that of the finer meshes."""
         return max((pair.chord_error for pair in self.finer.values()), default=0.0)
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad."""
+        """See WitnessMethod."""
         return reads(self.assembly, measure.name)
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad: of a clearance the chord errors of both meshes, one of each road."""
+        """See WitnessMethod: of a clearance the chord errors of both meshes, one of each method."""
         if measure.name in self.finer:
             chords = self.given[measure.name].chord_error + self.finer[measure.name].chord_error
             return chords * measure.per_internal, FEW * measure.per_internal
         return 0.0, ALLOWANCE * measure.per_internal
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road; statuses of gaps are those of the moves."""
+        """See Method; statuses of gaps are those of the moves."""
         names = [measure.name for measure in measures]
         read = placing.values(self.assembly, trials.deviations, names, SolidDistances(self.finer))
         values, status = {}, {}

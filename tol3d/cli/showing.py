@@ -146,7 +146,7 @@ def compare(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
     out: Annotated[Path, typer.Option(help="The picture to write.")] = Path("comparison.png"),
 ) -> None:
-    """Lay the histograms of both roads of one or several runs over each other, with the per-trial difference."""
+    """Lay the histograms of both methods of one or several runs over each other, with the per-trial difference."""
     from tol3d.report import comparison_report, draw_comparison
     from tol3d.runs.run import open_run
 

@@ -226,7 +226,7 @@ def long_study(simulation: "Simulation") -> str:
 
     positions = contacts_of(simulation)
     study = simulation.study
-    minutes = study.trials * positions / simulation.road.contacts_per_minute
+    minutes = study.trials * positions / simulation.method.contacts_per_minute
     if minutes <= 1.0:
         return ""
     each = "one position" if positions == 1 else f"{positions} positions"

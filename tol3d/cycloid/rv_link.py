@@ -97,7 +97,7 @@ class RVLink(OutputLink):
         """The bend of flanks; see StatedLink, and neglected.py."""
         if self.own.plays:
             return {}
-        bent, straight = (self._free(road(self.own), seen).play for road in (BentTurning, LinearTurning))
+        bent, straight = (self._free(method(self.own), seen).play for method in (BentTurning, LinearTurning))
         return {BEND: np.abs(bent - straight)}
 
     def deviated(self, seen: LinkTrials, turns: Array) -> RVDeviated:

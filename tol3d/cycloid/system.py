@@ -16,12 +16,12 @@ from tol3d.cycloid.reducer.problems import problems_at
 from tol3d.cycloid.reducer.regressors import TAKEN, parts_over_turn, regress_touching
 from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.reducer.shown import ShownReducer
-from tol3d.cycloid.reducer.trials import STATUSES, RVRoad, RVTrials
+from tol3d.cycloid.reducer.trials import STATUSES, RVMethod, RVTrials
 from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.system.pooled import PooledTerms
-from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
@@ -30,10 +30,10 @@ from tol3d.system.trials import Trials
 FCL: Final = "fcl"
 REST_COSTS: Final = 80  # times a first contact
 WITNESS: Final = "tol3d.cycloid.reducer.witness"  # it loads FCL, in the worker
-ROADS: Final[Mapping[str, RoadKind]] = {
-    "exact": RoadKind("kernels", compiled=True, contacts_per_minute=900_000_000),
-    FCL: RoadKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),
-    ANALYTIC_ROAD: RoadKind("model"),
+METHODS: Final[Mapping[str, MethodKind]] = {
+    "exact": MethodKind("kernels", compiled=True, contacts_per_minute=900_000_000),
+    FCL: MethodKind("discs: solid and measuring strips", threads=False, witness=True, contacts_per_minute=800_000),
+    ANALYTIC_METHOD: MethodKind("model"),
 }
 
 
@@ -51,7 +51,7 @@ class RVSystem(RVTrials):
     crank_hole: float | None = None
     profile_steps: int = 120
 
-    roads: ClassVar[Mapping[str, RoadKind]] = ROADS
+    methods: ClassVar[Mapping[str, MethodKind]] = METHODS
     statuses: ClassVar[Statuses] = STATUSES
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
@@ -66,24 +66,24 @@ class RVSystem(RVTrials):
         counted = {} if own.deflection is None else {"deflection_um": round(1e3 * own.deflection, 9)}
         return {"kind": own.kind, "of": self.own.name, **order, **counted}
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         """See System."""
-        return road != "exact" or (rests if self.own.plays else first_contacts).kept
+        return method != "exact" or (rests if self.own.plays else first_contacts).kept
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System: the strips of a disc's solid, for FCL."""
         return (
             lobe_strips(usual_shapes(self.own.contact, self.width, self.crank_hole).discs[0], self.profile_steps)
-            if road == FCL
+            if method == FCL
             else None
         )
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """See System."""
         if name == FCL:
-            made: Road = import_module(WITNESS).witness(self, materials)
+            made: Method = import_module(WITNESS).witness(self, materials)
             return made
-        return RVRoad(self, linear_turning(self.own) if name == ANALYTIC_ROAD else exact_turning(self.own))
+        return RVMethod(self, linear_turning(self.own) if name == ANALYTIC_METHOD else exact_turning(self.own))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""
@@ -118,7 +118,7 @@ class RVSystem(RVTrials):
         found = stages_by_formula(self.own, self.acts, self.contributors)
         return {"cycloid_stages": found} if found else {}
 
-    def display(self, trials: Trials, road: Road) -> ShownReducer:
+    def display(self, trials: Trials, method: Method) -> ShownReducer:
         """Its parts in the first trial, see System."""
         turns = float(trials.positions[self.own.name][0])
         deviated = self.deviated(trials.part(0, 1))
@@ -129,4 +129,4 @@ class RVSystem(RVTrials):
 class PlayingSystem(RVSystem):
     """A reducer whose bearings have play: where it rests no other engine knows."""
 
-    roads: ClassVar[Mapping[str, RoadKind]] = {name: kind for name, kind in ROADS.items() if not kind.witness}
+    methods: ClassVar[Mapping[str, MethodKind]] = {name: kind for name, kind in METHODS.items() if not kind.witness}

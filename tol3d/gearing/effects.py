@@ -1,4 +1,4 @@
-"""Effects: on what one deviation acts, and in which sense. Data for both roads; each has its own formulas for it."""
+"""Effects: on what one deviation acts, and in which sense. Data for both methods; each has its own formulas for it."""
 
 import math
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Effect(ABC):
     """What a deviation acts on. Frozen data.
 
-    The geometric road reads its displacements (builds/), the analytic road its terms (stack_up/terms.py), each
+    The geometric method reads its displacements (builds/), the analytic method its terms (stack_up/terms.py), each
     registered there for the class of the effect.
     """
 

@@ -12,16 +12,16 @@ from tol3d.errors import InputError
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.gaps import STATUSES, exact_engine, exact_is_compiled, fcl_engine
 from tol3d.gearing.meshing.seats import Seats, all_seat_keys, seated
+from tol3d.gearing.methods.analytic import AnalyticMethod
+from tol3d.gearing.methods.geometric import FLANKS_OF_A_BACKLASH, FclMethod, GeometricMethod
+from tol3d.gearing.methods.interference import interferences
+from tol3d.gearing.methods.neglected import neglected, of_gaps
+from tol3d.gearing.methods.regressors import acting, position_column, regress, regressor_key
 from tol3d.gearing.model import Contributor, Measure, Model, model_from_scene
 from tol3d.gearing.model.contributor import gear_contributor
 from tol3d.gearing.model.measure import gear_measure, gear_measures
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.play.play import breakdowns_of
-from tol3d.gearing.roads.analytic import AnalyticRoad
-from tol3d.gearing.roads.geometric import FLANKS_OF_A_BACKLASH, FclRoad, GeometricRoad
-from tol3d.gearing.roads.interference import interferences
-from tol3d.gearing.roads.neglected import neglected, of_gaps
-from tol3d.gearing.roads.regressors import acting, position_column, regress, regressor_key
 from tol3d.gearing.stack_up import closed_form, reference_form
 from tol3d.gearing.summary.train_sections import description, train_sections
 from tol3d.numerics.arrays import Array
@@ -31,9 +31,9 @@ from tol3d.system import contributor as system_contributor
 from tol3d.system import measure as system_measure
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
+from tol3d.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Codes, Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey, System
 from tol3d.system.trials import Trials
@@ -42,10 +42,10 @@ Strips = Mapping[str, FlankStrips]
 
 EXACT: Final = "exact"
 FCL: Final = "fcl"
-ROADS: Final[Mapping[str, RoadKind]] = {
-    EXACT: RoadKind("kernels", compiled=True),
-    FCL: RoadKind("gears: solids and measuring strips", threads=False, witness=True, contacts_per_minute=180_000),
-    ANALYTIC_ROAD: RoadKind("model"),
+METHODS: Final[Mapping[str, MethodKind]] = {
+    EXACT: MethodKind("kernels", compiled=True),
+    FCL: MethodKind("gears: solids and measuring strips", threads=False, witness=True, contacts_per_minute=180_000),
+    ANALYTIC_METHOD: MethodKind("model"),
 }
 """The engines of gears; FCL holds Python's lock and takes half a minute for a block."""
 
@@ -56,7 +56,7 @@ class GearSystem:
 
     model: Model
 
-    roads = ROADS
+    methods = METHODS
     statuses: Statuses = STATUSES
 
     # what it is -------------------------------------------------------------------------------------
@@ -119,24 +119,24 @@ class GearSystem:
         """Trials as the gears see them, and by shaft what became of what holds it: as they are, nothing does."""
         return trials, {}
 
-    # its roads --------------------------------------------------------------------------------------
+    # its methods --------------------------------------------------------------------------------------
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         """See System."""
         links = all(link.is_compiled() for link in self.model.links)
-        return links and (road != EXACT or exact_is_compiled(self.model))
+        return links and (method != EXACT or exact_is_compiled(self.model))
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System: the strips of every gear's solid, for FCL."""
-        return strips_of(self.model) if road == FCL else {}
+        return strips_of(self.model) if method == FCL else {}
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """See System."""
-        if name == ANALYTIC_ROAD:
-            return AnalyticRoad(self.model)
+        if name == ANALYTIC_METHOD:
+            return AnalyticMethod(self.model)
         if name == FCL:
-            return FclRoad(self.model, fcl_engine(self.model, materials), materials)
-        return GeometricRoad(self.model, exact_engine(self.model))
+            return FclMethod(self.model, fcl_engine(self.model, materials), materials)
+        return GeometricMethod(self.model, exact_engine(self.model))
 
     def cost(self, measures: Sequence[system_measure.Measure]) -> int:
         """See System: positions of every different way of reading a mesh, and contacts in other links."""
@@ -192,16 +192,16 @@ class GearSystem:
                 found[section] = {**found.get(section, {}), link.name: own}
         return found
 
-    def display(self, trials: Trials, road: Road) -> Seats:
+    def display(self, trials: Trials, method: Method) -> Seats:
         """See System: builds with their seated meshes."""
-        return seated(self.model, engine_of(road), trials)
+        return seated(self.model, engine_of(method), trials)
 
 
-def engine_of(road: Road) -> Engine:
-    """The engine of a geometric road."""
-    if not isinstance(road, GeometricRoad):
-        raise TypeError(f"{type(road).__name__} has no engine")
-    return road.engine
+def engine_of(method: Method) -> Engine:
+    """The engine of a geometric method."""
+    if not isinstance(method, GeometricMethod):
+        raise TypeError(f"{type(method).__name__} has no engine")
+    return method.engine
 
 
 def strips_of(model: Model) -> Strips:

@@ -1,4 +1,4 @@
-"""Closed loops among the parts of an assembly, on both roads; see StatedMove."""
+"""Closed loops among the parts of an assembly, on both methods; see StatedMove."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

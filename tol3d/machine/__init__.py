@@ -7,14 +7,14 @@ nobody draws, so that either side sees no more than its own kind.
 
 grammar/     the moves, worst errors over poses, and what does not hold together
 nominal      where shafts lie in their bores, and the centre distances and azimuths that follow
-bores, pins  lines through bores, and pins of plates, trial by trial, by either road of the assembly
+bores, pins  lines through bores, and pins of plates, trial by trial, by either method of the assembly
 centrals     what bores do to the parts on the axis of a planetary set or a reducer
-chain        links, joints and poses on both roads; open_chains makes them of a scene, with the flanks that are loaded
+chain        links, joints and poses on both methods; open_chains makes them of a scene, with the flanks that are loaded
 drives       which train turns which joint, and where its lost motion is read
 from_scene   all of it, from one scene
 joined       all together: whose columns are whose, how bores and joints follow from deviations
 turned       what trains leave free, each build and position once
-roads        placed, meshed, turned
+methods        placed, meshed, turned
 counted      what would be counted twice
 closed_form  moments of a backlash, and of a part that trains turn
 system       all of it as one system

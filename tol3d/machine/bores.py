@@ -1,7 +1,7 @@
-"""How far the axes of shafts lie off their nominal places, trial by trial: what both roads of the assembly say.
+"""How far the axes of shafts lie off their nominal places, trial by trial: what both methods of the assembly say.
 
 Each point of an axis has a twin where the point is nominally, on the part that carries the first bore of its train.
-Gaps between the two along the shaft's x, y and z are measures of the assembly, which either road reads as any other.
+Gaps between the two along the shaft's x, y and z are measures of the assembly, which either method reads as any other.
 So a housing that stands askew takes its shafts along, and nothing of that reaches the gears.
 """
 

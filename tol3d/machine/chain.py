@@ -1,4 +1,4 @@
-"""Links that turn about each other, one after the other, on both roads.
+"""Links that turn about each other, one after the other, on both methods.
 
 A joint is the axis of a feature of the link before, as it lies in the trial. The link after stands on it by its seat, a
 datum frame of its own, or by an axis, and is turned about it by the input of the pose and by what the train behind the

@@ -10,7 +10,7 @@ from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.measures.pose_errors import PositionErrorSpec
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.distributions.constant import Constant
 from tol3d.gearing.effects import NOTHING, LinkDeviation

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.moments import widely
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.first_order import Slopes
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Contributor as GearContributor
 from tol3d.gearing.model.measure import Measure as GearMeasure
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.bores import Bores
 from tol3d.machine.drives import JointDrive
@@ -41,7 +41,7 @@ TURN: Final = 1e-2
 """rad; a measure that it does not change hangs on no joint that turns by it."""
 
 STEP: Final = 1e-4
-"""mm; over which the analytic road's slopes by displacements of bores are taken, to both sides."""
+"""mm; over which the analytic method's slopes by displacements of bores are taken, to both sides."""
 
 
 def is_hidden(own: Contributor | Measure) -> bool:

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.zones import ZoneDraw
 from tol3d.gearing.effects import Effect, LinkDeviation
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import together
+from tol3d.gearing.methods.regressors import slopes_by_bores
 from tol3d.gearing.model.measure import Measure
-from tol3d.gearing.roads.regressors import slopes_by_bores
 from tol3d.gearing.system import GearSystem
 from tol3d.machine.joined import Joined, is_hidden
 from tol3d.numerics.arrays import Array

@@ -13,22 +13,22 @@ from tol3d.assembly.posed import has_loops
 from tol3d.assembly.system import AssemblySystem, ClearanceSystem
 from tol3d.assembly.zones import laws_told
 from tol3d.gearing.model.measure import Measure as GearMeasure
-from tol3d.gearing.system import EXACT, ROADS, GearSystem
+from tol3d.gearing.system import EXACT, METHODS, GearSystem
 from tol3d.machine.closed_form import closed_form, with_joints
 from tol3d.machine.drives import HALF, JointDrive
 from tol3d.machine.joined import Joined, is_hidden
 from tol3d.machine.measure import WorstMeasure
+from tol3d.machine.methods import MachineMethod
 from tol3d.machine.regressors import parts_by_links, regress_bores, with_displacements
-from tol3d.machine.roads import MachineRoad
 from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
 from tol3d.numerics.arrays import Array
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Codes, Method, MethodKind
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Codes, Road, RoadKind
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published, StreamKey
@@ -58,9 +58,9 @@ class MachineSystem(Joined):
         return WITH_CLEARANCES if self._is_clearing else STATUSES
 
     @property
-    def roads(self) -> Mapping[str, RoadKind]:
+    def methods(self) -> Mapping[str, MethodKind]:
         """See System: those of the gears, one process each where solids are read."""
-        return {**ROADS, EXACT: replace(ROADS[EXACT], threads=False)} if self._is_clearing else ROADS
+        return {**METHODS, EXACT: replace(METHODS[EXACT], threads=False)} if self._is_clearing else METHODS
 
     @property
     def breakdowns(self) -> Sequence[Breakdown]:
@@ -126,40 +126,41 @@ class MachineSystem(Joined):
 
     def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
         """Trials as the gears see them, on the axes that placed bores give; and what became of these (trials,)."""
-        return MachineRoad(self, self.gears.road(ANALYTIC_ROAD, {}), exact=True).gear_trials(trials)
+        return MachineMethod(self, self.gears.method(ANALYTIC_METHOD, {}), exact=True).gear_trials(trials)
 
     def in_pose(self, trials: Trials, pose: str) -> Array:
-        """Deviations (trials, columns) of the assembly as the exact road has them in a pose, its joints turned."""
-        return MachineRoad(self, self.gears.road(EXACT, {}), exact=True).in_pose(trials, pose)
+        """Deviations (trials, columns) of the assembly as the exact method has them in a pose, its joints turned."""
+        return MachineMethod(self, self.gears.method(EXACT, {}), exact=True).in_pose(trials, pose)
 
-    # its roads --------------------------------------------------------------------------------------
+    # its methods --------------------------------------------------------------------------------------
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         """See System."""
-        return self.gears.is_compiled(road)
+        return self.gears.is_compiled(method)
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System."""
-        own = self.gears.materials(road)
-        if not self._is_clearing or road == ANALYTIC_ROAD:
+        own = self.gears.materials(method)
+        if not self._is_clearing or method == ANALYTIC_METHOD:
             return own
-        return own, {pose: system.materials(road) for pose, system in self.poses.items()}
+        return own, {pose: system.materials(method) for pose, system in self.poses.items()}
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """See System: each system's own, gears by what the assembly's says of the bores."""
-        exact = name != ANALYTIC_ROAD
+        exact = name != ANALYTIC_METHOD
         if not self._is_clearing or not exact:
-            return MachineRoad(self, self.gears.road(name, materials), exact)
+            return MachineMethod(self, self.gears.method(name, materials), exact)
         own, solids = materials
-        gears = self.gears.road(name, own)
+        gears = self.gears.method(name, own)
         if name == EXACT:
-            return MachineRoad(self, gears, exact, {pose: reader_of(pairs) for pose, pairs in solids.items()})
+            return MachineMethod(self, gears, exact, {pose: reader_of(pairs) for pose, pairs in solids.items()})
         chords = {
             name: given[name].chord_error + pair.chord_error
             for given, finer in solids.values()
             for name, pair in finer.items()
         }
-        return MachineRoad(self, gears, exact, {pose: reader_of(finer) for pose, (_, finer) in solids.items()}, chords)
+        readers = {pose: reader_of(finer) for pose, (_, finer) in solids.items()}
+        return MachineMethod(self, gears, exact, readers, chords)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """See System."""
@@ -356,8 +357,8 @@ class MachineSystem(Joined):
         """See System."""
         return self.gears.sections(terms, published)
 
-    def display(self, trials: Trials, road: Road) -> Any:
+    def display(self, trials: Trials, method: Method) -> Any:
         """See System: the seated meshes of the gears."""
-        assert isinstance(road, MachineRoad)
-        seen, _ = road.gear_trials(trials)
-        return self.gears.display(seen, road.gears)
+        assert isinstance(method, MachineMethod)
+        seen, _ = method.gear_trials(trials)
+        return self.gears.display(seen, method.gears)

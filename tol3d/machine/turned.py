@@ -17,7 +17,7 @@ from tol3d.gearing.model.measure import Measure
 from tol3d.gearing.play.linked import DEAR
 from tol3d.machine.joined import Joined
 from tol3d.numerics.arrays import Array
-from tol3d.system.road import Road
+from tol3d.system.method import Method
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
@@ -43,15 +43,15 @@ class Turned:
 
 @dataclass(eq=False)
 class Turning:
-    """What trains of a system leave free, by one of its roads.
+    """What trains of a system leave free, by one of its methods.
 
     Args:
-        system: whose trains; what is solved of it is known to all roads of a kind in this process.
-        road: of its gears.
+        system: whose trains; what is solved of it is known to all methods of a kind in this process.
+        method: of its gears.
     """
 
     system: Joined
-    road: Road
+    method: Method
     _columns: dict[str, NDArray[np.intp]] = field(default_factory=dict)
 
     def turned(self, trials: Trials, readings: Sequence[Measure]) -> Turned:
@@ -73,7 +73,7 @@ class Turning:
 
     def _solved(self, trials: Trials, readings: Sequence[Measure]) -> dict[str, Array]:
         """Lost motions (trials,) by reading, not a number where a train has none."""
-        answers = self.road.answers(trials, list(readings))
+        answers = self.method.answers(trials, list(readings))
         found = {}
         for own in readings:
             codes = answers.status.get(own.name, np.zeros(len(trials), dtype=np.int8))
@@ -84,7 +84,7 @@ class Turning:
         """Lost motion (trials,), of builds that are not known solved anew, each once."""
         own = np.ascontiguousarray(trials.deviations[:, self._acting(reading)])
         keys = [(reading.name, blake2b(row, digest_size=16).digest()) for row in own]
-        known, kind = _KNOWN.setdefault(self.system, {}), type(self.road).__name__
+        known, kind = _KNOWN.setdefault(self.system, {}), type(self.method).__name__
         kept = known.setdefault(kind, {})
         if len(kept) + len(keys) > MOST_KEPT:
             kept = known[kind] = {}  # another thread may still read the other one

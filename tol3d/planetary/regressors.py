@@ -34,13 +34,13 @@ def slopes_of(system: SetTrials, measure: PlanetaryMeasure, trials: Trials) -> D
     By first-order gaps; zeros of trials that jam.
     """
     own, deviated, shaft = system.own, system.deviated(trials), measure.shaft
-    road, stands = StackUp(own), own.opposite(measure.shaft)
+    method, stands = StackUp(own), own.opposite(measure.shaft)
     if measure.is_free_turn:
         turns = np.broadcast_to(system.turns(measure.positions, trials), (len(trials), 1))
         ones = np.ones((len(trials), 1))
-        read = [(road, 1.0)]
+        read = [(method, 1.0)]
         if measure.reading == "low stiffness":
-            read = [(StackUp(system.overcome), 1.0), (road, -1.0)]
+            read = [(StackUp(system.overcome), 1.0), (method, -1.0)]
         found = [
             each.slopes(deviated, turns, shaft, stands, end, sign * (2 * end - 1) * ones)
             for each, sign in read
@@ -48,6 +48,6 @@ def slopes_of(system: SetTrials, measure: PlanetaryMeasure, trials: Trials) -> D
         ]
         return reduce(Deviated.plus, found)
     turns = np.array(measure.positions.fixed) / (2 * np.pi)
-    ends = road.followed(deviated, turns, shaft, stands, measure.end(own)).ends
+    ends = method.followed(deviated, turns, shaft, stands, measure.end(own)).ends
     coefficients = measure.sense(own) * weights_taken(measure, measure.sense(own) * ends)
-    return road.slopes(deviated, turns, shaft, stands, measure.end(own), np.ascontiguousarray(coefficients))
+    return method.slopes(deviated, turns, shaft, stands, measure.end(own), np.ascontiguousarray(coefficients))

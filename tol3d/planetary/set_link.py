@@ -70,10 +70,10 @@ class SetLink(OutputLink):
         """The same to first order."""
         return self._free(StackUp(self.own), seen)
 
-    def _free(self, road: StackUp | Contact, seen: LinkTrials) -> FreeTurn:
+    def _free(self, method: StackUp | Contact, seen: LinkTrials) -> FreeTurn:
         own, stands = self.own, self.own.opposite(self.own.output)
         found = [
-            road.free(deviated, turns, own.output, stands)
+            method.free(deviated, turns, own.output, stands)
             for turns in self.output_turns(seen).T
             for deviated in [self.deviated(seen, turns)]
         ]
@@ -115,10 +115,10 @@ class SetLink(OutputLink):
 
     def slopes_at(self, piece: LinkTrials, turns: Array) -> Deviated:
         """See OutputLink: by the contacts that are met."""
-        own, deviated, road = self.own, self.deviated(piece, turns[:, 0]), StackUp(self.own)
+        own, deviated, method = self.own, self.deviated(piece, turns[:, 0]), StackUp(self.own)
         senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
         low, high = (
-            road.slopes(deviated, turns, own.output, own.opposite(own.output), end, sign) for end, sign in senses
+            method.slopes(deviated, turns, own.output, own.opposite(own.output), end, sign) for end, sign in senses
         )
         return low.plus(high)
 

@@ -17,12 +17,12 @@ from tol3d.planetary.regressors import parts_met
 from tol3d.planetary.sections import set_sections, spring_summary
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.summary_types import PlanetarySetSummary
-from tol3d.planetary.trials import STATUSES, PlanetaryRoad, SetTrials
+from tol3d.planetary.trials import STATUSES, PlanetaryMethod, SetTrials
 from tol3d.solids import measuring_strips
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
 from tol3d.system.pooled import PooledTerms
-from tol3d.system.road import ANALYTIC_ROAD, Road, RoadKind
 from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
@@ -30,10 +30,10 @@ from tol3d.system.trials import Trials
 
 FCL: Final = "fcl"
 WITNESS: Final = "tol3d.planetary.witness"  # it loads FCL, in the worker
-ROADS: Final[Mapping[str, RoadKind]] = {
-    "exact": RoadKind("kernels", compiled=True, contacts_per_minute=120_000_000),
-    FCL: RoadKind("gears: solids and measuring strips", threads=False, witness=True, contacts_per_minute=14_000),
-    ANALYTIC_ROAD: RoadKind("kernels", compiled=True),
+METHODS: Final[Mapping[str, MethodKind]] = {
+    "exact": MethodKind("kernels", compiled=True, contacts_per_minute=120_000_000),
+    FCL: MethodKind("gears: solids and measuring strips", threads=False, witness=True, contacts_per_minute=14_000),
+    ANALYTIC_METHOD: MethodKind("kernels", compiled=True),
 }
 
 
@@ -53,7 +53,7 @@ class PlanetarySystem(SetTrials):
     profile_steps: int = 120
     spring: LeafSpring | None = None
 
-    roads: ClassVar[Mapping[str, RoadKind]] = ROADS
+    methods: ClassVar[Mapping[str, MethodKind]] = METHODS
     statuses: ClassVar[Statuses] = STATUSES
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
@@ -67,25 +67,25 @@ class PlanetarySystem(SetTrials):
         order = {"order": int(own.spectrum.orders[0])} if own.spectrum is not None else {}
         return {"kind": own.kind, "of": self.own.name, "shaft": own.shaft, **order}
 
-    # its roads --------------------------------------------------------------------------------------
+    # its methods --------------------------------------------------------------------------------------
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         """See System."""
-        return seated_ranges.kept if road == "exact" else ranges.kept
+        return seated_ranges.kept if method == "exact" else ranges.kept
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """See System: the strips of every gear's solid, for FCL."""
-        if road != FCL:
+        if method != FCL:
             return None
         return {name: measuring_strips(gear, self.profile_steps) for name, gear in self.made.items()}
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """See System."""
         if name == FCL:
-            made: Road = import_module(WITNESS).witness(self, self.made, materials)
+            made: Method = import_module(WITNESS).witness(self, self.made, materials)
             return made
-        kind = StackUp if name == ANALYTIC_ROAD else Contact
-        return PlanetaryRoad(self, kind(self.own), kind(self.overcome))
+        kind = StackUp if name == ANALYTIC_METHOD else Contact
+        return PlanetaryMethod(self, kind(self.own), kind(self.overcome))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """A contact for each mesh of each planet, at each position; measures of one curve share them; see System."""
@@ -116,6 +116,6 @@ class PlanetarySystem(SetTrials):
         mean = self.deviated(mean_build(self, self.measures[0]))
         return set_sections(self.own, self.friction, spring_summary(self.own, mean, self.spring))
 
-    def display(self, trials: Trials, road: Road) -> ShownSet:
+    def display(self, trials: Trials, method: Method) -> ShownSet:
         """Its gears in the first trial, see System."""
         return shown_set(self.own, self.made, self.deviated(trials), float(trials.positions[self.own.name][0]))

@@ -1,4 +1,4 @@
-"""Measures and trials of a planetary set, and the road that reads them; both roads differ in how far shafts turn."""
+"""Measures and trials of a planetary set, and the method that reads them; the methods differ in the turns of shafts."""
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,10 +15,10 @@ from tol3d.planetary.model.deviated import Acts, Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers
 from tol3d.system.output_system import OutputSystem
 from tol3d.system.plain import PlainMeasure
 from tol3d.system.positions import Positions
-from tol3d.system.road import Answers
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
@@ -110,7 +110,7 @@ class SetTrials(OutputSystem):
 
 
 class Turning(Protocol):
-    """How far a shaft of a set turns, by one road."""
+    """How far a shaft of a set turns, by one method."""
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
         """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
@@ -122,8 +122,8 @@ class Turning(Protocol):
 
 
 @dataclass(frozen=True)
-class PlanetaryRoad:
-    """Implements Road.
+class PlanetaryMethod:
+    """Implements Method.
 
     Args:
         overcome: the same under torques that springs give way to.
@@ -135,11 +135,11 @@ class PlanetaryRoad:
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return 0.0
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         deviated = self.system.deviated(trials)
         values: dict[str, Array] = {}
         status: dict[str, NDArray[np.int8]] = {}

@@ -1,4 +1,4 @@
-"""The road of planetary sets by FCL, which witnesses the exact one: gaps of strips of flank faces of their solids.
+"""The method of planetary sets by FCL, which witnesses the exact one: gaps of strips of flank faces of their solids.
 
 Strips are pulled into their teeth by a slack and put back afterwards, as gearing's engine does it, so that flanks which
 overlap a little have a negative gap. Chords lie inside the teeth: a gap is too large by those of both flanks at most.
@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.gearing.engines.fcl import OUT_OF_REACH, SLACK, Found, read_strips
-from tol3d.gearing.roads.geometric import ALLOWANCE
+from tol3d.gearing.methods.geometric import ALLOWANCE
 from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.gears import LEFT, RIGHT, Flank, InternalGear, SpurGear
 from tol3d.gears.involute import involute
@@ -24,7 +24,7 @@ from tol3d.numerics.programme import OK, STALLED, ranges
 from tol3d.planetary.exact.shown import Made, placed_gears
 from tol3d.planetary.model.deviated import Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.planetary.trials import PlanetaryRoad, SetTrials
+from tol3d.planetary.trials import PlanetaryMethod, SetTrials
 from tol3d.solids import FlankStrips, PulledStrip
 from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
 from tol3d.system.measure import Measure
@@ -242,8 +242,8 @@ MOST_POSITIONS: Final = 24
 
 
 @dataclass(frozen=True)
-class PlanetaryWitness(PlanetaryRoad):
-    """Implements WitnessRoad.
+class PlanetaryWitness(PlanetaryMethod):
+    """Implements WitnessMethod.
 
     Args:
         strips: of every gear, by name.
@@ -253,15 +253,15 @@ class PlanetaryWitness(PlanetaryRoad):
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return max(own.chord_error for own in self.strips.values())
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad."""
+        """See WitnessMethod."""
         return measure.positions.in_a_trial <= MOST_POSITIONS
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad: by chords of both flanks of a gap, and by all else."""
+        """See WitnessMethod: by chords of both flanks of a gap, and by all else."""
         system = self.system
         chords = [
             self.strips[mesh.central.name].chord_error + self.strips[mesh.planet.name].chord_error
@@ -272,7 +272,7 @@ class PlanetaryWitness(PlanetaryRoad):
 
 
 def witness(system: SetTrials, made: Made, strips: Mapping[str, FlankStrips]) -> PlanetaryWitness:
-    """The road of a set's trials by FCL."""
+    """The method of a set's trials by FCL."""
     turning = StripContact(system.own, made, StripGaps(system.own, strips))
     overcome = StripContact(system.overcome, made, StripGaps(system.overcome, strips))
     return PlanetaryWitness(system, turning, overcome, strips)

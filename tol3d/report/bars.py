@@ -13,7 +13,7 @@ from tol3d.report.column import Column, ranked_contributors, shares_of
 from tol3d.report.label import wrapped
 from tol3d.report.number import percent_text
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import Road
+from tol3d.runs.summary.values import Method
 
 FEWEST_BARS = 8
 
@@ -52,8 +52,8 @@ class Bars:
         return Bars(factor * self.edges, self.counts, self.trials)
 
 
-def bars_of(measure: MeasureSummary) -> dict[Road, Bars]:
-    """Bars of each road of a measure; none where nothing was counted.
+def bars_of(measure: MeasureSummary) -> dict[Method, Bars]:
+    """Bars of each method of a measure; none where nothing was counted.
 
     Trials are all: what failed is missing in the bars, and does not make the others seem more.
     """
@@ -63,17 +63,17 @@ def bars_of(measure: MeasureSummary) -> dict[Road, Bars]:
     total = max(sum(counts) for counts in histogram.counts.values())
     merged = _neighbours_in_one(len(next(iter(histogram.counts.values()))), total)
     width = merged * histogram.bin_width
-    found: dict[Road, Bars] = {}
-    for road, counts in histogram.counts.items():
+    found: dict[Method, Bars] = {}
+    for method, counts in histogram.counts.items():
         joined = _joined(np.asarray(counts, dtype=np.float64), merged)
         edges = histogram.lower_edge + width * np.arange(len(joined) + 1, dtype=np.float64)
-        found[road] = Bars(edges, joined, sum(counts) / _seated(measure, road))
+        found[method] = Bars(edges, joined, sum(counts) / _seated(measure, method))
     return found
 
 
-def _seated(measure: MeasureSummary, road: Road) -> float:
-    """The share of a road's trials that seated."""
-    sample = measure.sample(road)
+def _seated(measure: MeasureSummary, method: Method) -> float:
+    """The share of a method's trials that seated."""
+    sample = measure.sample(method)
     return sample.count / sample.trials if sample and sample.count and sample.trials else 1.0
 
 
@@ -97,7 +97,7 @@ BETWEEN: Final = 0.06  # inch, between two contributors
 HEAD_AND_FOOT: Final = 1.0  # inch; title, axis and its label
 LEGEND_LINE, LEGEND_WIDTH = 0.2, 3.0  # inch
 FEWEST_ROWS: Final = 4  # fewer bars are no thicker than these
-ROAD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
+METHOD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
 
 
 def shown_names(measure: MeasureSummary) -> tuple[list[str], list[str]]:
@@ -127,7 +127,7 @@ def height_of_contributors(measure: MeasureSummary) -> float:
 
 def legend_text(column: Column) -> str:
     """What the legend calls a column."""
-    return ROAD_WORDS.get(column.road) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
+    return METHOD_WORDS.get(column.method) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
 
 
 def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:

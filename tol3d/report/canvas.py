@@ -26,7 +26,7 @@ BLACK: Final = "#222222"
 GREY: Final = "#7A7A7A"
 
 
-ROAD_COLOURS: Final = {"closed form": BLACK, "analytic": ORANGE, "geometric": BLUE}
+METHOD_COLOURS: Final = {"closed form": BLACK, "analytic": ORANGE, "geometric": BLUE}
 PUBLISHED_COLOURS: Final = (GREEN, PURPLE, SKY, GREY)
 RUN_COLOURS: Final = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, GREY, BLACK)
 OUTSIDE: Final = VERMILLION

@@ -1,4 +1,4 @@
-"""The columns in which a measure is shown: our roads, and what others published."""
+"""The columns in which a measure is shown: our methods, and what others published."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,14 +7,14 @@ from typing import Literal
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Section
 
-Road = Literal["closed form", "analytic", "geometric", "high-low-mean", "published"]
+Method = Literal["closed form", "analytic", "geometric", "high-low-mean", "published"]
 
-HEADINGS: Mapping[Road, str] = {
+HEADINGS: Mapping[Method, str] = {
     "closed form": "analytic (closed form)",
     "analytic": "analytic (same trials)",
     "geometric": "3D simulation",
 }
-SHARES: Mapping[Road, str] = {"analytic": "analytic_percent", "geometric": "geometric_percent"}
+SHARES: Mapping[Method, str] = {"analytic": "analytic_percent", "geometric": "geometric_percent"}
 
 
 @dataclass(frozen=True)
@@ -23,13 +23,13 @@ class Column:
 
     Args:
         heading: what stands on top.
-        road: where it comes from.
+        method: where it comes from.
         values: mean, sigma, low_3sigma ... in the measure's unit, as far as they are known; None of shares alone.
         percents: share of each contributor [% of the variance].
     """
 
     heading: str
-    road: Road
+    method: Method
     values: Section | None
     percents: Mapping[str, float | None]
 
@@ -40,14 +40,14 @@ class Column:
 
 def columns_of(measure: MeasureSummary) -> list[Column]:
     """The columns of a measure, ours first."""
-    found: dict[Road, Section | None] = {
+    found: dict[Method, Section | None] = {
         "closed form": measure.analytic_closed_form,
         "analytic": measure.analytic,
         "geometric": measure.geometric,
     }
     ours = [
-        Column(HEADINGS[road], road, values, _percents(measure, SHARES.get(road)))
-        for road, values in found.items()
+        Column(HEADINGS[method], method, values, _percents(measure, SHARES.get(method)))
+        for method, values in found.items()
         if values is not None
     ]
     return ours + [Column(name, "published", values, values.percents) for name, values in measure.published.items()]
@@ -58,9 +58,9 @@ def seated_text(measure: MeasureSummary) -> str:
     return f"of {measure.seated} of {measure.trials} that seated" if measure.seated != measure.trials else ""
 
 
-def best_road(measure: MeasureSummary) -> Literal["analytic", "geometric"]:
-    """The road by which a measure is shown: the 3D simulation where there is one."""
-    return measure.best_road
+def best_method(measure: MeasureSummary) -> Literal["analytic", "geometric"]:
+    """The method by which a measure is shown: the 3D simulation where there is one."""
+    return measure.best_method
 
 
 def shares_of(measure: MeasureSummary) -> list[Column]:
@@ -72,7 +72,7 @@ def contributor_columns(measure: MeasureSummary) -> list[Column]:
     """The columns that know shares, of the variance and of high-low-mean: ours first."""
     alone = Column("high–low–mean", "high-low-mean", None, _percents(measure, "high_low_mean_percent"))
     columns = shares_of(measure)
-    ours = [column for column in columns if column.road != "published"]
+    ours = [column for column in columns if column.method != "published"]
     known = any(percent is not None for percent in alone.percents.values())
     others = (
         Column(f"{name}, {alone.heading}", "published", None, own.high_low_mean_percents)
@@ -86,7 +86,7 @@ def ranked_contributors(measure: MeasureSummary) -> list[str]:
     """Contributors by falling share: the 3D simulation's, or the analytic one."""
     columns = shares_of(measure)
     names = [contributor.name for contributor in measure.contributors]
-    leading = next((c for c in columns if c.road == "geometric"), columns[0] if columns else None)
+    leading = next((c for c in columns if c.method == "geometric"), columns[0] if columns else None)
     if leading is None:
         return names
     return sorted(names, key=lambda name: -(leading.percents.get(name) or 0.0))

@@ -1,4 +1,4 @@
-"""Runs beside each other as tables: mean, sigma and range of each run and road, and how far the roads differ."""
+"""Runs beside each other as tables: mean, sigma and range of each run and method, and how far the methods differ."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,18 +18,18 @@ from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text
 from tol3d.report.page import BLANK, Heading, Page, PageItem, Row, Shown, Table, line, note, page, title
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import Road
-from tol3d.system.outcome import ROADS, outcome_of, status_column, value_column
+from tol3d.runs.summary.values import Method
+from tol3d.system.outcome import METHODS, outcome_of, status_column, value_column
 
 BARS = 40
 POINTS_SHOWN = 4000  # dots in a picture; more hide each other
 TURN = 360.0  # deg
-SMALLEST_SPAN = 1e-6  # um or arc minutes; for roads that agree to the last bit
+SMALLEST_SPAN = 1e-6  # um or arc minutes; for methods that agree to the last bit
 
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """How the two roads of one measure differ.
+    """How the two methods of one measure differ.
 
     Args:
         bars: histogram of the differences, in the measure's unit.
@@ -49,7 +49,7 @@ class Difference:
 
 
 def difference_of(run: Run, measure: str) -> Difference | None:
-    """The difference of the two roads of a scalar or curve measure; None without a 3D simulation, or without trials.
+    """The difference of the two methods of a scalar or curve measure; None without a 3D simulation, or without trials.
 
     Memory does not grow with the number of trials: one block of columns is held at a time.
     """
@@ -97,18 +97,18 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
 
 def _blocks(run: Run, measure: str, position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
     """Analytic and geometric values and positions, one file of trials at a time; nan where a trial did not seat."""
-    wanted = (*(value_column(road, measure) for road in ROADS), status_column(measure))
+    wanted = (*(value_column(method, measure) for method in METHODS), status_column(measure))
     asked = tuple(name for name in wanted if name in run.column_names)
     lacking = run.found.lacking
     for columns in run.pieces(*asked, *((position,) if position else ())):
-        analytic, geometric = (outcome_of(columns, road, measure, lacking).values for road in ROADS)
+        analytic, geometric = (outcome_of(columns, method, measure, lacking).values for method in METHODS)
         yield analytic, geometric, np.asarray(columns[position], dtype=np.float64) if position else None
 
 
 NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
 SHOWN_APART = "not all of these runs read it alike, at the same positions and contacts: shown apart"
 ENDS_BEFORE = "trials end before mean ∓ 3 sigma here: low and high are no ends of theirs"
-SHORT: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D"}
+SHORT: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D"}
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ def measures_of(runs: Sequence[Run]) -> list[Compared]:
 
 
 def comparison_report(runs: Sequence[Run]) -> Page:
-    """Tables of every measure: mean, sigma and range of each run and road, and how far the roads differ.
+    """Tables of every measure: mean, sigma and range of each run and method, and how far the methods differ.
 
     Raises:
         InputError: there are no runs, or they share no measure.
@@ -214,7 +214,7 @@ def _end_of(path: Path, others: Sequence[Path]) -> str:
 
 @dataclass(frozen=True)
 class _Found:
-    """What a road of a run found; of a curve the average over its positions."""
+    """What a method of a run found; of a curve the average over its positions."""
 
     count: int
     trials: int
@@ -236,16 +236,16 @@ def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
     shift = ("shift",) if len(runs) > 1 else ()
     out = ("out of limits",) if any(_judged(run.found.measures[name]) for _, run in runs) else ()
     numbers = ("trials", "mean", "sigma", "low", "high", *out, "max", "rms", *shift)
-    headings = [Heading("road", words=True), *(Heading(word) for word in numbers)]
+    headings = [Heading("method", words=True), *(Heading(word) for word in numbers)]
     rows, first = [], dict[str, float]()
     for label, run in runs:
-        for index, (road, found) in enumerate(_found(run.found.measures[name])):
+        for index, (method, found) in enumerate(_found(run.found.measures[name])):
             values = (found.mean, found.sigma, found.low, found.high)
-            cells = [SHORT[road], found.trials_text, *(value_cell(value, unit) for value in values)]
+            cells = [SHORT[method], found.trials_text, *(value_cell(value, unit) for value in values)]
             cells += [share_text(found.out_ppm)] if out else []
-            cells += _differences(run, name, unit) if road == "geometric" else [NOTHING, NOTHING]
+            cells += _differences(run, name, unit) if method == "geometric" else [NOTHING, NOTHING]
             if shift:
-                shifted = None if found.mean is None else found.mean - first.setdefault(road, found.mean)
+                shifted = None if found.mean is None else found.mean - first.setdefault(method, found.mean)
                 cells.append(_bare(shifted, unit))
             rows.append(Row(label if index == 0 else "", cells, unit=unit))
     return Table("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
@@ -256,17 +256,17 @@ def _judged(measure: MeasureSummary) -> bool:
     return measure.has_limits or bool(seated_text(measure))
 
 
-def _found(measure: MeasureSummary) -> Iterator[tuple[Road, _Found]]:
-    """What each road found."""
+def _found(measure: MeasureSummary) -> Iterator[tuple[Method, _Found]]:
+    """What each method found."""
     if measure.take != "curve":
-        for road in SHORT:
-            if own := measure.sample(road):
+        for method in SHORT:
+            if own := measure.sample(method):
                 ends = (own.low_3sigma, own.high_3sigma)
-                yield road, _Found(own.count, own.trials, own.mean, own.sigma, *ends, own.out_ppm)
+                yield method, _Found(own.count, own.trials, own.mean, own.sigma, *ends, own.out_ppm)
         return
-    for road, curve in measure.curve.by_road.items() if measure.curve else ():
-        counted = (measure.seated, measure.trials) if road == "geometric" else (0, 0)
-        yield road, _Found(*counted, _average(curve.mean), _average(curve.sigma), None, None, curve.out_ppm)
+    for method, curve in measure.curve.by_method.items() if measure.curve else ():
+        counted = (measure.seated, measure.trials) if method == "geometric" else (0, 0)
+        yield method, _Found(*counted, _average(curve.mean), _average(curve.sigma), None, None, curve.out_ppm)
 
 
 def _average(values: Sequence[float | None]) -> float | None:

@@ -1,4 +1,4 @@
-"""Runs laid over each other: histograms of both roads, the difference of every trial beside."""
+"""Runs laid over each other: histograms of both methods, the difference of every trial beside."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from tol3d.report.bars import bars_of
 from tol3d.report.canvas import (
     BLACK,
     GREY,
+    METHOD_COLOURS,
     OUTSIDE,
-    ROAD_COLOURS,
     RUN_COLOURS,
     label_angles,
     legend_below,
@@ -34,11 +34,11 @@ from tol3d.report.label import wrapped
 from tol3d.report.number import limit_text
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.values import Road
+from tol3d.runs.summary.values import Method
 
 NO_SIMULATION: Final = "no 3D simulation in these runs"
 NO_TRIALS: Final = "these runs kept no trials (--no-trials)"
-ROADS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
+METHODS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
 WIDTH: Final = 15.0  # inch; of the picture, and of words and legends in its columns
 WORDS: Final = (5.2, 3.2, 4.2)
 ROW_HEIGHT: Final = 4.3  # inch, of a measure without its legend
@@ -53,7 +53,7 @@ FULL_TURN: Final = 360.0  # deg
 
 @dataclass(frozen=True)
 class Shown:
-    """A run as it is shown in every row: its label, and the colours of both its roads."""
+    """A run as it is shown in every row: its label, and the colours of both its methods."""
 
     label: str
     run: Run
@@ -61,7 +61,7 @@ class Shown:
 
 
 def draw_comparison(runs: Sequence[Run], path: Path) -> None:
-    """Draw a row a measure: histograms of both roads, histogram of their differences, differences by position.
+    """Draw a row a measure: histograms of both methods, histogram of their differences, differences by position.
 
     Raises:
         InputError: there are no runs, they share no measure, or the picture cannot be written.
@@ -86,7 +86,7 @@ def comparison_figure(runs: Sequence[Run]) -> Figure:
     grid = figure.add_gridspec(len(measures), 3, width_ratios=[1.6, 1, 1.3], height_ratios=heights)
     for row, (measure, found) in enumerate(zip(measures, own, strict=True)):
         axes = [plain_axes(figure.add_subplot(grid[row, column])) for column in range(3)]
-        _draw_roads(axes[0], measure, found, single=len(runs) == 1)
+        _draw_methods(axes[0], measure, found, single=len(runs) == 1)
         differences = [(each, difference_of(each.run, measure.name)) for each in found]
         known = [(each, difference) for each, difference in differences if difference is not None]
         instead = NO_SIMULATION if any(each.run.keeps_trials for each in found) else NO_TRIALS
@@ -99,16 +99,16 @@ def comparison_figure(runs: Sequence[Run]) -> Figure:
 
 
 def _shown(runs: Sequence[Run]) -> list[Shown]:
-    """Every run in a colour of its own; a single one in those of its roads."""
+    """Every run in a colour of its own; a single one in those of its methods."""
     if len(runs) == 1:
-        return [Shown(label, run, ROAD_COLOURS) for label, run in labelled(runs)]
+        return [Shown(label, run, METHOD_COLOURS) for label, run in labelled(runs)]
     colours = [RUN_COLOURS[index % len(RUN_COLOURS)] for index in range(len(runs))]
     named = zip(labelled(runs), colours, strict=True)
-    return [Shown(label, run, dict.fromkeys(ROADS, colour)) for (label, run), colour in named]
+    return [Shown(label, run, dict.fromkeys(METHODS, colour)) for (label, run), colour in named]
 
 
 def _legend_lines(shown: Sequence[Shown]) -> int:
-    """Lines of the longest legend of a row: runs, roads and limits, or runs with their differences."""
+    """Lines of the longest legend of a row: runs, methods and limits, or runs with their differences."""
     breaks = sum(_broken(each.label, 1).count("\n") for each in shown)
     return breaks + 2 * len(shown) + 3
 
@@ -118,10 +118,10 @@ def _broken(text: str, column: int) -> str:
     return wrapped(text, WORDS[column] - LEGEND_MARK, LEGEND_SIZE, 6)
 
 
-# both roads ---------------------------------------------------------------------------------------
+# both methods ---------------------------------------------------------------------------------------
 
 
-def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single: bool) -> None:
+def _draw_methods(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single: bool) -> None:
     name, unit = measure.name, measure.unit
     first = shown[0].run.found.measures[name]
     curve = first.take == "curve"
@@ -146,35 +146,35 @@ def _draw_roads(axes: Axes, measure: Compared, shown: Sequence[Shown], *, single
 
 
 def _samples(measure: MeasureSummary, colours: Mapping[str, str], *, single: bool) -> Iterator[DrawnSample]:
-    """Both roads' samples of a run: the 3D simulation filled, the stack-up as outline."""
-    for road, bars in bars_of(measure).items():
+    """Both methods' samples of a run: the 3D simulation filled, the stack-up as outline."""
+    for method, bars in bars_of(measure).items():
         beside: Line = "solid" if single else "dashed"
-        yield DrawnSample(None, colours[road], bars, "filled" if road == "geometric" else beside)
+        yield DrawnSample(None, colours[method], bars, "filled" if method == "geometric" else beside)
 
 
 def _draw_curves(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
     stepped = Stepped(measure)
-    styles: Mapping[Road, str] = {"geometric": "-", "analytic": "--"}
-    for road, style in styles.items():
-        if own := measure.curve_sample(road):
-            axes.plot(stepped.x, stepped(own.mean), style, linewidth=2, color=colours[road])
+    styles: Mapping[Method, str] = {"geometric": "-", "analytic": "--"}
+    for method, style in styles.items():
+        if own := measure.curve_sample(method):
+            axes.plot(stepped.x, stepped(own.mean), style, linewidth=2, color=colours[method])
 
 
 def _add_marks(axes: Axes, name: str, shown: Sequence[Shown], *, curve: bool, single: bool) -> None:
-    """The legend: the colour of each run, of how many trials it is if some failed, and how roads are drawn."""
+    """The legend: the colour of each run, of how many trials it is if some failed, and how methods are drawn."""
     seated = [f", {text}" if (text := seated_text(each.run.found.measures[name])) else "" for each in shown]
     word = ", mean" if curve else ""
     if not single:
         for each, text in zip(shown, seated, strict=True):
             axes.add_patch(_unseen(each.colours["geometric"], _broken(f"{each.label}{text}", 0)))
-    own = shown[0].colours if single else dict.fromkeys(ROADS, GREY)
+    own = shown[0].colours if single else dict.fromkeys(METHODS, GREY)
     own_seated = seated[0] if single else ""
     dashed = "-" if single and not curve else "--"
     if curve:
-        axes.plot([], [], color=own["geometric"], linewidth=2, label=f"{ROADS['geometric']}{word}{own_seated}")
+        axes.plot([], [], color=own["geometric"], linewidth=2, label=f"{METHODS['geometric']}{word}{own_seated}")
     else:
-        axes.add_patch(_unseen(own["geometric"], f"{ROADS['geometric']}{own_seated}"))
-    axes.plot([], [], dashed, color=own["analytic"], linewidth=1.8, label=f"{ROADS['analytic']}{word}")
+        axes.add_patch(_unseen(own["geometric"], f"{METHODS['geometric']}{own_seated}"))
+    axes.plot([], [], dashed, color=own["analytic"], linewidth=1.8, label=f"{METHODS['analytic']}{word}")
 
 
 def _unseen(colour: str, label: str) -> Rectangle:

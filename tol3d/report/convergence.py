@@ -50,7 +50,7 @@ def convergence_of(run: Run, name: str, points: int) -> Convergence:
         raise InputError(f"{name}: expected a measure of one number a trial, got a curve")
     if not run.keeps_trials:
         raise RunError(f"{run.path}: this run kept its statistics only (--no-trials); run the scene again with them")
-    total = measure.seated if measure.best_road == GEOMETRIC else run.trials
+    total = measure.seated if measure.best_method == GEOMETRIC else run.trials
     if total < FEWEST:
         raise InputError(f"{name}: expected {FEWEST} trials that seated, got {total}")
     counts = np.unique(np.geomspace(FEWEST, total, points).round().astype(int))
@@ -83,9 +83,9 @@ def running(pieces: Iterable[Array], counts: Array) -> Convergence:
 
 
 def _known(run: Run, name: str) -> Iterator[Array]:
-    """Values of the trials that have one, of the best road there is, piece by piece."""
-    road, lacking = run.found.measures[name].best_road, run.found.lacking
-    wanted = (value_column(road, name), status_column(name))
+    """Values of the trials that have one, of the best method there is, piece by piece."""
+    method, lacking = run.found.measures[name].best_method, run.found.lacking
+    wanted = (value_column(method, name), status_column(name))
     for columns in run.pieces(*(own for own in wanted if own in run.column_names)):
-        values = outcome_of(columns, road, name, lacking).values
+        values = outcome_of(columns, method, name, lacking).values
         yield np.asarray(values[np.isfinite(values)])

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import GREY, ORANGE, OUTSIDE, PUBLISHED_COLOURS, ROAD_COLOURS, label_angles, say_instead
+from tol3d.report.canvas import GREY, METHOD_COLOURS, ORANGE, OUTSIDE, PUBLISHED_COLOURS, label_angles, say_instead
 from tol3d.report.distribution import NO_VALUES, values_label
 from tol3d.report.heading import position_of
 from tol3d.report.label import legible
@@ -45,13 +45,13 @@ def draw_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
 
     A band and lines: two bands would change places where the trials do not reach to ±3 sigma.
     """
-    unit, leading, stepped = measure.unit, measure.best_road, Stepped(measure)
+    unit, leading, stepped = measure.unit, measure.best_method, Stepped(measure)
     own, analytic = measure.curve_sample(leading), measure.curve_sample("analytic")
     if own is None:
         return
     x, mean, sigma = stepped.x, stepped(own.mean), stepped(own.sigma)
     word = "3D simulation" if leading == "geometric" else "analytic"
-    colour = ROAD_COLOURS[leading]
+    colour = METHOD_COLOURS[leading]
     marker = "." if measure.jumps else None  # from one position to the next: the line between them is no value
     axes.plot(x, mean, color=colour, linewidth=2, marker=marker, markersize=7, label=f"{word}, mean")
     low, high = mean - 3 * sigma, mean + 3 * sigma

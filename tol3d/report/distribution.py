@@ -1,4 +1,4 @@
-"""How a measure's values are distributed: histograms of both roads, limits, and the range of every column."""
+"""How a measure's values are distributed: histograms of both methods, limits, and the range of every column."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from tol3d.report.bars import Bars, bars_of
 from tol3d.report.canvas import (
     BLACK,
+    METHOD_COLOURS,
     OUTSIDE,
     PUBLISHED_COLOURS,
-    ROAD_COLOURS,
     say_instead,
 )
 from tol3d.report.column import Column, columns_of
@@ -48,30 +48,30 @@ def _passed(limit: float | None, farthest: float | None, sense: float) -> float 
 
 
 def samples_of(measure: MeasureSummary) -> list[DrawnSample]:
-    """Both roads' samples of a measure: the leading one filled, with its ends and limits, a stack-up's as outline."""
-    bars, leading = bars_of(measure), measure.best_road
+    """Both methods' samples of a measure: the leading one filled, with its ends and limits, a stack-up's as outline."""
+    bars, leading = bars_of(measure), measure.best_method
     if not bars:
         return []
     own, (lower, upper) = leading_column(measure), measure.limits
     filled = DrawnSample(
         label=None,
-        colour=ROAD_COLOURS[leading],
+        colour=METHOD_COLOURS[leading],
         bars=bars[leading],
         mean=own.value("mean"),
         ends=Ends.of(own, bounded=is_bounded(measure)),
         limits=(_passed(lower, own.value("sample_min"), -1.0), _passed(upper, own.value("sample_max"), 1.0)),
     )
-    beside = [DrawnSample(None, ROAD_COLOURS["analytic"], bars["analytic"], line="solid")]
+    beside = [DrawnSample(None, METHOD_COLOURS["analytic"], bars["analytic"], line="solid")]
     return [filled, *(beside if leading != "analytic" else [])]
 
 
 def leading_column(measure: MeasureSummary) -> Column:
-    """The column of the road by which a measure is shown."""
-    return next(column for column in columns_of(measure) if column.road == measure.best_road)
+    """The column of the method by which a measure is shown."""
+    return next(column for column in columns_of(measure) if column.method == measure.best_method)
 
 
 def draw_distribution(axes: Axes, measure: MeasureSummary) -> None:
-    """Both roads' histograms over each other, the closed form's normal curve, limits, mean and ends of the trials."""
+    """Both methods' histograms over each other, the closed form's normal curve, limits, mean and ends of the trials."""
     samples = samples_of(measure)
     if not samples:
         say_instead(axes, NO_VALUES, OUTSIDE)
@@ -176,10 +176,10 @@ def _mark_limits(axes: Axes, measure: MeasureSummary, span: tuple[float, float])
 
 
 def column_colours(columns: Sequence[Column]) -> dict[str, str]:
-    """A colour for each column by its heading: the roads have their own, published ones get the others in turn."""
-    published = dict.fromkeys(column.heading for column in columns if column.road == "published")
+    """A colour for each column by its heading: the methods have their own, published ones get the others in turn."""
+    published = dict.fromkeys(column.heading for column in columns if column.method == "published")
     colours = {name: PUBLISHED_COLOURS[k % len(PUBLISHED_COLOURS)] for k, name in enumerate(published)}
-    return colours | {c.heading: ROAD_COLOURS[c.road] for c in columns if c.road != "published"}
+    return colours | {c.heading: METHOD_COLOURS[c.method] for c in columns if c.method != "published"}
 
 
 def range_labels(columns: Sequence[Column]) -> list[str]:

@@ -34,7 +34,7 @@ class DrawnSample:
 
     Args:
         label: in the legend; None where it is named elsewhere.
-        colour: of its role: the road's, the run's, the state's.
+        colour: of its role: the method's, the run's, the state's.
         bars: its values, counted.
         line: "filled", or as the outline of its bars.
         mean: of its values.

@@ -38,7 +38,7 @@ def is_bounded(measure: MeasureSummary) -> bool:
 
     Below 0 that is of counts and ranges, else where trials end before: a range near 0, a sum of a few uniform laws.
     """
-    sample = measure.sample(measure.best_road)
+    sample = measure.sample(measure.best_method)
     if sample is None:
         return False
     known = (sample.mean, sample.sigma, sample.count, sample.p0_135, sample.p99_865)

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from tol3d.errors import InputError, RunError
 from tol3d.report.bars import draw_contributors, height_of_contributors
-from tol3d.report.canvas import BLACK, ROAD_COLOURS, label_angles, new_figure, plain_axes, title_axes
+from tol3d.report.canvas import BLACK, METHOD_COLOURS, label_angles, new_figure, plain_axes, title_axes
 from tol3d.report.column import columns_of
 from tol3d.report.compare import difference_of
 from tol3d.report.comparison_picture import DIFFERENCE_UNITS
@@ -73,7 +73,7 @@ class MeasureFigures:
         figure = new_figure(WIDTH, HEIGHT)
         axes = plain_axes(figure.add_subplot())
         bars = own.bars.times(factor)
-        axes.stairs(bars.counts, bars.edges, fill=True, color=ROAD_COLOURS["geometric"], alpha=0.6)
+        axes.stairs(bars.counts, bars.edges, fill=True, color=METHOD_COLOURS["geometric"], alpha=0.6)
         title_axes(
             axes, self.name, f"rms {factor * own.rms:.3g} {unit}, at most {factor * own.largest:.3g} {unit}", 8.0
         )
@@ -93,7 +93,7 @@ class MeasureFigures:
             (("mean", own.mean, own.mean_error), ("sigma", own.sigma, own.sigma_error))
         ):
             axes = plain_axes(figure.add_subplot(2, 1, row + 1))
-            colour = ROAD_COLOURS[self.summary.best_road]
+            colour = METHOD_COLOURS[self.summary.best_method]
             axes.fill_between(
                 own.counts, found - CONFIDENCE * error, found + CONFIDENCE * error, color=colour, alpha=0.2, linewidth=0
             )

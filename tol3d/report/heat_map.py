@@ -54,7 +54,7 @@ def heat_map_figure(summary: RunSummary) -> Figure:
     shares = np.array([[percents[name].get(contributor, np.nan) for name in names] for contributor in shown])
     rest = ranked[len(shown) :]
     others = [sum(percents[name].get(contributor, 0.0) for contributor in rest) for name in names]
-    head = [f"{summary.scene}   ·   share of the variance [%], {_roads(every)}"]
+    head = [f"{summary.scene}   ·   share of the variance [%], {_methods(every)}"]
     if len(names) < len(every):
         head.append(f"the {len(names)} worst of {len(every)} measures {WORST_FIRST}")
     if rest:
@@ -65,15 +65,15 @@ def heat_map_figure(summary: RunSummary) -> Figure:
 
 
 def percents_of(measure: MeasureSummary) -> Mapping[str, float]:
-    """Share of each contributor by the best road that knows it [%]."""
-    columns = [column for column in shares_of(measure) if column.road != "published"]
-    own = next((column for column in columns if column.road == measure.best_road), columns[0])
+    """Share of each contributor by the best method that knows it [%]."""
+    columns = [column for column in shares_of(measure) if column.method != "published"]
+    own = next((column for column in columns if column.method == measure.best_method), columns[0])
     return {name: share for name, share in own.percents.items() if share is not None}
 
 
-def _roads(measures: Mapping[str, MeasureSummary]) -> str:
-    roads = {measure.best_road for measure in measures.values()}
-    return "3D simulation" if roads == {"geometric"} else "analytic"
+def _methods(measures: Mapping[str, MeasureSummary]) -> str:
+    methods = {measure.best_method for measure in measures.values()}
+    return "3D simulation" if methods == {"geometric"} else "analytic"
 
 
 def matrix_figure(

@@ -11,11 +11,11 @@ from matplotlib.gridspec import SubplotSpec
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from tol3d.report.bars import NAME_SIZE, ROAD_WORDS, draw_contributors, height_of_contributors, labels_of
+from tol3d.report.bars import METHOD_WORDS, NAME_SIZE, draw_contributors, height_of_contributors, labels_of
 from tol3d.report.canvas import (
     BLACK,
+    METHOD_COLOURS,
     OUTSIDE,
-    ROAD_COLOURS,
     label_angles,
     new_figure,
     plain_axes,
@@ -176,12 +176,12 @@ def overview_figure(summary: RunSummary) -> Figure:
     measures = shown_run(summary).measures
     rows = -(-len(measures) // OVERVIEW_COLUMNS)
     figure = _headed(summary, OVERVIEW_HEIGHT * rows + 0.5)
-    roads = dict.fromkeys(measure.best_road for measure in measures.values())
+    methods = dict.fromkeys(measure.best_method for measure in measures.values())
     marks: list[Artist] = [
-        Patch(facecolor=ROAD_COLOURS[road], alpha=FILL_OPACITY, label=ROAD_WORDS[road]) for road in roads
+        Patch(facecolor=METHOD_COLOURS[method], alpha=FILL_OPACITY, label=METHOD_WORDS[method]) for method in methods
     ]
-    if "geometric" in roads:
-        marks.append(Line2D([], [], color=ROAD_COLOURS["analytic"], linewidth=2.0, label=ROAD_WORDS["analytic"]))
+    if "geometric" in methods:
+        marks.append(Line2D([], [], color=METHOD_COLOURS["analytic"], linewidth=2.0, label=METHOD_WORDS["analytic"]))
     marks.append(Line2D([], [], color=OUTSIDE, linewidth=2.0, label="limits"))
     figure.legend(handles=marks, loc="upper right", ncols=len(marks), fontsize=9, frameon=False)
     grid = figure.add_gridspec(rows, OVERVIEW_COLUMNS)
@@ -211,7 +211,7 @@ def _small_histogram(axes: Axes, name: str, measure: MeasureSummary) -> None:
 
 
 def _small_words(measure: MeasureSummary, leading: DrawnSample) -> str:
-    """Mean and ends of the leading road, and what is out of its limits."""
+    """Mean and ends of the leading method, and what is out of its limits."""
     words = ", ".join(f"{word} {short_text(value, measure.unit)}" for word, value in leading.known_ends)
     shares = measure.shares
     sides = zip(("below", "above"), (shares.below_limit_ppm, shares.above_limit_ppm), measure.limits, strict=True)
@@ -220,9 +220,9 @@ def _small_words(measure: MeasureSummary, leading: DrawnSample) -> str:
 
 
 def _small_curve(axes: Axes, name: str, measure: MeasureSummary) -> None:
-    colour, stepped = ROAD_COLOURS[measure.best_road], Stepped(measure)
+    colour, stepped = METHOD_COLOURS[measure.best_method], Stepped(measure)
     title_axes(axes, name, "mean and ±3 sigma", OVERVIEW_WORDS)
-    if own := measure.curve_sample(measure.best_road):
+    if own := measure.curve_sample(measure.best_method):
         mean, sigma = stepped(own.mean), stepped(own.sigma)
         axes.plot(stepped.x, mean, color=colour, linewidth=2)
         axes.fill_between(stepped.x, mean - 3 * sigma, mean + 3 * sigma, color=colour, alpha=0.28, linewidth=0)

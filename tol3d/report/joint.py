@@ -9,13 +9,13 @@ from tol3d.report.number import NOTHING, unsigned_zero
 from tol3d.report.page import Heading, PageItem, Row, Shown, Table, line, note, title
 from tol3d.runs.summary.joint import Correlations, Joint
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Road
+from tol3d.runs.summary.values import Method
 
 MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in correlations.csv
 NORMAL_95: Final = 1.959964  # sigma; a normal's 95 % lie within
 FISHER_FREEDOM: Final = 3  # trials that Fisher's artanh r takes
 YIELD_DECIMALS: Final = 2  # of a yield in %, more where less than a hundredth is lost
-HEADINGS: Final[Mapping[Road, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
+HEADINGS: Final[Mapping[Method, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
 Pair = tuple[int, int]
 
 
@@ -25,16 +25,16 @@ def joint_of(run: RunSummary) -> Joint | None:
 
 
 def yield_lines(run: RunSummary) -> list[PageItem]:
-    """The share of all trials that are within every limit, by the best road, and by the other one beside it."""
+    """The share of all trials that are within every limit, by the best method, and by the other one beside it."""
     joint = joint_of(run)
     if joint is None or not joint.yields:
         return []
-    own, analytic = joint.yields[run.best_road], joint.yields["analytic"]
+    own, analytic = joint.yields[run.best_method], joint.yields["analytic"]
     text = f"yield: {yield_text(own.yield_ppm)} of all trials are within all limits"
     if own.yield_ppm_95:
         low, high = map(yield_text, own.yield_ppm_95)
         text += f" ({low} to {high}, 95 % confidence)"
-    text += f"; analytic {yield_text(analytic.yield_ppm)}" if run.best_road != "analytic" else ""
+    text += f"; analytic {yield_text(analytic.yield_ppm)}" if run.best_method != "analytic" else ""
     others = {name: column.get("joint") for name, column in (run.published or {}).items()}
     known = {name: its["yields"].value("yield_ppm") for name, its in others.items() if its and "yields" in its}
     text += "".join(f"; {name} {yield_text(ppm)}" for name, ppm in known.items() if ppm is not None)
@@ -60,7 +60,7 @@ def correlation_blocks(run: RunSummary) -> list[PageItem]:
     joint = joint_of(run)
     if joint is None or not joint.correlations:
         return []
-    own = joint.correlations[run.best_road]
+    own = joint.correlations[run.best_method]
     beyond = sorted(_beyond_noise(own), key=lambda pair: -abs(own.r[pair[0]][pair[1]] or 0.0))
     if not beyond:
         return []
@@ -71,7 +71,7 @@ def correlation_blocks(run: RunSummary) -> list[PageItem]:
         "Pearson's r over the trials in which both have a value, where it is larger than 95 % of as many independent "
         "trials give without any correlation; all in correlations.csv"
     )
-    return [title("correlation of measures", shown), _table(joint, run.best_road, beyond[:MOST_PAIRS]), note(words)]
+    return [title("correlation of measures", shown), _table(joint, run.best_method, beyond[:MOST_PAIRS]), note(words)]
 
 
 def _beyond_noise(own: Correlations) -> Iterator[Pair]:
@@ -87,10 +87,10 @@ def _noise(count: int) -> float:
     return math.tanh(NORMAL_95 / math.sqrt(count - FISHER_FREEDOM)) if count > FISHER_FREEDOM else 1.0
 
 
-def _table(joint: Joint, best: Road, pairs: list[Pair]) -> Table:
-    """A row a pair: r of the best road, its interval where that is known, how many trials, and r of the other road."""
-    roads = joint.correlations or {}
-    own = roads[best]
+def _table(joint: Joint, best: Method, pairs: list[Pair]) -> Table:
+    """One row per pair: r of the best method, its interval if known, the number of trials, r of the other method."""
+    methods = joint.correlations or {}
+    own = methods[best]
     low, high = own.r_low_95, own.r_high_95
     headings = [Heading(HEADINGS[best], "bold")]
     headings += [Heading("95 % interval")] if low and high else []
@@ -101,7 +101,7 @@ def _table(joint: Joint, best: Road, pairs: list[Pair]) -> Table:
         cells: list[str] = [_r_cell(own.r[i][j])]
         cells += [f"{_r_text(low[i][j])} to {_r_text(high[i][j])}"] if low and high else []
         cells += [Shown(str(own.trials[i][j]), own.trials[i][j])]
-        cells += [_r_cell(roads["analytic"].r[i][j])] if best != "analytic" else []
+        cells += [_r_cell(methods["analytic"].r[i][j])] if best != "analytic" else []
         rows.append(Row(f"{joint.correlated[i]} · {joint.correlated[j]}", cells))
     return Table("measures", headings, rows, repeated=1)
 
@@ -119,14 +119,15 @@ def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[PageItem]:
     rows = []
     for label, run in runs:
         joint = joint_of(run)
-        for index, (road, own) in enumerate(((joint.yields if joint else None) or {}).items()):
+        for index, (method, own) in enumerate(((joint.yields if joint else None) or {}).items()):
             low, high = own.yield_ppm_95 or (None, None)
-            cells = [HEADINGS[road], Shown(str(own.trials), own.trials), *map(_yield_cell, (own.yield_ppm, low, high))]
+            counted = Shown(str(own.trials), own.trials)
+            cells = [HEADINGS[method], counted, *map(_yield_cell, (own.yield_ppm, low, high))]
             measures = str(len(joint.limited)) if joint else ""
             rows.append(Row("" if index else label, [*cells, measures], unit="%"))
     if not rows:
         return []
-    headings = [Heading("road", words=True), *map(Heading, ("trials", "yield", "from", "to", "measures with limits"))]
+    headings = [Heading("method", words=True), *map(Heading, ("trials", "yield", "from", "to", "measures with limits"))]
     words = "yield: share of all trials within the limits of all measures that have any; from, to: 95 % confidence"
     return [title("all limits together"), Table("run", headings, rows, repeated=1), note(words)]
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
-from tol3d.report.column import Column, Road, columns_of, contributor_columns, ranked_contributors, seated_text
+from tol3d.report.column import Column, Method, columns_of, contributor_columns, ranked_contributors, seated_text
 from tol3d.report.heading import MOST_CONTRIBUTORS
 from tol3d.report.number import (
     NOTHING,
@@ -20,7 +20,7 @@ from tol3d.report.published import curve_columns, published_cell, published_coun
 from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import CurveRoads, Roads
+from tol3d.runs.summary.sample import CurveMethods, Methods
 from tol3d.system.outcome import SEATED
 
 ROWS = {
@@ -40,18 +40,18 @@ SIDES = ("below", "above")
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
 NOT_ATTRIBUTED = "not attributed"
-ATTRIBUTING: Set[Road] = frozenset(("analytic", "geometric"))
+ATTRIBUTING: Set[Method] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
-SHARE_HEADINGS: Mapping[Road, str] = {"analytic": "analytic", "geometric": "3D simulation"}
+SHARE_HEADINGS: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 
 
 def _headings(columns: Sequence[Column]) -> list[Heading]:
     styles = {"geometric": "bold", "published": "green"}
-    return [Heading(column.heading, styles.get(column.road, "")) for column in columns]
+    return [Heading(column.heading, styles.get(column.method, "")) for column in columns]
 
 
 def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
-    """Statistics of one scalar measure, one column a road, the published ones last; `further` rows below."""
+    """Statistics of one scalar measure, one column a method, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
     rows = [*_failure_rows(run, measure, columns)]
     rows += [_statistic(measure, columns, key, label) for key, label in ROWS.items()]
@@ -82,9 +82,9 @@ def _statistic(measure: MeasureSummary, columns: Sequence[Column], key: str, lab
     return Row(f"{label}{spread.words}", cells, unit=spread.unit)
 
 
-def _build_cell(column: Column, key: str, build: Roads, unit: str) -> Shown:
-    """Of one build: by both roads, and what others say of it."""
-    value = column.value(key) if column.road == "published" else build.value(column.road)
+def _build_cell(column: Column, key: str, build: Methods, unit: str) -> Shown:
+    """Of one build: by both methods, and what others say of it."""
+    value = column.value(key) if column.method == "published" else build.value(column.method)
     return published_cell(column, value, unit)
 
 
@@ -98,7 +98,7 @@ def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Co
     if not seated_text(measure) and not any(others):
         return
     own = {"geometric": measure.status, "analytic": {SEATED: measure.trials}}
-    counts = [its or own.get(column.road, {}) for its, column in zip(others, columns, strict=True)]
+    counts = [its or own.get(column.method, {}) for its, column in zip(others, columns, strict=True)]
     for status in dict.fromkeys(status for each in (measure.status, *others) for status in each):
         if measure.status.get(status) or status == SEATED or any(status in its for its in others):
             cells = [str(each.get(status, 0)) if each else NOTHING for each in counts]
@@ -120,7 +120,7 @@ def limit_rows(measure: MeasureSummary) -> dict[str, str]:
 def _ppm(column: Column, key: str, measure: MeasureSummary) -> float | None:
     """Counted, or for the closed form that of a normal measure."""
     form = measure.analytic_closed_form
-    if column.road != "closed form" or form is None:
+    if column.method != "closed form" or form is None:
         return column.value(key)
     mean, sigma, lower, upper = form.mean, form.sigma, *measure.limits
     if not sigma:
@@ -143,14 +143,15 @@ def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Itera
 def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit: str) -> Iterator[Row]:
     """What the system's presenter adds."""
     for own in further:
-        values = [own.values.get(column.heading if column.road == "published" else column.road) for column in columns]
+        keys = (column.heading if column.method == "published" else column.method for column in columns)
+        values = [own.values.get(key) for key in keys]
         yield Row(own.label, [value_cell(value, unit) for value in values], unit=unit)
 
 
 def contributors_table(measure: MeasureSummary) -> Table:
     """Shares of the variance, the largest first, of many the sum of the rest; of the 3D simulation with their error."""
     shares = [
-        replace(column, heading=SHARE_HEADINGS.get(column.road, column.heading))
+        replace(column, heading=SHARE_HEADINGS.get(column.method, column.heading))
         for column in contributor_columns(measure)
     ]
     errors = {share.name: share.geometric_percent_se for share in measure.contributors}
@@ -169,7 +170,7 @@ def contributors_table(measure: MeasureSummary) -> Table:
 def _share(measure: MeasureSummary, column: Column, name: str, error: float | None) -> Shown:
     if not _varies(measure, column):
         return percent_cell(None)
-    return percent_cell(column.percents.get(name), error if column.road == "geometric" else None)
+    return percent_cell(column.percents.get(name), error if column.method == "geometric" else None)
 
 
 def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> float | None:
@@ -179,35 +180,35 @@ def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> fl
 
 
 def _varies(measure: MeasureSummary, column: Column) -> bool:
-    """Whether there is a variance to share: one of our roads finds none where all that acts is constant."""
-    own = measure.sample(column.road) if column.road in ("analytic", "geometric") else None
+    """Whether there is a variance to share: one of our methods finds none where all that acts is constant."""
+    own = measure.sample(column.method) if column.method in ("analytic", "geometric") else None
     return own is None or own.sigma != 0.0
 
 
 def not_attributed(measure: MeasureSummary) -> list[float | None]:
-    """What each road leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
+    """What each method leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
     left = [
         100 - sum(share or 0.0 for share in column.percents.values())
-        if column.road in ATTRIBUTING and _varies(measure, column)
+        if column.method in ATTRIBUTING and _varies(measure, column)
         else None
         for column in contributor_columns(measure)
     ]
     return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
 
 
-def curve_table(measure: MeasureSummary, curve: CurveRoads) -> Table:
+def curve_table(measure: MeasureSummary, curve: CurveMethods) -> Table:
     """A curve measure at some of its positions."""
     words = {"analytic": "analytic", "geometric": "3D"}
     columns: list[tuple[str, str, Sequence[float | None]]] = [
-        (f"{words[road]} {key}", road, getattr(own, key))
-        for road, own in curve.by_road.items()
+        (f"{words[method]} {key}", method, getattr(own, key))
+        for method, own in curve.by_method.items()
         for key in ("mean", "sigma")
     ]
-    leading, own = [*curve.by_road.items()][-1]
+    leading, own = [*curve.by_method.items()][-1]
     columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
     columns += [(text, "published", values) for text, values in curve_columns(measure)]
     styles = {"geometric": "bold", "published": "green"}
-    headings = [Heading(text, styles.get(road, "")) for text, road, _ in columns]
+    headings = [Heading(text, styles.get(method, "")) for text, method, _ in columns]
     positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
     longest = max(map(len, positions), default=0)
     rows = [

@@ -49,7 +49,7 @@ class FurtherRow:
 
     Args:
         label: what it is.
-        values: in the measure's unit, by road ("analytic", "geometric") and by who published one.
+        values: in the measure's unit, by method ("analytic", "geometric") and by who published one.
     """
 
     label: str

@@ -20,7 +20,7 @@ from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.joint import Joint
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Road, Section, key_of
+from tol3d.runs.summary.values import Method, Section, key_of
 
 DIMENSIONED: Final[Mapping[str, str]] = {
     "mean_se": "standard error of the mean",
@@ -57,7 +57,7 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         columns: of the table.
         shown: keys that have a row.
     """
-    others = [column for column in columns if column.road == "published"]
+    others = [column for column in columns if column.method == "published"]
     spread = Spread.of(measure)
 
     def is_asked(key: str) -> bool:
@@ -76,11 +76,11 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
             yield Row(label, [share_cell(column.value(key)) for column in columns], unit="ppm")
     for key, label in SHARES.items():
         bounds = [_pair(column.values, f"{key}_95") for column in columns]
-        if any(own for own, column in zip(bounds, columns, strict=True) if column.road == "published"):
+        if any(own for own, column in zip(bounds, columns, strict=True) if column.method == "published"):
             yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
     for key, label in (("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")):
         ranges = [_pair(column.values, key) for column in columns]
-        if any(own for own, column in zip(ranges, columns, strict=True) if column.road == "published"):
+        if any(own for own, column in zip(ranges, columns, strict=True) if column.method == "published"):
             by = spread if key == "sigma_95" else Spread(measure.unit)
             texts = [" to ".join(value_text(by.times(end), by.unit) for end in own) or NOTHING for own in ranges]
             yield Row(f"{label}{by.words}", texts, unit=by.unit)
@@ -94,7 +94,7 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
 
 def published_counts(column: Column) -> Mapping[str, int]:
     """How many trials of somebody's ended how; nothing where he does not say."""
-    if column.road != "published" or column.values is None:
+    if column.method != "published" or column.values is None:
         return {}
     found: Mapping[str, int] = column.values.get("status") or {}
     return found
@@ -110,11 +110,11 @@ def _pair(values: Section | None, key: str) -> Sequence[Any]:
 
 def published_cell(column: Column, value: float | None, unit: str) -> Shown:
     """A value, with no more digits than it came with where somebody else gave it."""
-    return Shown((given_text if column.road == "published" else value_text)(value, unit), value)
+    return Shown((given_text if column.method == "published" else value_text)(value, unit), value)
 
 
 def published_notes(measure: MeasureSummary) -> Iterator[str]:
-    """What others say of their numbers, of their own two roads, and of whole curves."""
+    """What others say of their numbers, of their own two methods, and of whole curves."""
     for name, values in measure.published.items():
         if agreement := values.get("agreement"):
             known = {word: agreement.value(key) for key, word in AGREEMENT.items() if agreement.value(key) is not None}
@@ -165,7 +165,7 @@ def spectrum_columns(measure: MeasureSummary, orders: Sequence[float]) -> list[t
     ]
 
 
-HEADINGS: Final[Mapping[Road, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
+HEADINGS: Final[Mapping[Method, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
 MEANING: Final = "by the keys of summary.json; ours beside it, where there is one"
 
 Place = tuple[str, ...]
@@ -179,46 +179,46 @@ def published_blocks(run: RunSummary) -> list[PageItem]:
     if not places:
         return []
     units = {place: unit for own in columns.values() for place, unit in _units(own, ())}
-    roads: list[Road] = [*dict.fromkeys(("analytic", run.best_road))]
-    headings = [Heading(HEADINGS[road], "bold" if road == "geometric" else "") for road in roads]
+    methods: list[Method] = [*dict.fromkeys(("analytic", run.best_method))]
+    headings = [Heading(HEADINGS[method], "bold" if method == "geometric" else "") for method in methods]
     headings += [Heading(name, "green") for name in given]
     rows = []
     for place in places:
         unit = units.get(place, "")
-        cells = [_cell(found_at(run, place, road), unit, value_text) for road in roads]
+        cells = [_cell(found_at(run, place, method), unit, value_text) for method in methods]
         cells += [_cell(own.get(place), unit, given_text) for own in given.values()]
         rows.append(Row(" · ".join(place) + _unit_words(unit), cells, unit=unit))
     notes = [note(f"{name}: {words}") for name, own in columns.items() for words in _descriptions(own)]
     return [title("published beside measures"), Table("", headings, rows), note(MEANING), *notes]
 
 
-def found_at(own: Any, place: Sequence[str], road: Road) -> Any:
+def found_at(own: Any, place: Sequence[str], method: Method) -> Any:
     """Our number at a published place; None where there is none.
 
-    Published keys are the summary's, roads left out; an entry of a list is found by its first key, which names it.
+    Published keys are the summary's, methods left out; an entry of a list is found by its first key, which names it.
 
     Args:
         own: a summary, or what is in it.
         place: keys below that.
-        road: which one is entered where there are both.
+        method: which one is entered where there are both.
     """
     if isinstance(own, Joint) and place[0] == "correlations":
-        return _correlation(own, place[1:], road)
+        return _correlation(own, place[1:], method)
     if isinstance(own, list) and place:
         named = (each for each in own if isinstance(each, Section) and each.items()[0][1] == place[0])
-        return found_at(next(named, None), place[1:], road)
+        return found_at(next(named, None), place[1:], method)
     if isinstance(own, Section | Mapping):
         steps = [(place[0], place[1:])] if place else []
-        steps += [(road, place), ("roads", place)]
-        found = (found_at(own[key], rest, road) for key, rest in steps if key in own.keys())  # noqa: SIM118
+        steps += [(method, place), ("methods", place)]
+        found = (found_at(own[key], rest, method) for key, rest in steps if key in own.keys())  # noqa: SIM118
         return next((value for value in found if value is not None), None)
     return own if not place and (_is_number(own) or _is_range(own)) else None
 
 
-def _correlation(joint: Joint, place: Sequence[str], road: Road) -> float | None:
+def _correlation(joint: Joint, place: Sequence[str], method: Method) -> float | None:
     """Of two measures by name: r, or what a key behind them names."""
     first, second, key = (*place, "r")[:3]
-    names, own = joint.correlated, (joint.correlations or {}).get(road)
+    names, own = joint.correlated, (joint.correlations or {}).get(method)
     matrix = own.get(key) if own else None
     if matrix is None or first not in names or second not in names:
         return None

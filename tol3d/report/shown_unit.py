@@ -34,7 +34,7 @@ LENGTHS: Final = frozenset(
 )
 """Keys of a measure's summary, and of sections in it, whose numbers are in its unit."""
 BUILDS: Final = frozenset(("nominal", "mean_build"))
-"""Keys of single builds: numbers of either road, or one that somebody published."""
+"""Keys of single builds: numbers of either method, or one that somebody published."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def _scaled(own: T) -> T:
 def _of_key(name: str, value: Any) -> Any:
     if isinstance(value, Section):
         if name in BUILDS:
-            return value.model_copy(update={road: _length(own) for road, own in vars(value).items()})
+            return value.model_copy(update={method: _length(own) for method, own in vars(value).items()})
         return _scaled(value)
     if isinstance(value, Mapping):
         lengths = name in LENGTHS

@@ -6,16 +6,16 @@ from tol3d.report.number import UNIT_SIGNS, value_cell
 from tol3d.report.page import Heading, PageItem, Row, Table, note
 from tol3d.report.published import spectrum_columns
 from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.sample import CurveRoads, SpectrumSample
-from tol3d.runs.summary.values import Road
+from tol3d.runs.summary.sample import CurveMethods, SpectrumSample
+from tol3d.runs.summary.values import Method
 
 ORDER_ROWS = 12  # orders that are printed; summary.json has them all
 MEANING = "amplitudes of each trial's curve, half of peak to peak; order: cycles per turn"
 
 
-def spectrum_blocks(measure: MeasureSummary, curve: CurveRoads) -> Iterator[PageItem]:
+def spectrum_blocks(measure: MeasureSummary, curve: CurveMethods) -> Iterator[PageItem]:
     """The table and its notes; nothing of a curve without a spectrum."""
-    found = {road: own.spectrum for road, own in curve.by_road.items() if own.spectrum is not None}
+    found = {method: own.spectrum for method, own in curve.by_method.items() if own.spectrum is not None}
     if not found:
         return
     yield _table(measure, found)
@@ -24,12 +24,12 @@ def spectrum_blocks(measure: MeasureSummary, curve: CurveRoads) -> Iterator[Page
     yield note(f"{MEANING}; {left_out} smaller ones in summary.json" if left_out else MEANING)
 
 
-def _table(measure: MeasureSummary, found: Mapping[Road, SpectrumSample]) -> Table:
+def _table(measure: MeasureSummary, found: Mapping[Method, SpectrumSample]) -> Table:
     words = {"analytic": "analytic", "geometric": "3D"}
     leading = [*found.values()][-1]
-    columns = [(f"{words[road]} {word}", road, values) for road, own in found.items() for word, values in _values(own)]
+    columns = [(f"{words[key]} {word}", key, values) for key, own in found.items() for word, values in _values(own)]
     others = spectrum_columns(measure, leading.order)
-    headings = [Heading(text, "bold" if road == "geometric" else "") for text, road, _ in columns]
+    headings = [Heading(text, "bold" if method == "geometric" else "") for text, method, _ in columns]
     headings += [Heading(text, "green") for text, _ in others]
     every = [*(values for _, _, values in columns), *(values for _, values in others)]
     rows = [

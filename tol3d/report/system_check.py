@@ -13,7 +13,7 @@ from tol3d.report.worst_found import WORST_FOUND, worst_text
 from tol3d.statistics.limits import normal_share
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.study.worst_cases import worst_cases
 from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
@@ -35,18 +35,18 @@ BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
 
 
 def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> list[PageItem]:
-    """Contributors, measures and first-order coefficients by both roads, of any kind of system.
+    """Contributors, measures and first-order coefficients by both methods, of any kind of system.
 
     Args:
         simulation: of the scene.
         long_in_mm: names of measures whose values are shown in mm where they are nominally over 1 mm.
     """
     system, study = simulation.system, simulation.study
-    road = road_of(simulation, materials_of(simulation))
-    headings = {"analytic": "analytic"} | ({"geometric": study.engine} if road else {})
+    method = method_of(simulation, materials_of(simulation))
+    headings = {"analytic": "analytic"} | ({"geometric": study.engine} if method else {})
     found: dict[str, dict[str, FirstOrder]] = {measure.name: {} for measure in system.measures}
-    found |= first_orders(simulation, road, [measure for measure in system.measures if measure.take != "curve"])
-    worst = worst_cases(simulation, road, [own for own in system.measures if found[own.name]])
+    found |= first_orders(simulation, method, [measure for measure in system.measures if measure.take != "curve"])
+    worst = worst_cases(simulation, method, [own for own in system.measures if found[own.name]])
     units = {
         name: shown_unit(own.unit, _nominal(found[name])) if name in long_in_mm else own.unit
         for name, own in ((measure.name, measure) for measure in system.measures)
@@ -81,8 +81,8 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
         blank = [""] * (len(MEASURE_WORDS) + 2 * len(headings) + 1)
         further = Further(Row(f"and {len(left)} more", blank, "dim"), lambda: rows(left))
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
-    several = any(effect.each > 1 for own in found.values() for road in own.values() for effect in road.effects)
-    searched = any(own is not None for by_road in worst.values() for own in by_road.values())
+    several = any(effect.each > 1 for own in found.values() for method in own.values() for effect in method.effects)
+    searched = any(own is not None for by_method in worst.values() for own in by_method.values())
     texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []), *([WORST_FOUND] if searched else []))
     notes = [note(text) for text in texts] if tables else []
     numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
@@ -102,9 +102,9 @@ def _worst(
     return ranked[:MOST_MEASURES], ranked[MOST_MEASURES:]
 
 
-def _badness(measure: Measure, roads: Sequence[FirstOrder]) -> tuple[float, float]:
-    """A key that sorts the worst first, by the last road that knows its sigma."""
-    known = [own for own in roads if math.isfinite(own.mean) and math.isfinite(own.sigma) and own.sigma > 0.0]
+def _badness(measure: Measure, methods: Sequence[FirstOrder]) -> tuple[float, float]:
+    """A key that sorts the worst first, by the last method that knows its sigma."""
+    known = [own for own in methods if math.isfinite(own.mean) and math.isfinite(own.sigma) and own.sigma > 0.0]
     if not known:
         return badness(None, None)
     own, per = known[-1], measure.per_internal
@@ -115,7 +115,7 @@ def _badness(measure: Measure, roads: Sequence[FirstOrder]) -> tuple[float, floa
 
 
 def _nominal(found: Mapping[str, FirstOrder]) -> float | None:
-    """The nominal value by the first road that has one."""
+    """The nominal value by the first method that has one."""
     return next((own.nominal for own in found.values() if not math.isnan(own.nominal)), None)
 
 
@@ -153,16 +153,16 @@ def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
 def _measure_row(
     measure: Measure, shown: str, kind: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
 ) -> Row:
-    """What a measure is, and its nominal and mean builds by each road."""
-    values = [_value(measure, getattr(found.get(road), build, None), shown)
-              for build in ("nominal", "mean") for road in headings]  # fmt: skip
+    """What a measure is, and its nominal and mean builds by each method."""
+    values = [_value(measure, getattr(found.get(method), build, None), shown)
+              for build in ("nominal", "mean") for method in headings]  # fmt: skip
     return Row(
         measure.name, (kind, _limits(measure, shown), *values, "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown])
     )
 
 
 def _outside(measure: Measure, unit: str, found: Mapping[str, FirstOrder]) -> Iterator[str]:
-    """A mean build out of a measure's limits, by the first road that finds it so; its nominal value, if that is too."""
+    """A mean build out of a measure's limits, by the first method that finds it so; its nominal value, if out too."""
     for own in found.values():
         if _is_outside(measure, own.mean):
             words, value = ("nominal", own.nominal) if _is_outside(measure, own.nominal) else ("mean build", own.mean)
@@ -201,13 +201,13 @@ def _coefficients(
     worst: Mapping[str, str],
 ) -> list[PageItem]:
     """Changes by each deviation in the measure's own unit; ends in the one in which it is shown."""
-    by_road = [own.effects for own in found.values()]
-    wholes = [(sum(own.variance for own in road), sum(own.reach for own in road)) for road in by_road]
-    every = list(zip(*by_road, strict=True))
+    by_method = [own.effects for own in found.values()]
+    wholes = [(sum(own.variance for own in method), sum(own.reach for own in method)) for method in by_method]
+    every = list(zip(*by_method, strict=True))
     sizes = {k: effects[-1].variance for k, effects in enumerate(every) if not math.isnan(effects[-1].variance)}
 
     def shares(parts: Sequence[tuple[float, float]]) -> list[str]:
-        """Of variances and reaches by road: in percent of the whole."""
+        """Of variances and reaches by method: in percent of the whole."""
         kinds = range(2) if measure.adds_up else ()
         return [
             _number(_percent(part[k], whole[k]), ".1f")
@@ -223,14 +223,15 @@ def _coefficients(
     shown = largest(range(len(every)), sizes)
     left, further = sorted({*range(len(every))} - {*shown}), None
     if left:
-        parts = [(sum(road[k].variance for k in left), sum(road[k].reach for k in left)) for road in by_road]
-        cells = (*[""] * (1 + len(by_road)), *shares(parts))
+        parts = [(sum(method[k].variance for k in left), sum(method[k].reach for k in left)) for method in by_method]
+        cells = (*[""] * (1 + len(by_method)), *shares(parts))
         further = Further(Row(f"and {len(left)} more", cells, "dim"), lambda: [*map(row, left)])
     words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
     columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
     table = Table("", [Heading("unit"), *columns], [*map(row, shown)], further=further)
     below = [] if measure.adds_up else [NO_SUM]
-    below += [text for road, own in found.items() if (text := _sums(measure, unit, headings[road], own, worst[road]))]
+    sums = (_sums(measure, unit, headings[method], own, worst[method]) for method, own in found.items())
+    below += filter(None, sums)
     return [*titled(f"{measure.name}: change by each deviation", table), *map(note, below)]
 
 

@@ -28,7 +28,7 @@ from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.sample import CurveRoads, Sample
+from tol3d.runs.summary.sample import CurveMethods, Sample
 from tol3d.system.outcome import SEATED
 
 NAMED = 3  # contributors of one reason
@@ -78,7 +78,7 @@ def _of_first_order(explanation: Explanation) -> str:
 def _of_second_order(explanation: Explanation, unit: str) -> str:
     rms = explanation.second_order_rms
     if unit in COUNTED:
-        return "what is near a bound one road counts and the other does not"
+        return "what is near a bound one method counts and the other does not"
     if rms is None:
         return "of what order the rest is cannot be told, for nominal builds do not seat"
     named = ", ".join(explanation.second_order_of)
@@ -146,7 +146,7 @@ def run_report(
     presenter: str | None = None,
     elapsed: Elapsed | None = None,
 ) -> Page:
-    """A run as tables: measures, contributors, how the roads agree, what failed, the verdict, warnings.
+    """A run as tables: measures, contributors, how the methods agree, what failed, the verdict, warnings.
 
     Args:
         run: what it found.
@@ -231,7 +231,7 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
     if agreement and agreement.compared:
         yield from agreement_lines(agreement, unit, measure.chord_words(chords) if chords else "")
     yield from _witness_notes(name, measure, run)
-    if own := measure.sample(measure.best_road):
+    if own := measure.sample(measure.best_method):
         yield from _sampling_notes(measure, own, run)
     yield from published_notes(measure)
 
@@ -279,7 +279,7 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
     yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its triangles)"
 
 
-def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
+def _curve_notes(measure: MeasureSummary, curve: CurveMethods) -> Iterator[str]:
     """How many positions are left out, and the share of the trials that is out of a limit anywhere on its curve."""
     shown, count = len(shown_positions(measure)), len(measure.position_deg or ())
     if shown < count:
@@ -290,8 +290,8 @@ def _curve_notes(measure: MeasureSummary, curve: CurveRoads) -> Iterator[str]:
         if limit is not None:
             given = limit_text(limit, measure.unit)
             yield f"anywhere {word} {given}, of all trials: " + ", ".join(
-                f"{'3D' if road == 'geometric' else road} {share_text(own.value(f'{word}_limit_ppm'))}"
-                for road, own in curve.by_road.items()
+                f"{'3D' if method == 'geometric' else method} {share_text(own.value(f'{word}_limit_ppm'))}"
+                for method, own in curve.by_method.items()
             )
 
 

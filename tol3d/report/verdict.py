@@ -123,14 +123,14 @@ def ends_of(measure: MeasureSummary) -> tuple[float | None, float | None, float 
 
 
 def _ends(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:
-    own = next(column for column in columns_of(measure) if column.road == measure.best_road)
+    own = next(column for column in columns_of(measure) if column.method == measure.best_method)
     ends = Ends.of(own, bounded=is_bounded(measure))
     return ends.low, own.value("mean"), ends.high
 
 
 def _curve_ends(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:
     """The lowest of mean − 3 sigma and the highest of mean + 3 sigma over a curve's positions; it has no one mean."""
-    own = measure.curve_sample(measure.best_road)
+    own = measure.curve_sample(measure.best_method)
     pairs = zip(own.mean, own.sigma, strict=True) if own else ()
     known = [(m, s) for m, s in pairs if m is not None and s is not None]
     if not known:
@@ -180,7 +180,7 @@ def _ppk_by(measure: MeasureSummary) -> str:
 def _mostly(measure: MeasureSummary) -> str:
     """The contributor with the largest share of the variance."""
     columns = shares_of(measure) if measure.take != "curve" else []
-    leading = next((column for column in columns if column.road == measure.best_road), None)
+    leading = next((column for column in columns if column.method == measure.best_method), None)
     if leading is None:
         return NOTHING
     name = ranked_contributors(measure)[0]

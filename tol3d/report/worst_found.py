@@ -5,7 +5,7 @@ from typing import Final
 from tol3d.report.number import NOTHING, UM_PER_MM, measured_text
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.study.simulation import Simulation
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.study.worst_case import WorstBuild, WorstCase
 from tol3d.study.worst_cases import worst_cases
 from tol3d.system.measure import Measure
@@ -29,11 +29,11 @@ def worst_text(simulation: Simulation, measure: Measure, unit: str, found: Worst
 
 
 def worst_blocks(simulation: Simulation) -> list[PageItem]:
-    """Worst cases of all measures of one number as a table, by each road; nothing where none was looked for."""
-    road = road_of(simulation, materials_of(simulation))
+    """Worst cases of all measures of one number as a table, by each method; nothing where none was looked for."""
+    method = method_of(simulation, materials_of(simulation))
     measures = [own for own in simulation.system.measures if own.take != "curve"]
-    found = worst_cases(simulation, road, measures)
-    headings = {"analytic": "analytic"} | ({"geometric": simulation.study.engine} if road else {})
+    found = worst_cases(simulation, method, measures)
+    headings = {"analytic": "analytic"} | ({"geometric": simulation.study.engine} if method else {})
     rows = [
         Row(
             own.name,

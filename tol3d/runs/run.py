@@ -148,8 +148,8 @@ class Run:
 
     def _width_of(self, column: str) -> int:
         """How many positions a column has: 1, or those of a curve."""
-        road, _, name = column.partition(":")
-        measure = self.found.measures.get(name) if road in ("analytic", "geometric") else None
+        method, _, name = column.partition(":")
+        measure = self.found.measures.get(name) if method in ("analytic", "geometric") else None
         return len(measure.position_deg or ()) if measure and measure.take == "curve" else 1
 
     @cached_property
@@ -165,7 +165,7 @@ class Run:
 
     def _columns_in(self, blocks: BlockFiles) -> tuple[str, ...]:
         """Names of the columns of the first block, which has every measure of the summary."""
-        needed = (f"{road}:{name}" for name in self.found.measures for road in self.found.roads)
+        needed = (f"{method}:{name}" for name in self.found.measures for method in self.found.methods)
         known = blocks.column_names
         if missing := next((name for name in needed if name not in known), None):
             raise RunError(f"{blocks.folder}: no column {missing!r}, which the summary names; {MENDED}")

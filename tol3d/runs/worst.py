@@ -62,10 +62,10 @@ def worst_trial(run: KeptTrials, measure: str | None = None, *, seated_only: boo
     measures = run.found.measures
     if measure is not None and measure not in measures:
         raise RunError(f"{run.path}: no measure {measure!r}; there are: {', '.join(measures)}")
-    road = run.found.best_road
+    method = run.found.best_method
     limited = {name: own for name, own in measures.items() if own.has_limits}
     judged = {measure: measures[measure]} if measure else limited or dict([*measures.items()][:1])
-    least = np.min([_margin(run, road, name, own) for name, own in judged.items()], axis=0)
+    least = np.min([_margin(run, method, name, own) for name, own in judged.items()], axis=0)
     if seated_only:
         least = np.where(_seated(run), least, np.inf)
     return int(np.argmin(least))
@@ -79,11 +79,11 @@ def _seated(run: KeptTrials) -> NDArray[np.bool_]:
     return seated
 
 
-def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> Array:
+def _margin(run: KeptTrials, method: str, name: str, measure: MeasureSummary) -> Array:
     """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if lacking."""
-    wanted = (value_column(road, name), status_column(name))
+    wanted = (value_column(method, name), status_column(name))
     columns = run.columns(*(column for column in wanted if column in run.column_names))
-    found = outcome_of(columns, road, name, run.found.lacking)
+    found = outcome_of(columns, method, name, run.found.lacking)
     values = found.values.reshape(run.trials, -1)
     lower, upper = measure.limits
     below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
@@ -95,12 +95,12 @@ def _margin(run: KeptTrials, road: str, name: str, measure: MeasureSummary) -> A
     spread = (float(np.nanstd(margin)) if np.isfinite(margin).any() else 1.0) or 1.0
     margin = np.where(np.isnan(margin), np.inf, margin / spread)
     if found.lacking is not None:
-        margin[found.lacking] = LACKS_BY + _overlaps(run, road, name)[found.lacking] / spread
+        margin[found.lacking] = LACKS_BY + _overlaps(run, method, name)[found.lacking] / spread
     return margin
 
 
-def _overlaps(run: KeptTrials, road: str, name: str) -> Array:
+def _overlaps(run: KeptTrials, method: str, name: str) -> Array:
     """The smallest value of each trial (trials,); below all where an overlap is too deep to measure."""
-    column = value_column(road, name)
+    column = value_column(method, name)
     smallest = np.asarray(run.columns(column)[column], dtype=np.float64).reshape(run.trials, -1).min(axis=1)
     return np.where(np.isnan(smallest), LACKS_BY, smallest)

@@ -10,7 +10,7 @@ from tol3d.units import shown
 
 LONGEST_NAME = 80  # characters; names become columns of tables and headings of reports
 LONGEST_REMARK = 2000  # characters; a page
-FORBIDDEN = "/\\:"  # they would make paths, and mark the road in the columns of a result
+FORBIDDEN = "/\\:"  # they would make paths, and mark the method in the columns of a result
 INVISIBLE = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # Unicode categories: control, format, surrogates, line and paragraph ends
 COMPONENT_ENDINGS = (".x", ".y")  # columns of a result end so where a contributor has two components
 

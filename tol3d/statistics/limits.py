@@ -226,7 +226,7 @@ class Agreement:
     """Differences of two columns over the same trials, in their unit.
 
     Args:
-        count: trials in which both roads gave a number.
+        count: trials in which both methods gave a number.
         skipped: trials in which one or both gave NaN.
         max_abs: largest |difference|, 0 when there are none.
         total, total_squares: sums of the differences and of their squares.

@@ -258,7 +258,7 @@ class Modes:
 
 
 def factorised(correlation: Array) -> Modes:
-    """Modes of a matrix (rows, rows); measures of the same regressors on both roads have the same one."""
+    """Modes of a matrix (rows, rows); measures of the same regressors on both methods have the same one."""
     return _modes(np.ascontiguousarray(correlation).tobytes(), len(correlation))
 
 

@@ -22,7 +22,7 @@ def block_trials(simulation: Simulation) -> int:
 
 
 def _in_time(simulation: Simulation) -> list[int]:
-    most = simulation.road.block_contacts
+    most = simulation.method.block_contacts
     return [] if most is None else [_tidy(most / max(contacts_of(simulation), 1))]
 
 
@@ -33,7 +33,7 @@ def _tidy(trials: float) -> int:
 def _most(simulation: Simulation) -> int:
     if not simulation.study.until:
         return BLOCK_TRIALS
-    return AUTO_BLOCK_TRIALS if simulation.road.threads else AUTO_SLOW_BLOCK_TRIALS
+    return AUTO_BLOCK_TRIALS if simulation.method.threads else AUTO_SLOW_BLOCK_TRIALS
 
 
 def contacts_of(simulation: Simulation) -> int:

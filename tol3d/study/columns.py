@@ -1,4 +1,4 @@
-"""Trials to columns, by both roads: what every worker and every replay runs.
+"""Trials to columns, by both methods: what every worker and every replay runs.
 
 Columns are in the user's units (um, mm, mrad, K, deg, arcmin), trial on axis 0; a curve has positions on axis 1.
 """
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from tol3d.study.evaluation import Asked, evaluations
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers, Codes, Method
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_column
-from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import OK, Statuses
 from tol3d.system.system import Described, System
@@ -21,39 +21,41 @@ from tol3d.system.trials import Trials
 Columns = dict[str, NDArray[Any]]
 
 
-def columns_of(system: System, road: Road | None, trials: Trials, measures: Sequence[Measure] | None = None) -> Columns:
+def columns_of(
+    system: System, method: Method | None, trials: Trials, measures: Sequence[Measure] | None = None
+) -> Columns:
     """All columns of some trials.
 
     Args:
         system: what is built.
-        road: of the 3D simulation; None for the analytic columns only.
+        method: of the 3D simulation; None for the analytic columns only.
         trials: deviations and positions.
         measures: which are read; all by default.
 
     Returns:
-        deviations, positions, `analytic:<measure>`, and with a road `geometric:<measure>`, `status:<measure>`, its
+        deviations, positions, `analytic:<measure>`, and with a method `geometric:<measure>`, `status:<measure>`, its
         details (such as points of contact) and `status`, the worst of them all; of each breakdown also its terms. A
         geometric value whose status lacks what is measured is an overlap, below 0.
     """
     measures = system.measures if measures is None else measures
-    asked = (own.asked(trials, measures) for own in evaluations(system, road).values())
-    pieces = [_columns(system, measures, by_road) for by_road in zip(*asked, strict=True)]
+    asked = (own.asked(trials, measures) for own in evaluations(system, method).values())
+    pieces = [_columns(system, measures, by_method) for by_method in zip(*asked, strict=True)]
     if len(pieces) == 1:
         return pieces[0]
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
-def _columns(system: System, measures: Sequence[Measure], by_road: Sequence[Asked]) -> Columns:
-    """Columns of the same trials by each road, the analytic one first."""
-    columns = drawn_columns(system, by_road[0].trials)
-    for road, asked in zip((ANALYTIC, GEOMETRIC), by_road, strict=False):
-        columns |= {value_column(road, name): values for name, values in asked.values.items()}
-        if road == GEOMETRIC:
+def _columns(system: System, measures: Sequence[Measure], by_method: Sequence[Asked]) -> Columns:
+    """Columns of the same trials by each method, the analytic one first."""
+    columns = drawn_columns(system, by_method[0].trials)
+    for method, asked in zip((ANALYTIC, GEOMETRIC), by_method, strict=False):
+        columns |= {value_column(method, name): values for name, values in asked.values.items()}
+        if method == GEOMETRIC:
             columns |= asked.answers.details
-        columns |= _terms(system, road, asked.answers)
-    if len(by_road) == 1:
+        columns |= _terms(system, method, asked.answers)
+    if len(by_method) == 1:
         return columns
-    status, seated = by_road[1].answers.status, np.full(len(by_road[1].trials), OK, dtype=np.int8)
+    status, seated = by_method[1].answers.status, np.full(len(by_method[1].trials), OK, dtype=np.int8)
     return columns | _status_columns(system.statuses, {own.name: status.get(own.name, seated) for own in measures})
 
 
@@ -67,9 +69,9 @@ def drawn_columns(system: System, trials: Trials) -> Columns:
     return columns | dict(system.columns(trials))
 
 
-def _terms(system: Described, road: str, answers: Answers) -> Columns:
+def _terms(system: Described, method: str, answers: Answers) -> Columns:
     return {
-        breakdown.column(road, term.name): answers.terms[breakdown.measure, term.name] * breakdown.per_internal
+        breakdown.column(method, term.name): answers.terms[breakdown.measure, term.name] * breakdown.per_internal
         for breakdown in system.breakdowns
         for term in breakdown.terms
         if (breakdown.measure, term.name) in answers.terms

@@ -158,7 +158,7 @@ def divided_variances(effects: Mapping[str, float], copula: Copula, draws: Mappi
 
 
 def closed_form_of(simulation: Simulation, measure: Measure) -> ClosedForm | None:
-    """Moments of a measure by the analytic road, with covariances; None where there is no closed form.
+    """Moments of a measure by the analytic method, with covariances; None where there is no closed form.
 
     There is none either where a contributor that is correlated with another one acts otherwise than by a slope.
     """

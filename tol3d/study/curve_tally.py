@@ -19,7 +19,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.outcome import (
     ANALYTIC,
     GEOMETRIC,
-    ROADS,
+    METHODS,
     Columns,
     Outcome,
     outcome_of,
@@ -45,7 +45,7 @@ def amplitudes_of(measure: Measure, spectrum: Spectrum, curves: Array) -> Array:
 
 @dataclass(frozen=True)
 class OrderTally:
-    """One road's amplitudes of one order."""
+    """One method's amplitudes of one order."""
 
     moments: Moments
     grid: Grid
@@ -91,7 +91,7 @@ Counts = Mapping[str, int]
 
 
 def status_counts(statuses: Statuses, columns: Columns, measure: Measure) -> dict[str, int]:
-    """Trials of a block by status, for one measure; those of the analytic road all seat."""
+    """Trials of a block by status, for one measure; those of the analytic method all seat."""
     trials = len(columns[value_column(ANALYTIC, measure.name)])
     return counted(statuses, columns.get(status_column(measure.name)), trials)
 
@@ -105,7 +105,7 @@ def counted(statuses: Statuses, status: NDArray[np.generic] | None, trials: int)
 
 
 def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
-    """Trials of a block that failed, by what decided it; none where the road does not say."""
+    """Trials of a block that failed, by what decided it; none where the method does not say."""
     reasons = columns.get(reason_column(measure.name))
     if reasons is None or not (said := reasons != "").any():
         return {}
@@ -145,10 +145,10 @@ def end_name(measure: str, end: str) -> str:
 
 @dataclass(frozen=True)
 class CurveTally:
-    """A curve measure: moments at each position, for both roads, the trials with any position out of limits, spectra.
+    """A curve measure: moments at each position, for both methods, the trials with any position out of limits, spectra.
 
     A trial counts at every position, or where one of them did not seat at none. `ends` are the samples of the ends that
-    limits judge, `replicates` what is out of limits by replicate, empty for independent trials; both by road.
+    limits judge, `replicates` what is out of limits by replicate, empty for independent trials; both by method.
     """
 
     status: Mapping[str, int]
@@ -166,29 +166,29 @@ class CurveTally:
     ) -> "CurveTally":
         """Tally of one block of columns; `grids` as grids_of gives them, `rows` those of each replicate."""
         curves = {
-            road: outcome_of(columns, road, measure.name, statuses.lacking)
-            for road in ROADS
-            if value_column(road, measure.name) in columns
+            method: outcome_of(columns, method, measure.name, statuses.lacking)
+            for method in METHODS
+            if value_column(method, measure.name) in columns
         }
         moments = {
-            road: tuple(Moments.of(column[~np.isnan(column)]) for column in own.values.T)
-            for road, own in curves.items()
+            method: tuple(Moments.of(column[~np.isnan(column)]) for column in own.values.T)
+            for method, own in curves.items()
         }
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
         lowest, highest = (
-            {road: Outcome(end(own.values), own.lacking) for road, own in curves.items()} for end in ENDS.values()
+            {method: Outcome(end(own.values), own.lacking) for method, own in curves.items()} for end in ENDS.values()
         )
         limits = {
-            road: LimitCounts.of_spans(
-                lowest[road].values, highest[road].values, lower, upper, lacking_of(measure, own)
+            method: LimitCounts.of_spans(
+                lowest[method].values, highest[method].values, lower, upper, lacking_of(measure, own)
             )
-            for road, own in curves.items()
+            for method, own in curves.items()
         }
         replicates = {
-            road: limits_by_replicate(
-                lowest[road].values, highest[road].values, rows, lower, upper, lacking_of(measure, own)
+            method: limits_by_replicate(
+                lowest[method].values, highest[method].values, rows, lower, upper, lacking_of(measure, own)
             )
-            for road, own in curves.items()
+            for method, own in curves.items()
         }
         ends = {LOWEST: lowest, HIGHEST: highest}
         return cls(
@@ -198,14 +198,14 @@ class CurveTally:
             limits,
             replicates,
             {
-                road: {
-                    end: Sample.of(measure, ends[end][road], grids[end_name(measure.name, end)], rows)
+                method: {
+                    end: Sample.of(measure, ends[end][method], grids[end_name(measure.name, end)], rows)
                     for end in judged_ends(measure)
                 }
-                for road in curves
+                for method in curves
             },
             min(own.deepest for own in curves.values()),
-            {road: spectrum_tally(measure, own.values, grids) for road, own in curves.items()},
+            {method: spectrum_tally(measure, own.values, grids) for method, own in curves.items()},
         )
 
     def merge(self, other: "CurveTally") -> "CurveTally":
@@ -218,30 +218,30 @@ class CurveTally:
             added(self.status, other.status),
             merged(self.analytic, other.analytic),
             merged(self.geometric, other.geometric) if self.geometric and other.geometric else None,
-            {road: counts.merge(other.limits[road]) for road, counts in self.limits.items()},
-            {road: merged_by_replicate(own, other.replicates[road]) for road, own in self.replicates.items()},
+            {method: counts.merge(other.limits[method]) for method, counts in self.limits.items()},
+            {method: merged_by_replicate(own, other.replicates[method]) for method, own in self.replicates.items()},
             {
-                road: {end: sample.merge(other.ends[road][end]) for end, sample in own.items()}
-                for road, own in self.ends.items()
+                method: {end: sample.merge(other.ends[method][end]) for end, sample in own.items()}
+                for method, own in self.ends.items()
             },
             min(self.deepest, other.deepest),
             {
-                road: tuple(a.merge(b) for a, b in zip(own, other.spectra[road], strict=True))
-                for road, own in self.spectra.items()
+                method: tuple(a.merge(b) for a, b in zip(own, other.spectra[method], strict=True))
+                for method, own in self.spectra.items()
             },
         )
 
-    def interval_ppm(self, road: str) -> tuple[float, float] | None:
+    def interval_ppm(self, method: str) -> tuple[float, float] | None:
         """Bounds [ppm] of the true share of trials with any position out of limits; None of no trials."""
-        limits, replicates = self.limits[road], self.replicates[road]
+        limits, replicates = self.limits[method], self.replicates[method]
         if replicates:
             return interval_of_replicates([counts.out_of_limits for counts in replicates.values()])
         return limits.out_of_limits.interval_ppm() if limits.total else None
 
-    def performance(self, measure: Measure, road: str, asked: PpkBy | None) -> Performance:
+    def performance(self, measure: Measure, method: str, asked: PpkBy | None) -> Performance:
         """Ppk by the lowest value of each trial against the lower limit, and by the highest against the upper one."""
         lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
-        sides = {end: sample.side for end, sample in self.ends[road].items()}
+        sides = {end: sample.side for end, sample in self.ends[method].items()}
         nothing = Side(Moments(), (), lambda p: None)
         low, high = (sides.get(end, nothing) for end in ENDS)
-        return Judged(lower, upper, low, high, self.limits[road], self.interval_ppm(road)).performance(asked)
+        return Judged(lower, upper, low, high, self.limits[method], self.interval_ppm(method)).performance(asked)

@@ -40,7 +40,7 @@ def sampler_of(simulation: Simulation, streams: int) -> Sampler:
         return Sobol(study.seed, study.replicate_trials, streams)
     if study.sampler == "latin_hypercube":
         return LatinHypercube(study.seed, study.replicate_trials)
-    quick = simulation.road.compiled or streams > MANY_STREAMS
+    quick = simulation.method.compiled or streams > MANY_STREAMS
     return quick_monte_carlo(study.seed) if quick else MonteCarlo(study.seed)
 
 

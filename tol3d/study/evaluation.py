@@ -1,4 +1,4 @@
-"""One evaluation of stated deviations: measures of a system by one road, all rows at once.
+"""One evaluation of stated deviations: measures of a system by one method, all rows at once.
 
 Columns of trials, replays, witnesses, ends, slopes, shares and explanations ask this and nothing else, in batches: each
 call places every part again, and most of what it takes does not grow with the rows.
@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from tol3d.numerics.arrays import Array
 from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Answers, Method
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.positions import Positions
-from tol3d.system.road import ANALYTIC_ROAD, Answers, Road
 from tol3d.system.stated import stated
 from tol3d.system.statuses import OK
 from tol3d.system.system import System
@@ -33,11 +33,11 @@ Values = Callable[[Array, Sequence[Measure]], Mapping[str, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a road says of some trials.
+    """What a method says of some trials.
 
     Args:
         trials: they.
-        answers: the road's.
+        answers: the method's.
         values: what measures take of them: by name (trials,), or (trials, positions) of a curve, in their units.
     """
 
@@ -48,20 +48,20 @@ class Asked:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """A system by one road.
+    """A system by one method.
 
     Args:
         system: what is built.
-        road: of the 3D simulation; None for the analytic one.
+        method: of the 3D simulation; None for the analytic one.
     """
 
     system: System
-    road: Road | None = None
+    method: Method | None = None
 
     @property
     def name(self) -> str:
-        """The road's name in columns."""
-        return GEOMETRIC if self.road else ANALYTIC
+        """The method's name in columns."""
+        return GEOMETRIC if self.method else ANALYTIC
 
     def values(self, deviations: Array, measures: Sequence[Measure]) -> dict[str, Array]:
         """Values of measures of builds (rows, components) [mm, rad, K] at rest; see `of`."""
@@ -75,14 +75,14 @@ class Evaluation:
         Args:
             trials: stated or drawn.
             measures: of the system.
-            overlaps: whether what a road answers of builds that do not seat is kept, such as how deep they overlap.
+            overlaps: whether what a method answers of builds that do not seat is kept, such as how deep they overlap.
 
         Returns:
             By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build does not
             seat.
         """
         pieces = []
-        judged = {own.name for own in measures if self.road and not overlaps(own)}
+        judged = {own.name for own in measures if self.method and not overlaps(own)}
         for asked in self.asked(trials, measures):
             found = dict(asked.values)
             for name, codes in asked.answers.status.items():
@@ -95,33 +95,34 @@ class Evaluation:
         return {own.name: np.concatenate([piece[own.name] for piece in pieces]) for own in measures}
 
     def asked(self, trials: Trials, measures: Sequence[Measure]) -> Iterator[Asked]:
-        """All that the road says of trials, as many at once as their positions let it."""
-        road = self.road or self.system.road(ANALYTIC_ROAD, None)
+        """All that the method says of trials, as many at once as their positions let it."""
+        method = self.method or self.system.method(ANALYTIC_METHOD, None)
         rows = trials_at_once(measures)
         for first in range(0, len(trials), rows):
             piece = trials.part(first, first + rows)
-            answers = road.answers(piece, measures)
+            answers = method.answers(piece, measures)
             values = {
                 own.name: taken(own, _read(self.name, answers, own, len(piece))) * own.per_internal for own in measures
             }
             yield Asked(piece, answers, values)
 
 
-def _read(road: str, answers: Answers, measure: Measure, count: int) -> NDArray[np.float64]:
-    """Values (trials, positions) of a measure, if the road has answered as many."""
+def _read(method: str, answers: Answers, measure: Measure, count: int) -> NDArray[np.float64]:
+    """Values (trials, positions) of a measure, if the method has answered as many."""
     values, expected = answers.values.get(measure.name), (count, measure.positions.in_a_trial)
     if values is None or np.shape(values) != expected:
         got = "none" if values is None else f"an array of shape {np.shape(values)}"
         raise UnfitError(
-            f"{road} road, measure {measure.name!r}: expected values (trials, positions) of shape {expected}, got {got}"
+            f"{method} method, measure {measure.name!r}: expected values (trials, positions) of shape {expected}, "
+            f"got {got}"
         )
     return values
 
 
-def evaluations(system: System, road: Road | None) -> Mapping[str, Evaluation]:
-    """By each road: "analytic", and "geometric" where there is an engine."""
+def evaluations(system: System, method: Method | None) -> Mapping[str, Evaluation]:
+    """By each method: "analytic", and "geometric" where there is an engine."""
     own = {ANALYTIC: Evaluation(system)}
-    return own | {GEOMETRIC: Evaluation(system, road)} if road else own
+    return own | {GEOMETRIC: Evaluation(system, method)} if method else own
 
 
 def measures_alike(system: System, measures: Sequence[Measure]) -> list[tuple[Mapping[str, bool], list[Measure]]]:

@@ -15,24 +15,24 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.summary import study_summary
 from tol3d.study.tally import Tally
 from tol3d.study.witness import witness_of, witness_summary, witness_warnings
-from tol3d.system.road import Road
+from tol3d.system.method import Method
 
 
-def findings(simulation: Simulation, road: Road | None, tally: Tally, activity: Activity) -> dict[str, Any]:
+def findings(simulation: Simulation, method: Method | None, tally: Tally, activity: Activity) -> dict[str, Any]:
     """Everything of summary.json but files, timing and versions.
 
     Args:
         simulation: what was simulated.
-        road: of the 3D simulation; None for an analytic study.
+        method: of the 3D simulation; None for an analytic study.
         tally: of all trials.
         activity: gets what goes on, in words.
     """
     with threadpool_limits(1, user_api="blas"):  # threads make these small matrices three to ten times as slow
-        found = study_summary(simulation, road, tally)
+        found = study_summary(simulation, method, tally)
     wanted, witness = simulation.study.witness, witness_of(simulation.system)
-    if road is not None and wanted and witness is not None:
+    if method is not None and wanted and witness is not None:
         activity(f"witness: {witness.upper()} measures {min(wanted, tally.trials)} trials again")
-        own = witness_summary(simulation, road, tally.trials)
+        own = witness_summary(simulation, method, tally.trials)
         warnings = [*found.warnings, *witness_warnings(simulation, own)]
         found = found.model_copy(update={"witness": own, "warnings": warnings})
     summary: dict[str, Any] = as_json(described(simulation, tally, found))

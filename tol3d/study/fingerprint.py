@@ -9,7 +9,7 @@ from tol3d.scene import Scene
 from tol3d.study.blocks import block_trials
 from tol3d.study.simulation import Simulation
 from tol3d.study.versions import installed_versions
-from tol3d.system.outcome import ROADS, value_column
+from tol3d.system.outcome import METHODS, value_column
 
 
 def fingerprint_of(scene: Scene, simulation: Simulation, execution: Execution) -> Fingerprint:
@@ -35,5 +35,5 @@ def column_units(simulation: Simulation) -> dict[str, str]:
     system = simulation.system
     units: dict[str, str] = {name: c.unit for c in system.contributors for name in c.columns}
     for measure in system.measures:
-        units |= {value_column(road, measure.name): measure.unit for road in ROADS}
+        units |= {value_column(method, measure.name): measure.unit for method in METHODS}
     return units

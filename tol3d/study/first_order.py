@@ -1,6 +1,6 @@
-"""First order by differences: what each deviation does to a measure, on either road.
+"""First order by differences: what each deviation does to a measure, on either method.
 
-No theory is needed, so any system has it; both roads stand beside each other before a trial is drawn.
+No theory is needed, so any system has it; both methods stand beside each other before a trial is drawn.
 """
 
 import math
@@ -19,12 +19,12 @@ from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
-from tol3d.system.road import Road
+from tol3d.system.method import Method
 from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import Described, System
 
 ALIKE = 1e-6  # of the greatest; slopes of features that are alike differ by rounding and by where they stand
-AS_LARGE = 0.99  # of the size of another one: of slopes of both signs the positive one is shown, by either road
+AS_LARGE = 0.99  # of the size of another one: of slopes of both signs the positive one is shown, by either method
 NOISE = 1e-9  # of the values; smaller differences are rounding, and have no sign
 
 
@@ -53,7 +53,7 @@ class FirstOrderEffect:
 
 @dataclass(frozen=True)
 class FirstOrder:
-    """A measure by one road before any trial, in its unit; nan where a build does not seat.
+    """A measure by one method before any trial, in its unit; nan where a build does not seat.
 
     Args:
         nominal: without deviations.
@@ -83,19 +83,19 @@ class FirstOrder:
 
 
 def first_orders(
-    simulation: Simulation, road: Road | None, measures: Sequence[Measure]
+    simulation: Simulation, method: Method | None, measures: Sequence[Measure]
 ) -> dict[str, dict[str, FirstOrder]]:
-    """Measures of one number a trial, by name and road: "analytic", and "geometric" where there is an engine.
+    """Measures of one number a trial, by name and method: "analytic", and "geometric" where there is an engine.
 
     Args:
         simulation: what is studied.
-        road: of its engine; None without one.
+        method: of its engine; None without one.
         measures: of its system, no curves.
     """
     system = simulation.system
     found = {
         shown: first_order(system, measures, own.values, simulation.copula)
-        for shown, own in evaluations(system, road).items()
+        for shown, own in evaluations(system, method).items()
         if measures
     }
     return {own.name: {shown: by_measure[own.name] for shown, by_measure in found.items()} for own in measures}
@@ -108,7 +108,7 @@ def first_order(
 
     Args:
         system, measures: what is built, and what is read of it.
-        values: by one road, in units of the measures.
+        values: by one method, in units of the measures.
         copula: which contributors are correlated; their parts in the variance are then Shapley effects.
     """
     found = of_alike(system, measures, lambda alike, turning: _first_order(system, alike, turning, values))

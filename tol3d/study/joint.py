@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary import joint as summary
-from tol3d.runs.summary.values import Road, made
+from tol3d.runs.summary.values import Method, made
 from tol3d.statistics import PairSums, Proportion
 from tol3d.statistics.variance_shares import Products
 from tol3d.study.regression import Among
@@ -17,7 +17,7 @@ from tol3d.study.replicated import Rows, interval_of_replicates
 from tol3d.study.sample import finite, in_unit, listed
 from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Mask, Outcome
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, METHODS, Mask, Outcome
 
 Outcomes = Mapping[tuple[str, str], Outcome]
 Key = TypeVar("Key")
@@ -25,7 +25,7 @@ Key = TypeVar("Key")
 MOST_IN_SUMMARY = 64  # measures; of more, matrices in summary.json are of those that are correlated most
 
 
-ROAD_WORDS: Final[Mapping[str, str]] = {ANALYTIC: "analytic", GEOMETRIC: "3D simulation"}
+METHOD_WORDS: Final[Mapping[str, str]] = {ANALYTIC: "analytic", GEOMETRIC: "3D simulation"}
 
 
 def limited(measures: Sequence[Measure]) -> list[Measure]:
@@ -41,7 +41,7 @@ def correlated(measures: Sequence[Measure]) -> list[Measure]:
 
 @dataclass(frozen=True)
 class JointTally:
-    """What measures do together, by road.
+    """What measures do together, by method.
 
     Args:
         within: of all trials, those in which every measure that has a limit is valid and within its limits; empty
@@ -62,32 +62,32 @@ class JointTally:
 
         Args:
             measures: all of the study.
-            outcomes: by road and name, of each road that was gone; of every scalar measure and every limited curve.
+            outcomes: by method and name, of each method that was gone; of every scalar measure and every limited curve.
             rows: which trials belong to each replicate; empty for independent trials.
             products: see PairSums.of.
             among: what is known already of columns that no trial lacks.
         """
-        roads = [road for road in ROADS if any(own == road for own, _ in outcomes)]
+        methods = [method for method in METHODS if any(own == method for own, _ in outcomes)]
         judged, paired = limited(measures), correlated(measures)
-        good = {road: _all_within(judged, road, outcomes) for road in roads} if judged else {}
+        good = {method: _all_within(judged, method, outcomes) for method in methods} if judged else {}
         return cls(
-            {road: _share(own) for road, own in good.items()},
-            {road: {replicate: _share(own[part]) for replicate, part in rows.items()} for road, own in good.items()},
-            {road: _pairs(paired, road, outcomes, products, among) for road in roads} if paired else {},
+            {method: _share(own) for method, own in good.items()},
+            {key: {replicate: _share(own[part]) for replicate, part in rows.items()} for key, own in good.items()},
+            {method: _pairs(paired, method, outcomes, products, among) for method in methods} if paired else {},
         )
 
     def merge(self, other: "JointTally") -> "JointTally":
         """Both tallies as one; fold blocks in their order."""
         return JointTally(
             _merged(self.within, other.within),
-            {road: _merged(own, other.replicates[road]) for road, own in self.replicates.items()},
-            {road: own.merge(other.pairs[road]) for road, own in self.pairs.items()},
+            {method: _merged(own, other.replicates[method]) for method, own in self.replicates.items()},
+            {method: own.merge(other.pairs[method]) for method, own in self.pairs.items()},
         )
 
 
-def _all_within(measures: Sequence[Measure], road: str, outcomes: Outcomes) -> Mask:
+def _all_within(measures: Sequence[Measure], method: str, outcomes: Outcomes) -> Mask:
     """Trials (trials,) in which all of some measures are valid and within their limits."""
-    first, *others = (_within(measure, outcomes[road, measure.name]) for measure in measures)
+    first, *others = (_within(measure, outcomes[method, measure.name]) for measure in measures)
     for other in others:
         first &= other
     return first
@@ -108,18 +108,18 @@ def _within(measure: Measure, outcome: Outcome) -> Mask:
     return inside if inside.ndim == 1 else np.asarray(inside.all(axis=1))
 
 
-def _pairs(measures: Sequence[Measure], road: str, outcomes: Outcomes, products: Products, among: Among) -> PairSums:
-    """Sums of all pairs of measures on a road: those that are known, where no trial lacks any, and the others."""
+def _pairs(measures: Sequence[Measure], method: str, outcomes: Outcomes, products: Products, among: Among) -> PairSums:
+    """Sums of all pairs of measures on a method: those that are known, where no trial lacks any, and the others."""
     names = [measure.name for measure in measures]
     groups, ordered = [], list[str]()
     for keys, own in among.items():
-        which = [k for k, (its_road, name) in enumerate(keys) if its_road == road and name in names]
+        which = [k for k, (its_method, name) in enumerate(keys) if its_method == method and name in names]
         if which:
             groups.append(own.of(which))
             ordered += [keys[k][1] for k in which]
     if len(ordered) < len(names):
-        return PairSums.of([outcomes[road, name].values for name in names], products)
-    found = PairSums.of([outcomes[road, name].values for name in ordered], products, groups)
+        return PairSums.of([outcomes[method, name].values for name in names], products)
+    found = PairSums.of([outcomes[method, name].values for name in ordered], products, groups)
     return found.of_columns([ordered.index(name) for name in names])
 
 
@@ -142,11 +142,11 @@ def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | 
     if not judged and not paired:
         return None
     independent = simulation.study.sampler == "monte_carlo"
-    yields = {cast(Road, road): _yield(own, tally.replicates[road]) for road, own in tally.within.items()}
+    yields = {cast(Method, method): _yield(own, tally.replicates[method]) for method, own in tally.within.items()}
     shown = _most_correlated(tally) if len(paired) > MOST_IN_SUMMARY else range(len(paired))
     pairs = {
-        cast(Road, road): _correlations(own.of_columns(shown), independent=independent)
-        for road, own in tally.pairs.items()
+        cast(Method, method): _correlations(own.of_columns(shown), independent=independent)
+        for method, own in tally.pairs.items()
     }
     return made(
         summary.Joint,
@@ -159,7 +159,7 @@ def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | 
 
 
 def _most_correlated(tally: JointTally) -> list[int]:
-    """Which MOST_IN_SUMMARY measures have the largest correlations by the best road, in the scene's order."""
+    """Which MOST_IN_SUMMARY measures have the largest correlations by the best method, in the scene's order."""
     first, second = _ranked_pairs([*tally.pairs.values()][-1])
     found = dict.fromkeys(np.stack([first, second], axis=1).ravel().tolist())
     return sorted([*found][:MOST_IN_SUMMARY])
@@ -181,8 +181,8 @@ def correlation_rows(simulation: Simulation, tally: JointTally) -> Iterator[list
     first, second = _ranked_pairs([*tally.pairs.values()][-1])
     columns: dict[str, list[Any]] = {"measure": [names[i] for i in first], "other": [names[j] for j in second]}
     independent = simulation.study.sampler == "monte_carlo"
-    for road, own in reversed([*tally.pairs.items()]):
-        words = ROAD_WORDS[road]
+    for method, own in reversed([*tally.pairs.items()]):
+        words = METHOD_WORDS[method]
         numbers = {f"r, {words}": own.correlations}
         if independent:  # what the bounds are worked out for
             low, high = own.interval()

@@ -47,8 +47,8 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         system = mechanism.system_of(asked)
         require_whole(system)
         in_draw_order(system.contributors)
-    _refuse_engine(scene, overrides, asked.study.engine, system.roads)
-    if asked.study.witness and not any(kind.witness for kind in system.roads.values()):
+    _refuse_engine(scene, overrides, asked.study.engine, system.methods)
+    if asked.study.witness and not any(kind.witness for kind in system.methods.values()):
         sentence = f"expected none, for this scene has no witness, got {asked.study.witness}"
         if overrides.witness is None:
             raise asked.refuse(("study", "witness"), sentence)

@@ -12,16 +12,16 @@ from tol3d.statistics.variance_shares import Products, TargetSums
 from tol3d.study.regressors import RegressorSet, regressor_sets
 from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ROADS
+from tol3d.system.outcome import METHODS
 from tol3d.system.system import Columns, System
 
 Sums = RegressorSums | IndependentSums
 Key = tuple[str, str]
-"""Road, or DIFFERENCE, and name of a measure."""
+"""Method, or DIFFERENCE, and name of a measure."""
 Among = Mapping[tuple[Key, ...], TargetSums]
-"""Sums of columns among each other, by their roads and names."""
+"""Sums of columns among each other, by their methods and names."""
 
-DIFFERENCE = "difference"  # of both roads, beside them
+DIFFERENCE = "difference"  # of both methods, beside them
 MANY_REGRESSORS = 64  # from here on compiling what multiplies them pays
 
 
@@ -42,21 +42,21 @@ def target_sums(
     products: Products,
     copula: Copula = INDEPENDENT,
 ) -> tuple[dict[Key, Sums], Among]:
-    """What each road's column of each measure has in common with its regressors, by road and name.
+    """What each method's column of each measure has in common with its regressors, by method and name.
 
     And with those columns that have the same regressors and that no trial lacks.
 
     Args:
         system, measures: what is measured; scalar measures.
         columns: of a block.
-        values: of roads and their difference, nan where a trial lacks one.
+        values: of methods and their difference, nan where a trial lacks one.
         products: of all pairs of rows.
         copula: which contributors are correlated.
     """
     sums: dict[Key, Sums] = {}
     among: dict[tuple[Key, ...], TargetSums] = {}
     for own in regressor_sets(system, copula):
-        keys = [(r, m.name) for m in own.measures for r in (*ROADS, DIFFERENCE) if (r, m.name) in values]
+        keys = [(r, m.name) for m in own.measures for r in (*METHODS, DIFFERENCE) if (r, m.name) in values]
         block = _Block(own, own.rows(system, columns), quick_products() if len(own) > MANY_REGRESSORS else products)
         whole = [key for key in keys if not np.isnan(np.min(values[key], initial=0.0))]
         if whole:
@@ -74,8 +74,8 @@ def target_sums(
 
 
 def _good(key: Key, keys: Sequence[Key], values: Mapping[Key, Array]) -> NDArray[np.bool_]:
-    """Trials that a road of a measure has; of one that lacks some, those that its difference has too."""
-    rows = [values[road, name] for road, name in keys if name == key[1]]
+    """Trials that a method of a measure has; of one that lacks some, those that its difference has too."""
+    rows = [values[method, name] for method, name in keys if name == key[1]]
     lacking = np.stack([row for row in rows if np.isnan(row).any()])
     return np.asarray(~np.isnan(lacking).any(axis=0))
 

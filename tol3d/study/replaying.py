@@ -15,11 +15,11 @@ from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study, Until
-from tol3d.study.task import materials_of, road_of
+from tol3d.study.task import materials_of, method_of
 from tol3d.study.versions import installed_versions
 from tol3d.system.faults import faults_of
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC, value_column
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.trials import Trials
 
 
@@ -95,20 +95,20 @@ def replayed(simulation: Simulation, trials: Trials) -> Replay:
 def _replayed(simulation: Simulation, trials: Trials) -> Replay:
     system = simulation.system
     if not simulation.has_geometry:
-        engine = next(name for name in system.roads if name != ANALYTIC_ROAD)
+        engine = next(name for name in system.methods if name != ANALYTIC_METHOD)
         simulation = replace(simulation, study=replace(simulation.study, engine=engine, witness=0))
-    road = road_of(simulation, materials_of(simulation))
-    if road is None:
+    method = method_of(simulation, materials_of(simulation))
+    if method is None:
         raise ValueError(f"{system.name} has no engine")
-    columns = columns_of(system, road, trials)
+    columns = columns_of(system, method, trials)
 
-    def values(road: str) -> dict[str, Any]:
-        return {measure.name: columns[value_column(road, measure.name)][0].tolist() for measure in system.measures}
+    def values(method: str) -> dict[str, Any]:
+        return {measure.name: columns[value_column(method, measure.name)][0].tolist() for measure in system.measures}
 
     return Replay(
         simulation=simulation,
         trials=trials,
-        build=system.display(trials, road),
+        build=system.display(trials, method),
         analytic=values(ANALYTIC),
         geometric=values(GEOMETRIC),
         status=str(columns["status"][0]),

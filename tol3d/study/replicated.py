@@ -33,7 +33,7 @@ def rows_of_replicates(study: Study, first: int, count: int) -> Rows:
 
 @dataclass(frozen=True)
 class Replicated:
-    """One road's sample of one measure by replicate, in the measure's unit."""
+    """One method's sample of one measure by replicate, in the measure's unit."""
 
     moments: Mapping[int, Moments]
     limits: Mapping[int, LimitCounts]

@@ -1,4 +1,4 @@
-"""One road's sample of one measure: gathered block by block, shown in summary.json."""
+"""One method's sample of one measure: gathered block by block, shown in summary.json."""
 
 import math
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ def lacking_of(measure: Measure, outcome: Outcome) -> Mask | None:
 
 @dataclass(frozen=True)
 class Sample:
-    """One road's sample of one measure.
+    """One method's sample of one measure.
 
     Args:
         moments, grid: of the trials that seated.

@@ -6,7 +6,7 @@ from tol3d.scene import Scene
 from tol3d.study.study import Study, Until
 from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.faults import Origin
-from tol3d.system.road import ANALYTIC_ROAD, RoadKind
+from tol3d.system.method import ANALYTIC_METHOD, MethodKind
 from tol3d.system.system import Published, System
 from tol3d.units import Quantity
 
@@ -36,14 +36,14 @@ class Simulation:
     copula: Copula = INDEPENDENT
 
     @property
-    def road(self) -> RoadKind:
-        """The road that the study's engine names."""
-        return self.system.roads[self.study.engine]
+    def method(self) -> MethodKind:
+        """The method that the study's engine names."""
+        return self.system.methods[self.study.engine]
 
     @property
     def has_geometry(self) -> bool:
-        """Whether there is a 3D simulation beside the analytic road."""
-        return self.study.engine != ANALYTIC_ROAD
+        """Whether there is a 3D simulation beside the analytic method."""
+        return self.study.engine != ANALYTIC_METHOD
 
     @property
     def warnings(self) -> tuple[str, ...]:

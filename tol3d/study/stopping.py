@@ -15,7 +15,7 @@ def enough(simulation: Simulation) -> Enough:
     """Called after each merged block, in block order: whether the study may stop.
 
     A study without `until` never may; it goes through its trials. What is measured are the trials so far on the
-    geometric road, or on the analytic one where there is no engine.
+    geometric method, or on the analytic one where there is no engine.
     """
     return lambda tally: bool(simulation.study.until) and not any(_short(simulation, tally))
 

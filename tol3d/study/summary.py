@@ -10,7 +10,7 @@ from tol3d.runs.summary.agreement import Agreement
 from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn
 from tol3d.runs.summary.published import PER_INTERNAL, converted
 from tol3d.runs.summary.run import Findings, MechanismSummary, StudySummary
-from tol3d.runs.summary.sample import CurveRoads, CurveSample, Normal, Roads
+from tol3d.runs.summary.sample import CurveMethods, CurveSample, Methods, Normal
 from tol3d.runs.summary.values import Unit, made
 from tol3d.statistics import Agreement as Comparison
 from tol3d.statistics import IndependentSums, LimitCounts, Moments, independent_shares, shares
@@ -35,8 +35,8 @@ from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
 from tol3d.system.faults import Origin
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
-from tol3d.system.road import Road
 from tol3d.system.stated import mean_deviations, stated
 from tol3d.system.system import System
 from tol3d.units import FACTORS
@@ -64,13 +64,13 @@ FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma lea
 NAMED_AT_ONCE = 6  # measures in one warning
 
 
-def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Findings:
+def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -> Findings:
     """What a study found, but what its system adds to the whole and to each measure."""
-    explained = explanations(simulation, road, tally)
+    explained = explanations(simulation, method, tally)
     study, mechanism = simulation.study, simulation.mechanism
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
-    builds = _single_builds(simulation, road)
-    alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, road).values)
+    builds = _single_builds(simulation, method)
+    alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, method).values)
     return made(
         Findings,
         scene=simulation.system.name,
@@ -82,7 +82,7 @@ def study_summary(simulation: Simulation, road: Road | None, tally: Tally) -> Fi
         status=tally.status,
         statuses=simulation.system.statuses.meanings,
         status_words=simulation.system.statuses.states or None,
-        chord_error_um=road.chord_error * 1000 if road else None,
+        chord_error_um=method.chord_error * 1000 if method else None,
         measures={
             measure.name: _measure(
                 simulation,
@@ -213,9 +213,9 @@ def _measure(
     tally: Tally,
     explanation: Explanation | None,
     alone: Percents,
-    builds: tuple[Roads, Roads],
+    builds: tuple[Methods, Methods],
 ) -> MeasureSummary:
-    """A measure: statistics of both roads, contributors, published columns; its kind and no more of its system's."""
+    """A measure: statistics of both methods, contributors, published columns; its kind and no more of its system's."""
     system, curve, asked = simulation.system, measure.take == "curve", simulation.study.ppk_by
     own = None if curve else tally.measures[measure.name]
     found = own if own is not None and own.geometric is not None and own.agreement is not None else None
@@ -244,8 +244,8 @@ def _measure(
     )
 
 
-def _single_builds(simulation: Simulation, road: Road | None) -> dict[str, tuple[Roads, Roads]]:
-    """Both roads' values of the nominal build and of the one at all means, by measure; None where one is none."""
+def _single_builds(simulation: Simulation, method: Method | None) -> dict[str, tuple[Methods, Methods]]:
+    """Both methods' values of the nominal build and of the one at all means, by measure; None where one is none."""
     system = simulation.system
     found = {}
     for _, alike in measures_alike(system, system.measures):
@@ -253,19 +253,19 @@ def _single_builds(simulation: Simulation, road: Road | None) -> dict[str, tuple
         builds = np.concatenate([np.zeros_like(mean), mean])
         read = {
             shown: own.of(stated(system, builds), alike, lambda _: True)
-            for shown, own in evaluations(system, road).items()
+            for shown, own in evaluations(system, method).items()
         }
         for measure in alike:
             found[measure.name] = (_both(read, measure, 0), _both(read, measure, 1))
     return found
 
 
-def _both(read: Mapping[str, Mapping[str, NDArray[np.float64]]], measure: Measure, row: int) -> Roads:
-    def value(road: str) -> Any:
-        own = read[road][measure.name][row] if road in read else None
+def _both(read: Mapping[str, Mapping[str, NDArray[np.float64]]], measure: Measure, row: int) -> Methods:
+    def value(method: str) -> Any:
+        own = read[method][measure.name][row] if method in read else None
         return None if own is None or np.isnan(own).any() else own.tolist()
 
-    return made(Roads, analytic=value(ANALYTIC), geometric=value(GEOMETRIC))
+    return made(Methods, analytic=value(ANALYTIC), geometric=value(GEOMETRIC))
 
 
 def _closed_form(measure: Measure, form: ClosedForm | None) -> Normal | None:
@@ -305,9 +305,9 @@ def _shares(simulation: Simulation, measure: Measure, own: MeasureTally, alone: 
     ]
 
 
-def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRoads:
-    def sample(road: str, moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
-        performance = own.performance(measure, road, simulation.study.ppk_by)
+def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveMethods:
+    def sample(method: str, moments: Sequence[Moments], limits: LimitCounts) -> CurveSample:
+        performance = own.performance(measure, method, simulation.study.ppk_by)
         return made(
             CurveSample,
             mean=[m.mean if m.count else None for m in moments],
@@ -319,15 +319,15 @@ def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveRo
             above_limit_ppm=limits.above_limit.ppm,
             failed_ppm=limits.failures.ppm,
             out_ppm=limits.out_of_limits.ppm,
-            out_ppm_95=listed(own.interval_ppm(road)),
+            out_ppm_95=listed(own.interval_ppm(method)),
             ppk=finite(performance.ppk),
             ppk_by=performance.by,
             ppk_reason=performance.reason or None,
-            spectrum=spectrum_sample(measure, own.spectra[road]),
+            spectrum=spectrum_sample(measure, own.spectra[method]),
         )
 
     return made(
-        CurveRoads,
+        CurveMethods,
         analytic=sample(ANALYTIC, own.analytic, own.limits[ANALYTIC]),
         geometric=sample(GEOMETRIC, own.geometric, own.limits[GEOMETRIC]) if own.geometric else None,
     )

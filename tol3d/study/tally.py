@@ -35,7 +35,7 @@ from tol3d.system.closed_form import ClosedForm
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import Each, JudgedDraw
 from tol3d.system.measure import Measure
-from tol3d.system.outcome import ANALYTIC, GEOMETRIC, ROADS, Columns, Outcome, outcome_of, value_column
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, METHODS, Columns, Outcome, outcome_of, value_column
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.system import Described, System
 from tol3d.units import FACTORS
@@ -57,7 +57,7 @@ class Disagreement:
 
     @classmethod
     def of(cls, first: int, difference: Array, sums: Sums) -> "Disagreement":
-        """Of a block that begins at trial `first`; difference (trials,), nan where a road has no value."""
+        """Of a block that begins at trial `first`; difference (trials,), nan where a method has no value."""
         size = np.where(np.isnan(difference), -1.0, np.abs(difference))
         at = int(np.argmax(size))
         return cls(sums, float(size[at]), first + at) if size[at] >= 0.0 else cls(sums, 0.0, -1)
@@ -69,7 +69,7 @@ class Disagreement:
 
 
 PILOT_TRIALS = 64  # the study's first trials; they give sigma to 9 %, and a spread that the stack-up does not see
-GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both roads: bins of 1.8e-4 sigma, 1.3 nm
+GRID_SIGMAS = 12.0  # the grid spans the mean +- this many sigma of both methods: bins of 1.8e-4 sigma, 1.3 nm
 LEAST_SPAN = 1e-3  # mm or rad; for a model in which nothing varies
 MOST_COUNTED = 4095  # of a measure that counts
 
@@ -98,9 +98,9 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
 
 
 def _values(system: Described, measure: Measure, pilot: Columns) -> list[Array]:
-    """The pilot's values of a measure by each road that was gone, nan where a trial did not seat."""
-    roads = [road for road in ROADS if value_column(road, measure.name) in pilot]
-    return [outcome_of(pilot, road, measure.name, system.statuses.lacking).values for road in roads]
+    """The pilot's values of a measure by each method that was gone, nan where a trial did not seat."""
+    methods = [method for method in METHODS if value_column(method, measure.name) in pilot]
+    return [outcome_of(pilot, method, measure.name, system.statuses.lacking).values for method in methods]
 
 
 def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[str, Grid]:
@@ -135,7 +135,7 @@ def _grid(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -
 class MeasureTally:
     """All that is kept of one measure.
 
-    `status` counts what became of its trials on the geometric road, `reasons` what decided it where they failed.
+    `status` counts what became of its trials on the geometric method, `reasons` what decided it where they failed.
     """
 
     status: Mapping[str, int]
@@ -173,18 +173,18 @@ class _Block:
     first: int
 
     def outcomes(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Outcome]:
-        """Outcomes of each measure on each road that was gone, by road and name."""
+        """Outcomes of each measure on each method that was gone, by method and name."""
         lacking = self.simulation.system.statuses.lacking
-        keys = [(road, measure.name) for measure in measures for road in ROADS]
+        keys = [(method, measure.name) for measure in measures for method in METHODS]
         return {
-            (road, name): outcome_of(self.columns, road, name, lacking)
-            for road, name in keys
-            if value_column(road, name) in self.columns
+            (method, name): outcome_of(self.columns, method, name, lacking)
+            for method, name in keys
+            if value_column(method, name) in self.columns
         }
 
     @property
     def products(self) -> Products:
-        return quick_products() if self.simulation.road.compiled else plain_products
+        return quick_products() if self.simulation.method.compiled else plain_products
 
     def tally(
         self, measures: Sequence[Measure], grids: Mapping[str, Grid], found: Mapping[tuple[str, str], Outcome]
@@ -226,7 +226,7 @@ class Tally:
         unphysical: how many trials have a draw below what a contributor can be, or beyond what its drawing allows, by
             its name.
         measures, curves: by name.
-        terms: of breakdowns, by measure and road.
+        terms: of breakdowns, by measure and method.
         joint: what measures do together.
     """
 

@@ -17,24 +17,24 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.versions import Versions, installed_versions, refuse_other_versions
 from tol3d.system.faults import faults_of
-from tol3d.system.road import Road
+from tol3d.system.method import Method
 
 Columns = dict[str, NDArray[Any]]
 
 
 def materials_of(simulation: Simulation) -> Any:
-    """What the road of the study's engine is made of."""
+    """What the method of the study's engine is made of."""
     return simulation.system.materials(simulation.study.engine)
 
 
-def road_of(simulation: Simulation, materials: Any) -> Road | None:
-    """The road of the study's engine; None for an analytic study."""
-    return simulation.system.road(simulation.study.engine, materials) if simulation.has_geometry else None
+def method_of(simulation: Simulation, materials: Any) -> Method | None:
+    """The method of the study's engine; None for an analytic study."""
+    return simulation.system.method(simulation.study.engine, materials) if simulation.has_geometry else None
 
 
 def concurrency_of(simulation: Simulation) -> Concurrency:
     """How its trials are handed out."""
-    return Concurrency.THREADS if simulation.road.threads else Concurrency.PROCESSES
+    return Concurrency.THREADS if simulation.method.threads else Concurrency.PROCESSES
 
 
 def workers_for(simulation: Simulation) -> int:
@@ -55,11 +55,11 @@ def task_of(simulation: Simulation, fingerprint: str, *, keep_trials: bool) -> "
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """Blocks of a study. Equal by fingerprint, so that a process makes one road for all of its calls.
+    """Blocks of a study. Equal by fingerprint, so that a process makes one method for all of its calls.
 
     Args:
         simulation: what is simulated.
-        materials: what its road is made of.
+        materials: what its method is made of.
         grids: the empty grid of each scalar measure; none for a pilot, which has no statistics.
         fingerprint: one a study.
         keep_trials: whether the columns of a whole block are wanted, or its statistics only.
@@ -84,9 +84,9 @@ class Task:
         return self.simulation.requires
 
     @property
-    def road(self) -> Road | None:
-        """The road of this process; None for an analytic study."""
-        return _road_of(self)
+    def method(self) -> Method | None:
+        """The method of this process; None for an analytic study."""
+        return _method_of(self)
 
     def columns(self, first: int, count: int) -> Columns:
         """See folding.Work."""
@@ -97,11 +97,11 @@ class Task:
     def _by_threads_or_one(self, first: int, count: int) -> Columns:
         if self.concurrency is Concurrency.THREADS:
             return self._columns(first, count)
-        with _ONE_AT_A_TIME:  # a road of processes may have state, and a Dask worker has several threads
+        with _ONE_AT_A_TIME:  # a method of processes may have state, and a Dask worker has several threads
             return self._columns(first, count)
 
     def _columns(self, first: int, count: int) -> Columns:
-        return columns_of(self.simulation.system, self.road, drawn(self.simulation, first, count))
+        return columns_of(self.simulation.system, self.method, drawn(self.simulation, first, count))
 
     def statistics(self, first: int, columns: Columns) -> Tally:
         """See folding.Work."""
@@ -123,5 +123,5 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 @lru_cache(maxsize=1)
-def _road_of(task: Task) -> Road | None:
-    return road_of(task.simulation, task.materials)
+def _method_of(task: Task) -> Method | None:
+    return method_of(task.simulation, task.materials)

@@ -16,25 +16,25 @@ from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method, WitnessMethod
 from tol3d.system.outcome import GEOMETRIC, Columns, status_column, value_column
-from tol3d.system.road import Road, WitnessRoad
-from tol3d.system.system import Roads
+from tol3d.system.system import Methods
 from tol3d.system.trials import joined
 
 STREAM = ("witness", "trial")
 
 
-def witness_of(system: Roads) -> str | None:
+def witness_of(system: Methods) -> str | None:
     """The engine that can check the others; None where there is none."""
-    return next((name for name, kind in system.roads.items() if kind.witness), None)
+    return next((name for name, kind in system.methods.items() if kind.witness), None)
 
 
-def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessSummary:
+def witness_summary(simulation: Simulation, method: Method, trials: int) -> WitnessSummary:
     """What the witness finds of `study.witness` trials of a run, as summary.json shows it.
 
     Args:
         simulation: of the run, whose study asks for a witness.
-        road: measured the run.
+        method: measured the run.
         trials: how many trials the run has.
 
     Returns:
@@ -46,9 +46,9 @@ def witness_summary(simulation: Simulation, road: Road, trials: int) -> WitnessS
         raise ValueError(f"{system.name} has no witness")
     chosen = witnessed_trials(study.seed, trials, study.witness)
     again = joined([drawn(simulation, trial, 1) for trial in chosen.tolist()])
-    witness = cast(WitnessRoad, system.road(name, system.materials(name)))
+    witness = cast(WitnessMethod, system.method(name, system.materials(name)))
     measures = [measure for measure in system.measures if witness.reads(measure)]
-    seen, given = (columns_of(system, each, again, measures) for each in (witness, road))
+    seen, given = (columns_of(system, each, again, measures) for each in (witness, method))
     return made(
         WitnessSummary,
         engine=name,

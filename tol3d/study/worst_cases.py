@@ -15,8 +15,8 @@ from tol3d.study.regions import Built, Codes, Standing, space_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.worst_case import WorstCase, builds_a_row, first_starts, worst_case
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD, Method
 from tol3d.system.outcome import ANALYTIC
-from tol3d.system.road import ANALYTIC_ROAD, Road
 from tol3d.system.stated import stated
 from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
@@ -26,27 +26,27 @@ CONTACTS: Final = 1_500_000
 PLACING: Final = 20
 """Contacts that take as long as placing the parts of a build."""
 USUAL_SPEED: Final = 40_000_000
-"""Contacts a minute of the roads for which CONTACTS is stated."""
+"""Contacts a minute of the methods for which CONTACTS is stated."""
 RANDOM: Final = 1
 """Builds at random ends, from which it is looked for beside the mean build and the ends by slopes."""
 ROWS: Final = 2 * (1 + RANDOM) + 4
 
 
 def worst_cases(
-    simulation: Simulation, road: Road | None, measures: Sequence[Measure]
+    simulation: Simulation, method: Method | None, measures: Sequence[Measure]
 ) -> Mapping[str, Mapping[str, WorstCase | None]]:
-    """Worst cases of measures at rest, by name and road: "analytic", and "geometric" where there is an engine.
+    """Worst cases of measures at rest, by name and method: "analytic", and "geometric" where there is an engine.
 
     Args:
         simulation: what is studied.
-        road: of its engine; None without one.
+        method: of its engine; None without one.
         measures: of its system, no curves.
 
     Returns:
         None where it would take too long.
     """
-    every, left = evaluations(simulation.system, road), float(CONTACTS)
-    words = {shown: ANALYTIC_ROAD if shown == ANALYTIC else simulation.study.engine for shown in every}
+    every, left = evaluations(simulation.system, method), float(CONTACTS)
+    words = {shown: ANALYTIC_METHOD if shown == ANALYTIC else simulation.study.engine for shown in every}
     found: dict[str, dict[str, WorstCase | None]] = {own.name: {} for own in measures}
     for own in measures:
         for shown, evaluation in every.items():
@@ -57,11 +57,11 @@ def worst_cases(
     return found
 
 
-def price(simulation: Simulation, road: str, measure: Measure) -> float:
-    """Contacts that take as long as one build of a measure, by a road of the scene's word."""
+def price(simulation: Simulation, method: str, measure: Measure) -> float:
+    """Contacts that take as long as one build of a measure, by a method of the scene's word."""
     system = simulation.system
     contacts = system.cost((measure,)) * measure.positions.in_a_trial
-    return (PLACING + contacts) * max(1.0, USUAL_SPEED / system.roads[road].contacts_per_minute)
+    return (PLACING + contacts) * max(1.0, USUAL_SPEED / system.methods[method].contacts_per_minute)
 
 
 def built_by(evaluation: Evaluation, measure: Measure, counted: Callable[[int], None] = lambda builds: None) -> Built:
@@ -70,7 +70,7 @@ def built_by(evaluation: Evaluation, measure: Measure, counted: Callable[[int], 
     def built(deviations: Array, positions: Standing) -> tuple[Array, Codes]:
         found, codes = [], []
         for asked in evaluation.asked(Trials(deviations, positions), (measure,)):
-            status = asked.answers.status.get(measure.name) if evaluation.road is not None else None
+            status = asked.answers.status.get(measure.name) if evaluation.method is not None else None
             found.append(asked.values[measure.name])
             codes.append(np.zeros(len(asked.trials), dtype=np.int8) if status is None else status)
         values, judged = np.concatenate(found), np.concatenate(codes)

@@ -32,6 +32,6 @@ class Breakdown:
     unit: str
     per_internal: float
 
-    def column(self, road: str, term: str) -> str:
-        """Name of the column with a road's values of a term."""
-        return f"{road}:{self.measure}:{term} [{self.unit}]"
+    def column(self, method: str, term: str) -> str:
+        """Name of the column with a method's values of a term."""
+        return f"{method}:{self.measure}:{term} [{self.unit}]"

@@ -23,7 +23,7 @@ class Share:
 
 @dataclass(frozen=True)
 class ClosedForm:
-    """Moments of a measure by the analytic road [mm or rad].
+    """Moments of a measure by the analytic method [mm or rad].
 
     Args:
         nominal, mean, sigma: of the measure.

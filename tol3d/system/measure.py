@@ -72,6 +72,6 @@ class Measure(Protocol):
     def keeps_overlap(self) -> bool:
         """Whether a trial whose parts overlap has the depth of the overlap as its value.
 
-        Such a value is negative and continues the gap smoothly through 0, so both roads may be compared there too.
+        Such a value is negative and continues the gap smoothly through 0, so both methods may be compared there too.
         """
         ...

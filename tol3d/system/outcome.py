@@ -20,13 +20,13 @@ Columns = Mapping[str, NDArray[Any]]
 SEATED: Final = "ok"
 ANALYTIC: Final = "analytic"
 GEOMETRIC: Final = "geometric"
-ROADS: Final = (ANALYTIC, GEOMETRIC)
-"""Names of the roads in columns and in summary.json: the stack-up, and the 3D simulation by whatever engine."""
+METHODS: Final = (ANALYTIC, GEOMETRIC)
+"""Names of the methods in columns and in summary.json: the stack-up, and the 3D simulation by whatever engine."""
 
 
-def value_column(road: str, measure: str) -> str:
-    """Name of the column with a road's values of a measure."""
-    return f"{road}:{measure}"
+def value_column(method: str, measure: str) -> str:
+    """Name of the column with a method's values of a measure."""
+    return f"{method}:{measure}"
 
 
 def status_column(measure: str) -> str:
@@ -37,14 +37,14 @@ def status_column(measure: str) -> str:
 def reason_column(measure: str) -> str:
     """Name of the column of what decided that a trial of a measure failed, in words of its system.
 
-    One of the details of a road, "" where nothing decided it; not every measure has it.
+    One of the details of a method, "" where nothing decided it; not every measure has it.
     """
     return f"reason:{measure}"
 
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """A road's values of a measure in some trials.
+    """A method's values of a measure in some trials.
 
     Args:
         values: (trials,), or (trials, positions) of a curve, in the measure's unit; nan for trials that did not seat.
@@ -57,17 +57,17 @@ class Outcome:
     deepest: float = math.inf
 
 
-def outcome_of(columns: Columns, road: str, measure: str, lacking: Collection[str]) -> Outcome:
-    """A road's column of a measure; the analytic road seats every trial.
+def outcome_of(columns: Columns, method: str, measure: str, lacking: Collection[str]) -> Outcome:
+    """A method's column of a measure; the analytic method seats every trial.
 
     Args:
         columns: trial on axis 0.
-        road, measure: whose column.
+        method, measure: whose column.
         lacking: the statuses of trials that lack what is measured.
     """
-    column = np.asarray(columns[value_column(road, measure)], dtype=np.float64)
+    column = np.asarray(columns[value_column(method, measure)], dtype=np.float64)
     status = columns.get(status_column(measure))
-    if road != GEOMETRIC or status is None:
+    if method != GEOMETRIC or status is None:
         return Outcome(column)
     seated = status == SEATED
     if seated.all():

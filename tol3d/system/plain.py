@@ -25,11 +25,11 @@ from tol3d.system.contributor import Contributor, column_names
 from tol3d.system.draw import Draw, Scalar
 from tol3d.system.faults import UnfitError
 from tol3d.system.measure import Measure, Worse
+from tol3d.system.method import ANALYTIC_METHOD, Answers, Method, MethodKind
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import AT_RANDOM, Positions, Take
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
-from tol3d.system.road import ANALYTIC_ROAD, Answers, Road, RoadKind
 from tol3d.system.spectrum import Spectrum
 from tol3d.system.stated import component_slices, mean_deviations, stated
 from tol3d.system.statuses import Statuses
@@ -97,7 +97,7 @@ class PlainMeasure:
         keeps_overlap: whether a trial whose parts overlap has the depth of the overlap as its value, a negative number
             that continues the gap smoothly through 0; False where its value is on another scale or means nothing.
         pooled_statistics: of all trials together, besides those that every sample has.
-        positions, take, spectrum: see Measure; a mechanism whose roads know positions states others.
+        positions, take, spectrum: see Measure; a mechanism whose methods know positions states others.
     """
 
     name: str
@@ -171,8 +171,8 @@ class LengthSpec(MeasureSpec):
 
 
 @dataclass(frozen=True)
-class PlainRoad:
-    """A road that is a function; every trial seats.
+class PlainMethod:
+    """A method that is a function; every trial seats.
 
     Args:
         values: of some trials and a measure, (trials,) [mm or rad].
@@ -183,7 +183,7 @@ class PlainRoad:
     chord_error: ClassVar[float] = 0.0
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         return Answers({measure.name: self._column(trials, measure) for measure in measures})
 
     def _column(self, trials: Trials, measure: Measure) -> Array:
@@ -200,7 +200,7 @@ class PlainRoad:
 class PlainSystem:
     """A system read at one position, at rest, without sums or sections of its own; see System.
 
-    A subclass adds `analytic` and `exact`, its roads as functions, and overrides what it knows better, such as
+    A subclass adds `analytic` and `exact`, its methods as functions, and overrides what it knows better, such as
     `closed_form`, `acting` or `problems`.
 
     Args:
@@ -213,7 +213,7 @@ class PlainSystem:
     contributors: tuple[PlainContributor, ...]
     measures: tuple[PlainMeasure, ...]
 
-    roads: ClassVar[Mapping[str, RoadKind]] = {ANALYTIC_ROAD: RoadKind("model"), "exact": RoadKind("model")}
+    methods: ClassVar[Mapping[str, MethodKind]] = {ANALYTIC_METHOD: MethodKind("model"), "exact": MethodKind("model")}
     statuses: ClassVar[Statuses] = Statuses(("ok",))
     breakdowns: ClassVar[Sequence[Breakdown]] = ()
     warnings: ClassVar[Sequence[str]] = ()
@@ -226,9 +226,9 @@ class PlainSystem:
         """Values (trials,) [mm or rad] of the parts as they are placed."""
         raise UnfitError(f"{type(self).__name__} lacks exact(trials, measure), its values of placed parts")
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         """One of the two functions."""
-        return PlainRoad(self.analytic if name == ANALYTIC_ROAD else self.exact)
+        return PlainMethod(self.analytic if name == ANALYTIC_METHOD else self.exact)
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """None."""
@@ -255,11 +255,11 @@ class PlainSystem:
         """Nothing turns."""
         return False
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         """Nothing is to be compiled."""
         return True
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """None."""
         return None
 
@@ -268,7 +268,7 @@ class PlainSystem:
         return len(measures)
 
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
-        """No road has facets."""
+        """No method has facets."""
         return 0.0
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
@@ -299,7 +299,7 @@ class PlainSystem:
         count = own.stop - own.start
         builds = np.repeat(mean_deviations(self, measure.positions), 2 * count, axis=0)
         builds[:, own] += step * np.concatenate([np.eye(count), -np.eye(count)])
-        theory = self.road(ANALYTIC_ROAD, self.materials(ANALYTIC_ROAD))
+        theory = self.method(ANALYTIC_METHOD, self.materials(ANALYTIC_METHOD))
         values = theory.answers(stated(self, builds), (measure,)).values[measure.name][:, 0]
         return np.asarray((values[:count] - values[count:]) / (2 * step or 1.0))
 
@@ -319,7 +319,7 @@ class PlainSystem:
         """None."""
         return {}
 
-    def display(self, trials: Trials, road: Road) -> Any:
+    def display(self, trials: Trials, method: Method) -> Any:
         """Nothing to draw."""
         return None
 

@@ -17,7 +17,7 @@ Columns = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class PooledTerms:
-    """One road's terms of a breakdown, in its order; trials that did not seat are left out.
+    """One method's terms of a breakdown, in its order; trials that did not seat are left out.
 
     Args:
         moments: of each term, in the breakdown's unit.
@@ -28,15 +28,15 @@ class PooledTerms:
     sums: RegressorSums
 
     @classmethod
-    def of(cls, breakdown: Breakdown, road: str, columns: Columns, whole: Outcome) -> "PooledTerms | None":
-        """The terms of one block; None where that road was not gone.
+    def of(cls, breakdown: Breakdown, method: str, columns: Columns, whole: Outcome) -> "PooledTerms | None":
+        """The terms of one block; None where that method was not gone.
 
         Args:
-            breakdown, road: whose terms.
+            breakdown, method: whose terms.
             columns: of the block.
             whole: outcome of the sum.
         """
-        names = [breakdown.column(road, term.name) for term in breakdown.terms]
+        names = [breakdown.column(method, term.name) for term in breakdown.terms]
         if names[0] not in columns:
             return None
         rows = np.stack([np.asarray(columns[name], dtype=np.float64) for name in names])

@@ -22,7 +22,7 @@ class Positions:
         angles: for "swing" [rad].
         shown: the angles that a reader knows these positions by [rad], such as those of the output.
         jumps: whether values may jump from one position to the next: extremes are then those of the positions alone.
-        in_turn: whether roads read one position after the other, so that of many only the values are held.
+        in_turn: whether methods read one position after the other, so that of many only the values are held.
     """
 
     over: Over

@@ -12,9 +12,9 @@ from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method, MethodKind
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
-from tol3d.system.road import Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
 
@@ -89,31 +89,31 @@ class Positioned(Protocol):
         ...
 
 
-class Roads(Protocol):
-    """By which roads a system answers, and what they take."""
+class Methods(Protocol):
+    """By which methods a system answers, and what they take."""
 
     @property
-    def roads(self) -> Mapping[str, RoadKind]:
-        """Its roads by the words of the scene's study.engine; "analytic" is always one of them."""
+    def methods(self) -> Mapping[str, MethodKind]:
+        """Its methods by the words of the scene's study.engine; "analytic" is always one of them."""
         ...
 
-    def is_compiled(self, road: str) -> bool:
-        """Whether this machine has compiled what a road needs, so that it starts at once."""
+    def is_compiled(self, method: str) -> bool:
+        """Whether this machine has compiled what a method needs, so that it starts at once."""
         ...
 
-    def materials(self, road: str) -> Any:
-        """What a road is made of that takes long to make or needs CAD; None where it needs nothing.
+    def materials(self, method: str) -> Any:
+        """What a method is made of that takes long to make or needs CAD; None where it needs nothing.
 
-        Made once, in the parent process, for the study's engine; it pickles, and `road` gets it in every worker.
+        Made once, in the parent process, for the study's engine; it pickles, and `method` gets it in every worker.
         """
         ...
 
-    def road(self, name: str, materials: Any) -> Road:
-        """A road, made in the worker.
+    def method(self, name: str, materials: Any) -> Method:
+        """A method, made in the worker.
 
         Args:
-            name: one of `roads`.
-            materials: what `materials(name)` has made; always None for the analytic road, which must do without.
+            name: one of `methods`.
+            materials: what `materials(name)` has made; always None for the analytic method, which must do without.
         """
         ...
 
@@ -144,7 +144,7 @@ class Theory(Protocol):
         ...
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
-        """Moments of a measure by the analytic road; None where there is no closed form."""
+        """Moments of a measure by the analytic method; None where there is no closed form."""
         ...
 
     def reference_form(self, measure: Measure) -> ClosedForm | None:
@@ -152,7 +152,7 @@ class Theory(Protocol):
         ...
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
-        """What the analytic road leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
+        """What the analytic method leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
         ...
 
 
@@ -160,13 +160,13 @@ class Shown(Protocol):
     """What a system shows of its results."""
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """Further sections of summary.json, from what was pooled of each breakdown by measure and road."""
+        """Further sections of summary.json, from what was pooled of each breakdown by measure and method."""
         ...
 
-    def display(self, trials: Trials, road: Road) -> Any:
+    def display(self, trials: Trials, method: Method) -> Any:
         """A build with its contacts, for whoever draws or exports it; the system's presenters know what it is."""
         ...
 
 
-class System(Described, Positioned, Roads, Theory, Shown, Protocol):
+class System(Described, Positioned, Methods, Theory, Shown, Protocol):
     """Parts that are built and measured: frozen, and it pickles. Lengths are mm, angles rad, temperatures K."""

@@ -13,7 +13,7 @@ VALUES_AT_ONCE = 2**22  # the same where positions are read in turn and only the
 
 
 def trials_at_once(measures: Iterable[Measure]) -> int:
-    """How many trials a road is asked at once, as the positions of the measures let it."""
+    """How many trials a method is asked at once, as the positions of the measures let it."""
     return max(1, min(_rows(own.positions) // own.positions.in_a_trial for own in measures))
 
 

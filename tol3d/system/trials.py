@@ -1,4 +1,4 @@
-"""Consecutive trials as both roads get them: deviations, and the position at which each trial is read."""
+"""Consecutive trials as both methods get them: deviations, and the position at which each trial is read."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""FCL as the witness of assemblies: gaps of round surfaces and clearances, against closed forms and the exact road."""
+"""FCL as the witness of assemblies: round gaps and clearances, against closed forms and the exact method."""
 
 from pathlib import Path
 
@@ -64,7 +64,7 @@ def surfaces(tmp_path_factory: pytest.TempPathFactory) -> Assembled:
 
 
 def witness_of(system: AssemblySystem) -> FclWitness:
-    made = system.road("fcl", system.materials("fcl"))
+    made = system.method("fcl", system.materials("fcl"))
     assert isinstance(made, FclWitness)
     return made
 
@@ -98,7 +98,7 @@ def test_surfaces_that_overlap_have_a_gap_below_0(surfaces: Assembled) -> None:
     assert read[0, 0] == pytest.approx(-1.0, abs=1e-6)
 
 
-def test_trials_are_read_as_the_exact_road_reads_them(surfaces: Assembled) -> None:
+def test_trials_are_read_as_the_exact_method_reads_them(surfaces: Assembled) -> None:
     trials = drawn(surfaces.simulation, 0, 100)
     system = surfaces.system
     witness, exact = witness_of(system), surfaces.values(trials)
@@ -176,8 +176,8 @@ def test_a_clearance_is_witnessed_by_meshes_of_half_the_step(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("scene", "has_one"), [("box_with_discs", True), ("cover_on_base", False)])
 def test_a_scene_has_a_witness_where_fcl_reads_something(scene: str, has_one: bool) -> None:
-    roads = simulation_of(load(SCENES / f"{scene}.yaml")).system.roads
-    assert ("fcl" in roads) == has_one
+    methods = simulation_of(load(SCENES / f"{scene}.yaml")).system.methods
+    assert ("fcl" in methods) == has_one
 
 
 def test_a_scene_without_one_is_refused_the_option(tol3d: Command) -> None:
@@ -190,7 +190,7 @@ def test_overlap_is_the_same_status_by_both(tmp_path: Path) -> None:
     made = assembled(PIN, tmp_path)
     system = made.system
     trials = stated(system, np.array([[0.3, 0.0, 0.0], [0.0, 0.0, 0.0]]))
-    both = [system.road(name, system.materials(name)).answers(trials, system.measures) for name in ("exact", "fcl")]
+    both = [system.method(name, system.materials(name)).answers(trials, system.measures) for name in ("exact", "fcl")]
     for found in both:
         assert found.status["cap to base"].tolist() == [OVERLAP, 0]
 

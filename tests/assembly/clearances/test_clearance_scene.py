@@ -1,4 +1,4 @@
-"""Clearances in scenes: both roads, by hand and trial by trial; what is refused; what else a run says of them."""
+"""Clearances in scenes: both methods, by hand and trial by trial; what is refused; what else a run says of them."""
 
 import sys
 from pathlib import Path
@@ -55,9 +55,9 @@ def blocks(tmp_path_factory: pytest.TempPathFactory) -> Assembled:
     return assembled(BLOCKS, tmp_path_factory.mktemp("blocks"))
 
 
-def answers(made: Assembled, deviations: Array, road: str) -> tuple[Array, NDArray[np.int8]]:
+def answers(made: Assembled, deviations: Array, method: str) -> tuple[Array, NDArray[np.int8]]:
     system = made.system
-    found = system.road(road, system.materials(road)).answers(stated(system, deviations), system.measures)
+    found = system.method(method, system.materials(method)).answers(stated(system, deviations), system.measures)
     count = len(deviations)
     return found.values["apart"][:, 0], found.status.get("apart", np.zeros(count, dtype=np.int8))
 
@@ -76,12 +76,12 @@ def test_plates_over_each_other_are_apart_by_their_lowest_corner(blocks: Assembl
     assert exact == pytest.approx(lowest, abs=2 * (0.05 / 10) ** 2)
 
 
-def test_both_roads_differ_by_what_is_of_second_order(tmp_path: Path) -> None:
+def test_both_methods_differ_by_what_is_of_second_order(tmp_path: Path) -> None:
     made = assembled(LID, tmp_path)
     trials = drawn(made.simulation, 0, 100)
 
     def difference(factor: float) -> float:
-        exact, linear = (made.values(trials.scaled(factor), road)["lid to wall"] for road in ("exact", "analytic"))
+        exact, linear = (made.values(trials.scaled(factor), method)["lid to wall"] for method in ("exact", "analytic"))
         return float(np.abs(exact - linear).max())
 
     assert difference(1.0) < 3e-4
@@ -107,7 +107,7 @@ def test_an_overlap_counts_as_below_the_limit(tmp_path: Path, tol3d: Command) ->
     assert "clearance from lower to upper, within 2 um by their meshes" in out
 
 
-def test_the_scene_reads_the_same_on_both_roads_trial_by_trial(tmp_path: Path) -> None:
+def test_the_scene_reads_the_same_on_both_methods_trial_by_trial(tmp_path: Path) -> None:
     made = assembled(LID, tmp_path)
     assert isinstance(made.system, ClearanceSystem)
     trials = drawn(made.simulation, 0, 400)

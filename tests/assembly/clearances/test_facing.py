@@ -1,4 +1,4 @@
-"""Where parts may be nearest, for the analytic road: which pairs there are, and what their least distance is."""
+"""Where parts may be nearest, for the analytic method: which pairs there are, and what their least distance is."""
 
 import numpy as np
 import pytest

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from tol3d.assembly.grammar.measures.gap import DistanceSpec
 from tol3d.assembly.model import Assembly, BestFit, Fit, Fix, Measured, Move, Point
 from tol3d.assembly.model.statuses import OK, SINGULAR
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Fix, Measured, Plane, Point, Shape
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

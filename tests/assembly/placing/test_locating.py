@@ -22,7 +22,7 @@ from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Point
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.locating import contacts_met
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -211,7 +211,8 @@ def test_what_is_not_a_number_is_a_fault_and_no_status(monkeypatch: pytest.Monke
     with pytest.raises(FloatingPointError, match="the pose of box is not a number in 1 trials"):
         values(nest("part"), deviations, ["corner"])
     monkeypatch.undo()
-    monkeypatch.setattr("tol3d.assembly.placing.road.reading", lambda *_: np.where(np.arange(40) % 20 == 7, np.nan, 1))
+    monkeypatch.setattr("tol3d.assembly.placing.method.reading", lambda *_: np.where(np.arange(40) % 20 == 7, np.nan, 1)
+    )
     with pytest.raises(FloatingPointError, match=r"measures\.corner is not a number in 1 trials that nothing fails"):
         values(nest("part"), deviations, ["corner"])
 

@@ -41,7 +41,7 @@ from tol3d.assembly.model import (
     Relation,
 )
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

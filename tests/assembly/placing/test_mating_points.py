@@ -7,7 +7,7 @@ from assembly.placing.mated_parts import FACE, FLOOR, PIN, UNDER, WALL, Side, fe
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Point
-from tol3d.assembly.placing.road import placed
+from tol3d.assembly.placing.method import placed
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

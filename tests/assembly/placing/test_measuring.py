@@ -36,7 +36,7 @@ from tol3d.assembly.model import (
 )
 from tol3d.assembly.model.measures import Reading
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 
 from tol3d.assembly.model.moves import PointsOn
 from tol3d.assembly.model.statuses import NOT_HELD, OK, SINGULAR
-from tol3d.assembly.placing.road import answers, placed
+from tol3d.assembly.placing.method import answers, placed
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

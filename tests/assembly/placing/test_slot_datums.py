@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Plane, Shape, Slot
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.holding import held_by_datums, in_words
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ def drawn(names: Sequence[str], shapes: Mapping[str, tuple[Array, Shape]] = SHAP
 
 
 def first_order(assembly: Assembly, row: Array) -> Array:
-    """Shift and turn (6,) of the frame, by the analytic road."""
+    """Shift and turn (6,) of the frame, by the analytic method."""
     found = torsors.values(assembly, row, list(assembly.measures))
     at = np.array([[found[f"{k}{axis}"][0] for axis in "xyz"] for k in range(4)])
     moved = at - TIPS
@@ -61,7 +61,7 @@ def first_order(assembly: Assembly, row: Array) -> Array:
 
 
 def exactly(assembly: Assembly, row: Array) -> Array:
-    """Pose (4, 4) of the frame, by the exact road."""
+    """Pose (4, 4) of the frame, by the exact method."""
     read = placing.values(assembly, row, list(assembly.measures))
     assert all((codes == OK).all() for _, codes in read.values())
     at = np.array([[read[f"{k}{axis}"][0][0] for axis in "xyz"] for k in range(4)])
@@ -108,7 +108,7 @@ def test_a_slot_across_the_bore_clocks_the_part_by_its_lean() -> None:
 
 
 def test_a_slot_through_which_the_turn_goes_is_held_by_its_place_alone() -> None:
-    """A tab whose middle lies as far from a bore as its end from its middle: by its place on both roads."""
+    """A tab whose middle lies as far from a bore as its end from its middle: by its place on both methods."""
     draft = Draft()
     draft.part("p")
     for name in ("floor", "bore"):
@@ -259,7 +259,7 @@ ORDERS = [
 
 @pytest.mark.parametrize("names", ORDERS, ids="|".join)
 def test_random_drafts_lie_as_an_independent_builder_lays_them(names: list[str]) -> None:
-    """The analytic road to rounding; the exact one to second order: slopes up to 0.03 / 5 squared, over 100 mm."""
+    """The analytic method to rounding; the exact one to second order: slopes up to 0.03 / 5 squared, over 100 mm."""
     rng = np.random.default_rng(len("".join(names)))
     for _ in range(4):
         shapes = anywhere(rng)

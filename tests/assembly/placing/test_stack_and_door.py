@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Mate, Measured, Move, Plane, Point, Relation
-from tol3d.assembly.placing.road import placed, values
+from tol3d.assembly.placing.method import placed, values
 
 Array = NDArray[np.float64]
 

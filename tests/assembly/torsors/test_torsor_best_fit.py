@@ -1,4 +1,4 @@
-"""Best fits on the analytic road, against normal equations, Kabsch's rotation, and convex programmes."""
+"""Best fits on the analytic method, against normal equations, Kabsch's rotation, and convex programmes."""
 
 import math
 from itertools import pairwise
@@ -11,7 +11,7 @@ from scipy.optimize import linprog, minimize
 from scipy.spatial.transform import Rotation
 
 from tol3d.assembly.model import Assembly, BestFit, Fit, Fix, Locate, Pair
-from tol3d.assembly.torsors.road import slopes, values
+from tol3d.assembly.torsors.method import slopes, values
 
 Array = NDArray[np.float64]
 

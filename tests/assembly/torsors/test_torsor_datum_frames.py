@@ -1,4 +1,4 @@
-"""Datum frames on the analytic road, against closed forms and worked levers."""
+"""Datum frames on the analytic method, against closed forms and worked levers."""
 
 import math
 
@@ -11,7 +11,7 @@ from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.grammar.measures.inspected import InspectedPositionSpec
 from tol3d.assembly.model import Assembly, Axis, Datum, Measured, Plane, RoundPlane
 from tol3d.assembly.model.datum_frame import Simulator
-from tol3d.assembly.torsors.road import slopes, values
+from tol3d.assembly.torsors.method import slopes, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

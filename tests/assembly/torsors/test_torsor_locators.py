@@ -1,4 +1,4 @@
-"""Six contacts on the analytic road, against lever arms and against poses that Newton finds."""
+"""Six contacts on the analytic method, against lever arms and against poses that Newton finds."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from rigid_parts import RigidParts, directional
 
 from tol3d.assembly.grammar.measures.gap import GapSpec
 from tol3d.assembly.model import Assembly, Fix, Locate, Measured, Move, Pair, Weld
-from tol3d.assembly.torsors.road import slopes, values
+from tol3d.assembly.torsors.method import slopes, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

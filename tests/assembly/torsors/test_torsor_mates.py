@@ -1,4 +1,4 @@
-"""Mates on the analytic road, against stacks, levers and poses that Newton finds."""
+"""Mates on the analytic method, against stacks, levers and poses that Newton finds."""
 
 import math
 
@@ -10,7 +10,7 @@ from rigid_parts import Poses, RigidParts, directional
 
 from tol3d.assembly.grammar.measures.inspected import InspectedSizeSpec
 from tol3d.assembly.model import Assembly, Axis, Fix, Mate, Measured, Plane, Relation
-from tol3d.assembly.torsors.road import slopes, values
+from tol3d.assembly.torsors.method import slopes, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""Measures on the analytic road, against closed forms and finite poses."""
+"""Measures on the analytic method, against closed forms and finite poses."""
 
 import math
 import pickle
@@ -21,7 +21,7 @@ from tol3d.assembly.grammar.measures.inspected import (
 )
 from tol3d.assembly.model import Assembly, Axis, Datum, Fix, Locate, Measured, Move, Pair, Plane, RoundPlane
 from tol3d.assembly.torsors.first_order import first_order
-from tol3d.assembly.torsors.road import slopes, values
+from tol3d.assembly.torsors.method import slopes, values
 from tol3d.errors import InputError
 
 Array = NDArray[np.float64]

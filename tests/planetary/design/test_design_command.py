@@ -76,8 +76,8 @@ def test_a_candidate_is_a_scene_that_runs(tol3d: Command, tmp_path: Path, wish: 
     (tmp_path / "set.yaml").write_text(alike.replace("trials: 20000", "trials: 20"), encoding="utf-8")
     run = run_scene(tmp_path / "set.yaml", out=tmp_path / "run")
     found = run.summary["measures"]["lost motion"]
-    for road in ("analytic", "geometric"):
-        assert found[road]["mean"] == pytest.approx(math.degrees(free) * 60, abs=2e-4)
+    for method in ("analytic", "geometric"):
+        assert found[method]["mean"] == pytest.approx(math.degrees(free) * 60, abs=2e-4)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Links of shafts from elsewhere: their kinds stand in scenes of gears, which nothing of the package knows.
 
-coupling   jaws with a slack: both roads differ to third order
+coupling   jaws with a slack: both methods differ to third order
 belt       a toothed belt: its play depends on the position, and has a middle of its own
 planet     a gear on a carrier
 """

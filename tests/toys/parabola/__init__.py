@@ -2,7 +2,7 @@
 
 grammar     what scenes say
 springs     the numbers of a scene
-roads       the theory, the parabola itself, and its chords as a witness
+methods       the theory, the parabola itself, and its chords as a witness
 system      all that a study asks
 cumulants   the closed forms, for tests
 summary     what summaries hold besides

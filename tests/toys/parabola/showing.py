@@ -66,10 +66,10 @@ class SpringPresenter:
     def sections(self, summary: "RunSummary") -> Sequence[PageItem]:
         if not isinstance(summary, TermsOfRun) or summary.terms is None:
             return ()
-        roads = summary.terms["height"]
-        names = list(roads["analytic"])
-        rows = [Row(name, [f"{own[name].sigma:.3f}" for own in roads.values()]) for name in names]
-        return (Table("term: sigma [µm]", [Heading(road) for road in roads], rows),)
+        methods = summary.terms["height"]
+        names = list(methods["analytic"])
+        rows = [Row(name, [f"{own[name].sigma:.3f}" for own in methods.values()]) for name in names]
+        return (Table("term: sigma [µm]", [Heading(method) for method in methods], rows),)
 
     def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
         if not isinstance(summary, TermsOfRun) or summary.terms is None or measure.kind != "height":

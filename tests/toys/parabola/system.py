@@ -14,24 +14,24 @@ from tol3d.system.breakdown import Breakdown, SumTerm
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method, MethodKind
 from tol3d.system.pooled import PooledTerms
 from tol3d.system.positions import Positions
 from tol3d.system.regressors import regress_plainly, regress_term
-from tol3d.system.road import Road, RoadKind
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import KeyPath, Published, StreamKey
 from tol3d.system.trials import Trials
 from toys.contributor import ToyContributor
 from toys.measure import ToyMeasure
-from toys.parabola.roads import POSITION, TERMS, Deviations, Exact, Theory, angles_of, chords_road
+from toys.parabola.methods import POSITION, TERMS, Deviations, Exact, Theory, angles_of, chords_method
 from toys.parabola.springs import LOST_LEVER, Springs, coil_weights, own_measure, springs_of, toy
 
 Array = NDArray[np.float64]
 
-ROADS = {
-    "exact": RoadKind("the parabola"),
-    "chords": RoadKind("knots of chords", threads=False, witness=True),
-    "analytic": RoadKind("a line"),
+METHODS = {
+    "exact": MethodKind("the parabola"),
+    "chords": MethodKind("knots of chords", threads=False, witness=True),
+    "analytic": MethodKind("a line"),
 }
 STATUSES = Statuses(("ok", "too long", "lost"), frozenset(("too long",)), {"too long": "do not fit"})
 COLUMN = "position:spring [deg]"
@@ -44,7 +44,7 @@ class ParabolaSystem:
 
     springs: Springs
 
-    roads = ROADS
+    methods = METHODS
     statuses = STATUSES
     warnings = ()
 
@@ -90,22 +90,22 @@ class ParabolaSystem:
     def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
         return False
 
-    # its roads --------------------------------------------------------------------------------------
+    # its methods --------------------------------------------------------------------------------------
 
-    def is_compiled(self, road: str) -> bool:
+    def is_compiled(self, method: str) -> bool:
         return True
 
-    def materials(self, road: str) -> Any:
+    def materials(self, method: str) -> Any:
         """Of the chords: where they meet, and the process that made that."""
-        if road != "chords":
+        if method != "chords":
             return None
         knots = np.linspace(-KNOTS_TO, KNOTS_TO, self.springs.chords + 1)
         return {"knots": knots, "squares": knots**2, "made by": np.array(os.getpid())}
 
-    def road(self, name: str, materials: Any) -> Road:
+    def method(self, name: str, materials: Any) -> Method:
         if name == "analytic":
             return Theory(self.springs, self)
-        return Exact(self.springs, self) if name == "exact" else chords_road(self.springs, self, materials)
+        return Exact(self.springs, self) if name == "exact" else chords_method(self.springs, self, materials)
 
     def cost(self, measures: Sequence[Measure]) -> int:
         return sum(measure.positions.in_a_trial for measure in measures)
@@ -165,11 +165,11 @@ class ParabolaSystem:
     # what it shows ----------------------------------------------------------------------------------
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """Each measure's terms, by road."""
-        return {"terms": {name: {road: _terms(own) for road, own in roads.items()} for name, roads in terms.items()}}
+        """Each measure's terms, by method."""
+        return {"terms": {name: {key: _terms(own) for key, own in found.items()} for name, found in terms.items()}}
 
-    def display(self, trials: Trials, road: Road) -> "Lifted":
-        found = road.answers(trials, self.measures)
+    def display(self, trials: Trials, method: Method) -> "Lifted":
+        found = method.answers(trials, self.measures)
         first = self.measures[0]
         height = float(found.values[first.name][0, 0]) if first.kind == "height" else 0.0
         return Lifted(self.springs, height, float(angles_of(first, trials)[0, 0]))

@@ -2,7 +2,7 @@
 and where the disc may slide is what two load paths leave, which is a linear programme.
 
     grammar     what scenes say
-    system      all that a study asks, both roads
+    system      all that a study asks, both methods
     programme   the slow reference: each trial by scipy's linprog
 """
 

@@ -12,8 +12,8 @@ from tol3d.scene import Scene
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Each, Planar
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers, Method
 from tol3d.system.plain import PlainSystem, contributors_of, measures_of
-from tol3d.system.road import Answers, Road
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
 from toys.pins.grammar import DiscSpec, OffCentreSpec, PinSpec, PlateSpec
@@ -32,7 +32,7 @@ def directions(pins: int) -> Array:
 
 
 @dataclass(frozen=True)
-class PinsRoad:
+class PinsMethod:
     """Gaps (trials, pins) of some trials, and from them each measure."""
 
     system: "PinsSystem"
@@ -72,8 +72,8 @@ class PinsSystem(PlainSystem):
         ("ok", "clashes"), frozenset(("clashes",)), {"clashes": "clash"}, {"clashes": "clashing"}
     )
 
-    def road(self, name: str, materials: Any) -> Road:
-        return PinsRoad(self, self.first_order if name == "analytic" else self.placed)
+    def method(self, name: str, materials: Any) -> Method:
+        return PinsMethod(self, self.first_order if name == "analytic" else self.placed)
 
     def first_order(self, trials: Trials) -> Array:
         """Gaps (trials, pins) [mm]; nothing of second order."""

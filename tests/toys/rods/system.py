@@ -74,7 +74,7 @@ class Scaled:
 
 @dataclass(frozen=True)
 class RodsSystem(PlainSystem):
-    """Implements System; both roads add up."""
+    """Implements System; both methods add up."""
 
     length: float = 0.0
 

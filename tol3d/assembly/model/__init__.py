@@ -1,4 +1,4 @@
-"""What an assembly is, nominally and by its drawings: what both roads read, and neither computes here.
+"""What an assembly is, nominally and by its drawings: what both methods read, and neither computes here.
 
 Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of parts are in the world.
 """

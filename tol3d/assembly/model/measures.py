@@ -33,12 +33,12 @@ class Facing:
 
 PLACING: Final = "tol3d.assembly.placing.measuring"
 TORSORS: Final = "tol3d.assembly.torsors.measures"
-"""Where each road has the readings of the kinds that tol3d ships."""
+"""Where each method has the readings of the kinds that tol3d ships."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How a kind of measure is read: by each road's own function, named by an import path `package.module:function`.
+    """How a kind of measure is read: by each method's own function, named by an import path `package.module:function`.
 
     Args:
         name: in messages; of one kind, or of several that are read alike.
@@ -60,9 +60,9 @@ class Reading:
 
     def lacking(self) -> Iterator[str]:
         """What it names and is not there."""
-        for road, path in (("placing", self.placing), ("torsors", self.torsors)):
+        for method, path in (("placing", self.placing), ("torsors", self.torsors)):
             if not is_named(path):
-                yield f"its reading by {road}: expected `package.module:function`, got {path!r}, where nothing is"
+                yield f"its reading by {method}: expected `package.module:function`, got {path!r}, where nothing is"
 
 
 Rocking = Literal["least", "middle", "largest"]

@@ -1,4 +1,4 @@
-"""A move of another mechanism that places bodies of an assembly: it says itself how, on both roads."""
+"""A move of another mechanism that places bodies of an assembly: it says itself how, on both methods."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence

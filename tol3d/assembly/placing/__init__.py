@@ -1,1 +1,1 @@
-"""The exact road: finite poses of features, datum frames and parts, trial by trial in arrays."""
+"""The exact method: finite poses of features, datum frames and parts, trial by trial in arrays."""

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.assembly.model import Assembly, Feature
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.posed import PosedSystem
 from tol3d.assembly.presenting.symbols import joined_symbols, labels, marks_on_solid, unnamed
 from tol3d.assembly.system import AssemblySystem

@@ -173,7 +173,8 @@ def corners_of(matrix: Array, pull: Array, wish: Array) -> list[Corner]:
     """
     count = matrix.shape[1]
     if comb(len(matrix), count) > MOST_SETS:
-        raise InputError(f"{len(matrix)} one-sided contacts for {count} freedoms: expected fewer on the analytic road")
+        told = f"{len(matrix)} one-sided contacts for {count} freedoms"
+        raise InputError(f"{told}: expected fewer by the analytic method")
     found: list[Corner] = []
     sets = combinations(range(len(matrix)), count)
     while some := list(islice(sets, TOGETHER)):

@@ -153,7 +153,7 @@ def balances(points: Array) -> Array:
         InputError: more than 20 points.
     """
     if len(points) > MOST_POINTS:
-        raise InputError(f"flatness of {len(points)} points; expected {MOST_POINTS} at most on the analytic road")
+        raise InputError(f"flatness of {len(points)} points; expected {MOST_POINTS} at most on the analytic method")
     size = max(float(np.ptp(points, axis=0).max()), 1e-300)
     sums = np.vstack([np.ones(len(points)), ((points - points.mean(axis=0)) / size).T])
     found = []

@@ -1,1 +1,1 @@
-"""The exact road of a cycloid stage: contacts in finite geometry."""
+"""The exact method of a cycloid stage: contacts in finite geometry."""

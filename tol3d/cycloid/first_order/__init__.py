@@ -1,1 +1,1 @@
-"""The analytic road of a cycloid stage: turns to first order."""
+"""The analytic method of a cycloid stage: turns to first order."""

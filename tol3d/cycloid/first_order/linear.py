@@ -1,4 +1,4 @@
-"""The analytic road of a cycloid stage: turns of its carrier to first order, by levers and gaps at nominal pins.
+"""The analytic method of a cycloid stage: turns of its carrier to first order, by levers and gaps at nominal pins.
 
 With crank phi, disc d has its centre at a e^(i phi_d), phi_d = phi + 2 pi d / discs, and has turned with the carrier
 by chi = -phi / Zc. A pin at azimuth alpha stands at phase s = alpha - phi_d; its normal, out of the disc, comes from

@@ -1,4 +1,4 @@
-"""The analytic road of a cycloid stage with play: where a torque takes it, all gaps to first order at the nominal pose.
+"""The analytic method of a cycloid stage with play: where a torque takes it, all gaps of first order about the nominal.
 
 Bodies are the carrier, discs and cranks, each free in the plane; in the carrier's frame, lengths and turns at the crank
 circle's radius R, a disc is displaced by D and turned by tau, a crank displaced by C and turned by beta, the carrier

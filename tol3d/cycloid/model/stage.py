@@ -1,4 +1,4 @@
-"""A cycloid stage without bearing play, and what its parts deviate by in some trials, as both roads get them."""
+"""A cycloid stage without bearing play, and what its parts deviate by in some trials, as both methods get them."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -78,7 +78,7 @@ class CycloidStage:
 
     @classmethod
     def of(cls, own: Any) -> Self:
-        """That of a reducer, or of another road."""
+        """That of a reducer, or of another method."""
         return cls(own.profile, own.discs, own.cranks, own.crank_circle, own.rolling, own.window)
 
     @property
@@ -111,7 +111,7 @@ class Touching:
     """Which pins stop the carrier, and where.
 
     Args:
-        turns: the carrier's beyond -phi / Zc (trials, positions) [rad], counter-clockwise, of the exact road by senses
+        turns: the carrier's beyond -phi / Zc (trials, positions) [rad], counter-clockwise, of the exact method by sense
             on a further axis; NaN where no contact was found.
         places: the pin that touches, disc times pins + pin, in the same shape; -1 for none.
         near: working pins that have a gap of at most the stated deflection then; None where none was stated.

@@ -31,8 +31,8 @@ def link_sections(summary: RunSummary) -> Sequence[PageItem]:
         for train in trains
         for stage in train.stages
         if stage.kind == IN_A_TRAIN
-        for road in (stage.roads.analytic, stage.roads.geometric)
-        if road is not None and road.mean is not None and road.mean < 0.0
+        for method in (stage.methods.analytic, stage.methods.geometric)
+        if method is not None and method.mean is not None and method.mean < 0.0
     }
     notes = [note(f"{', '.join(sorted(tight))}: {NEGATIVE}; it is added to the play of other stages as it is")]
     return [*(notes if tight else ()), *stage_blocks(stages)]
@@ -41,7 +41,7 @@ def link_sections(summary: RunSummary) -> Sequence[PageItem]:
 def below_zero(summary: RunSummary) -> Sequence[PageItem]:
     """A note to lost motions whose mean is negative."""
     means = {
-        name: [road.mean for road in (own.analytic, own.geometric) if road is not None and road.mean is not None]
+        name: [each.mean for each in (own.analytic, own.geometric) if each is not None and each.mean is not None]
         for name, own in summary.measures.items()
         if own.kind == "cycloid_lost_motion"
     }

@@ -1,7 +1,7 @@
 """The first stage of an RV reducer: how far planets turn on a sun that stands, and so their cranks.
 
 Discs hold the throws of all cranks parallel, so that they turn together as far as the first planet lets them: load
-paths in parallel, of which one carries. A phase of a crank so is a turn of its planet. Both roads find the turn beyond
+paths in parallel, of which one carries. A phase of a crank is a turn of its planet. Both methods find the turn beyond
 where teeth without backlash would have the planets, counted counter-clockwise. Meshes are looked at in frames that turn
 with the carrier, the sun at the origin, the planet on x.
 """

@@ -1,11 +1,11 @@
-"""What the analytic road of an RV reducer neglects: the path of pin centres bends.
+"""What the analytic method of an RV reducer neglects: the path of pin centres bends.
 
-The road takes every gap along the normal of the place where the pin nominally is. Deviations, the turn and the
+The method takes every gap along the normal of the place where the pin nominally is. Deviations, the turn and the
 profile's shift put the pin D off that place along the path, whose curvature kappa then leaves kappa D^2/2 more. Near
 roots of lobes the path bends sharply: with K = 0.77 and 40 pins its concave radius is half a millimetre where the lever
 is 0.7 of the largest, and the square alone may let another pin be first. Of D the shift's part stays while deviations
-shrink, so that products of it with deviations are of first order. Over a turn the road also leaves out by how much the
-first stage shifts the angle of the cranks. With both, turns are those of the exact road but for terms of third order;
+shrink, so that products of it with deviations are of first order. Over a turn it also leaves out by how much the
+first stage shifts the angle of the cranks. With both, turns are those of the exact method but for terms of third order;
 what is neglected is the difference that both make, trial by trial.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from tol3d.cycloid.first_order.linear import LinearStage, PlacedDisc, Sense, picked
 from tol3d.cycloid.model.stage import Deviated
-from tol3d.cycloid.reducer.trials import RVMeasure, RVRoad, RVTrials
+from tol3d.cycloid.reducer.trials import RVMeasure, RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import as_complex
@@ -77,9 +77,9 @@ def neglected(system: RVTrials, measure: RVMeasure, trials: Trials) -> Mapping[s
     """By how much what is left out changes a measure, in its unit: (trials,) by its words; of a curve nothing."""
     if measure.take == "curve" or system.own.plays:
         return {}
-    bent, straight = (_taken(system, measure, trials, road(system.own)) for road in (BentTurning, LinearTurning))
+    bent, straight = (_taken(system, measure, trials, method(system.own)) for method in (BentTurning, LinearTurning))
     return {BEND: measure.per_internal * np.abs(bent - straight)}
 
 
 def _taken(system: RVTrials, measure: RVMeasure, trials: Trials, turning: Turning) -> Array:
-    return taken(measure, RVRoad(system, turning).answers(trials, (measure,)).values[measure.name])
+    return taken(measure, RVMethod(system, turning).answers(trials, (measure,)).values[measure.name])

@@ -1,8 +1,8 @@
-"""How far the output of an RV reducer turns whose bearings have play, by each road: until a torque on it rests.
+"""How far the output of an RV reducer turns whose bearings have play, by each method: until a torque on it rests.
 
 Cranks are taken where first contact without play would have them (see turning.py), and may turn from there between both
 flanks of their planets. The flank that holds all cranks holds; where a planet's other flank overlaps, as of a tight
-build, that one holds nothing. Rates of the analytic road follow from the forces at rest.
+build, that one holds nothing. Rates of the analytic method follow from the forces at rest.
 """
 
 import math
@@ -94,7 +94,7 @@ def _of_bearings(own: RVSet, found: Deviated, phis: Array, forces: Forces) -> No
     found.carrier_offsets[...] = as_points(carrier.sum(axis=1))
 
 
-AT_ONCE: Final = 1024  # rests of the analytic road in memory, some 10 kB each
+AT_ONCE: Final = 1024  # rests of the analytic method in memory, some 10 kB each
 MEANS: Final = {OK: OK, NO_ROOM: NO_FIT, STALLED: NO_REST, NOT_HELD: NO_CONTACT}
 
 
@@ -183,12 +183,12 @@ class LinearResting:
 
 
 def exact_turning(own: RVSet) -> Turning:
-    """How the exact road turns a reducer."""
+    """How the exact method turns a reducer."""
     return ExactResting(own) if own.plays else ExactTurning(own)
 
 
 def linear_turning(own: RVSet) -> Turning:
-    """How the analytic road turns it."""
+    """How the analytic method turns it."""
     return LinearResting(own) if own.plays else LinearTurning(own)
 
 

@@ -1,4 +1,4 @@
-"""Measures and trials of an RV reducer, and the road that reads them; both roads differ in how far they turn it."""
+"""Measures and trials of an RV reducer, and the method that reads them; both methods differ in how far they turn it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.turning import Turned, Turning
 from tol3d.numerics.arrays import Array, Places
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers
 from tol3d.system.output_system import OutputSystem
 from tol3d.system.plain import PlainMeasure
 from tol3d.system.positions import Positions
-from tol3d.system.road import Answers
 from tol3d.system.stated import component_slices
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns
@@ -107,19 +107,19 @@ Details = dict[str, NDArray[np.generic]]
 
 
 @dataclass(frozen=True)
-class RVRoad:
-    """Implements Road."""
+class RVMethod:
+    """Implements Method."""
 
     system: RVTrials
     turning: Turning
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return 0.0
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         deviated = self.system.deviated(trials)
         values: dict[str, Array] = {}
         status: dict[str, NDArray[np.int8]] = {}

@@ -1,11 +1,11 @@
-"""How far the output of an RV reducer turns, by each road.
+"""How far the output of an RV reducer turns, by each method.
 
 A crank turned by beta against the carrier's motion is a crank at another angle: with rho turns of the cranks a turn of
 the carrier while the input stands, exactly
 
     turn(phi, beta) = turn(phi + beta / (1 + rho / Zc)) - beta / (Zc + rho).
 
-Over a turn the analytic road leaves out the first, by which the angle of the cranks shifts: trials share their angles
+Over a turn the analytic method leaves out the first, by which the angle of the cranks shifts: trials share their angles
 there. Which pins work at the window's edge may differ by that.
 """
 
@@ -47,7 +47,7 @@ class Turned:
 
 
 class Turning(Protocol):
-    """One road to it."""
+    """One method to it."""
 
     def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
         """Until the first contact while the input stands.

@@ -1,4 +1,4 @@
-"""The road of RV reducers by FCL, which witnesses the exact one: strips of CAD faces against cylinders, the pins.
+"""The method of RV reducers by FCL, which witnesses the exact one: strips of CAD faces against cylinders, the pins.
 
 FCL iterates the distance of a cylinder, to some 1e-5 mm, and that of a ball from a triangle is a closed form. Strips of
 a flat disc are ruled along its pins, so that a ball at mid-height is as far off as the pin: it finds which one touches,
@@ -26,7 +26,7 @@ from tol3d.cycloid.model.stage import Deviated, Touching
 from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.first_stage import crank_turns, held_stage, placed_mesh
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.cycloid.reducer.trials import RVRoad, RVTrials
+from tol3d.cycloid.reducer.trials import RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import Turned, led_angles, output_turns
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
@@ -186,26 +186,26 @@ class StripTurning:
 
 
 @dataclass(frozen=True)
-class RVWitness(RVRoad):
-    """Implements WitnessRoad."""
+class RVWitness(RVMethod):
+    """Implements WitnessMethod."""
 
     strips: LobeStrips
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return self.strips.chord_error
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad: all but counts of pins near contact."""
+        """See WitnessMethod: all but counts of pins near contact."""
         own = self.system.read[measure.name]
         return not own.counts and measure.positions.in_a_trial <= MOST_POSITIONS
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad: by chords, and by all else."""
+        """See WitnessMethod: by chords, and by all else."""
         return self.system.gap_bound(measure, self.chord_error), self.system.gap_bound(measure, ALLOWANCE)
 
 
 def witness(system: RVTrials, strips: LobeStrips) -> RVWitness:
-    """The road of a reducer's trials by FCL."""
+    """The method of a reducer's trials by FCL."""
     return RVWitness(system, StripTurning(system.own, StripContact(system.own.contact, strips)), strips)

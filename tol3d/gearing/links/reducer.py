@@ -1,4 +1,4 @@
-"""Reducers known by their data sheets, the same on both roads."""
+"""Reducers known by their data sheets, the same on both methods."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

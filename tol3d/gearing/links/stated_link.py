@@ -286,7 +286,7 @@ class StatedLink(ABC):
         return LinkSum(float(plays[0]), {each.name: tuple(own.tolist()) for each, own in named})
 
     def rates(self, seen: LinkTrials, what: Literal["play", "rest"]) -> Mapping[str, Array]:
-        """Derivatives of the play, or of its middle, on the 3D road.
+        """Derivatives of the play, or of its middle, on the 3D method.
 
         By contributor, (trials, positions, components) [rad per mm, rad or K].
         """

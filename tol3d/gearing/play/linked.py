@@ -1,4 +1,4 @@
-"""What links that are no gear meshes leave free in some trials, by either road's law."""
+"""What links that are no gear meshes leave free in some trials, by either method's law."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -47,12 +47,12 @@ def _each_once(law: LinkLaw, link: StatedLink, seen: LinkTrials) -> FreeTurn:
 
 
 def as_built(link: StatedLink, seen: LinkTrials) -> FreeTurn:
-    """That of the geometric road."""
+    """That of the geometric method."""
     return link.exact(seen)
 
 
 def by_theory(link: StatedLink, seen: LinkTrials) -> FreeTurn:
-    """That of the analytic road."""
+    """That of the analytic method."""
     return link.analytic(seen)
 
 

@@ -1,6 +1,6 @@
 """What a measure's backlashes leave free, together: added up along a train, compared where parallel load paths join.
 
-Both roads go through here; what a single backlash is, each of them reads for itself.
+Both methods go through here; what a single backlash is, each of them reads for itself.
 """
 
 from collections.abc import Callable, Iterable, Iterator

@@ -25,7 +25,7 @@ from tol3d.gearing.presenting.link_symbol import link_colour
 from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distributions_of, leading_sums, share_text
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import BLACK, OUTSIDE, ROAD_COLOURS, label_angles, plain_axes
+from tol3d.report.canvas import BLACK, METHOD_COLOURS, OUTSIDE, label_angles, plain_axes
 from tol3d.report.label import legible, wrapped
 from tol3d.report.number import NOTHING, short_text, tip_mm, value_text
 from tol3d.runs.summary.run import RunSummary
@@ -133,17 +133,17 @@ class SumLine:
 
 
 def sum_lines(train: TrainSummary, summary: RunSummary) -> list[SumLine]:
-    """The distribution of the sum by each road, the stages' highs by the leading one, and others' sums."""
+    """The distribution of the sum by each method, the stages' highs by the leading one, and others' sums."""
     return list(_lines(train, summary))
 
 
 def _lines(train: TrainSummary, summary: RunSummary) -> Iterator[SumLine]:
     lever, distributions = train.lever_mm, distributions_of(train, summary)
-    for road, words in (("geometric", "3D simulation"), ("analytic", "analytic")):
-        values = distributions.get(road, Range(None, None, None))
+    for method, words in (("geometric", "3D simulation"), ("analytic", "analytic")):
+        values = distributions.get(method, Range(None, None, None))
         if values.known:
             text = f"mean {value_text(values.mean, 'arcmin')}, high {_with_tip(values.high, lever)}"
-            yield SumLine(f"{words}: mean ± 3 sigma", text, values, ROAD_COLOURS[road])
+            yield SumLine(f"{words}: mean ± 3 sigma", text, values, METHOD_COLOURS[method])
     highs = leading_sums(train)
     yield SumLine("sum of the stages' highs", f"{_with_tip(highs.high, lever)}, all at +3 sigma", highs, OUTSIDE, True)
     colours = published_colours(train)

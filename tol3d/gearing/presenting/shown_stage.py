@@ -9,7 +9,7 @@ from tol3d.report.column import columns_of
 from tol3d.report.number import NOTHING, tip_arcmin, tip_mm
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
-from tol3d.runs.summary.values import Road, Section
+from tol3d.runs.summary.values import Method, Section
 
 MANY_TURNS = 1e6  # no decimals from there on
 ROUNDING = 1e-6  # sigma
@@ -102,20 +102,20 @@ def trains_of(summary: RunSummary) -> Mapping[str, TrainSummary]:
     return (summary.trains or {}) if isinstance(summary, TrainsOfRun) else {}
 
 
-def leading_road(train: TrainSummary) -> Road:
-    """The road by which a train is shown: the 3D simulation where there is one."""
-    return "geometric" if all(stage.roads.geometric is not None for stage in train.stages) else "analytic"
+def leading_method(train: TrainSummary) -> Method:
+    """The method by which a train is shown: the 3D simulation where there is one."""
+    return "geometric" if all(stage.methods.geometric is not None for stage in train.stages) else "analytic"
 
 
 def leading_sums(train: TrainSummary) -> Range:
-    """Sums of the stages' ends by that road."""
-    return Range.of(train.sums.geometric if leading_road(train) == "geometric" else train.sums.analytic)
+    """Sums of the stages' ends by that method."""
+    return Range.of(train.sums.geometric if leading_method(train) == "geometric" else train.sums.analytic)
 
 
 def stages_of(train: TrainSummary) -> list[ShownStage]:
-    """The stages of a train's summary, from the held shaft on, by the leading road."""
-    road = leading_road(train)
-    return [_stage(number, stage, stage.roads.by(road)) for number, stage in enumerate(train.stages, 1)]
+    """The stages of a train's summary, from the held shaft on, by the leading method."""
+    method = leading_method(train)
+    return [_stage(number, stage, stage.methods.by(method)) for number, stage in enumerate(train.stages, 1)]
 
 
 def _stage(number: int, stage: StageSummary, values: Ends) -> ShownStage:
@@ -158,7 +158,7 @@ def shafts_along(stages: Sequence[ShownStage], held: str) -> list[str]:
 
 
 def sums_of(measure: MeasureSummary, summary: RunSummary) -> Mapping[str, Range]:
-    """Sums of the stages' lows, means and highs in the unit of a measure, by road and by who published them.
+    """Sums of the stages' lows, means and highs in the unit of a measure, by method and by who published them.
 
     Empty for a measure that is no such sum, or is read at another shaft, point or position than the train's stages are.
     """
@@ -177,7 +177,7 @@ def sums_of(measure: MeasureSummary, summary: RunSummary) -> Mapping[str, Range]
 
 
 def ends_by_column(train: TrainSummary) -> dict[str, Ends]:
-    """Sums of the stages' ends by road, and by who published them."""
+    """Sums of the stages' ends by method, and by who published them."""
     own: dict[str, Ends] = {"analytic": train.sums.analytic}
     if train.sums.geometric is not None:
         own["geometric"] = train.sums.geometric
@@ -192,7 +192,7 @@ def _lever_of(measure: TrainMeasureSummary, train: TrainSummary) -> float | None
 
 
 def distributions_of(train: TrainSummary, summary: RunSummary) -> dict[str, Range]:
-    """The lost motion that the train's stages add up to, by road and by who published it: ends and mean [arcmin].
+    """The lost motion that the train's stages add up to, by method and by who published it: ends and mean [arcmin].
 
     Of a train whose stages are those of a tip's displacement it is the turn that displaces the tip so far.
     """
@@ -200,7 +200,7 @@ def distributions_of(train: TrainSummary, summary: RunSummary) -> dict[str, Rang
     if not isinstance(measure, TrainMeasureSummary):
         return {}
     columns = {
-        column.heading if column.road == "published" else column.road: Range.of(column.values)
+        column.heading if column.method == "published" else column.method: Range.of(column.values)
         for column in columns_of(measure)
     }
     if measure.unit == "arcmin":

@@ -7,7 +7,7 @@ from tol3d.gearing.presenting.shown_stage import (
     ShownStage,
     distributions_of,
     ends_by_column,
-    leading_road,
+    leading_method,
     sense_text,
     shafts_along,
     stages_of,
@@ -22,12 +22,12 @@ from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 
-ROAD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
+METHOD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
 SUMS_MEAN = (
     "a sum of the stages' highs has every stage at its mean + 3 sigma at once; it is no worst case: a build with every "
     "deviation at its limit may exceed it. Mean + 3 sigma of the sum is of its distribution"
 )
-STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven shaft, mean ∓ 3 sigma; by the {road}"
+STAGES_MEAN = "low, mean, high: a stage's own angular backlash at its driven shaft, mean ∓ 3 sigma; by the {method}"
 OF_LAWS = "; of a data sheet's law its ends, where they are nearer than 3 sigma"
 
 
@@ -44,8 +44,8 @@ def _train_blocks(name: str, summary: RunSummary) -> Iterator[PageItem]:
     if not stages:
         return
     yield from (BLANK, stages_table(train, stages))
-    road = "3D simulation" if leading_road(train) == "geometric" else "analytic road"
-    yield note(STAGES_MEAN.format(road=road) + (OF_LAWS if any(stage.within_its_law for stage in stages) else ""))
+    method = "3D simulation" if leading_method(train) == "geometric" else "analytic method"
+    yield note(STAGES_MEAN.format(method=method) + (OF_LAWS if any(stage.within_its_law for stage in stages) else ""))
     yield from (BLANK, sums_table(train, summary), note(SUMS_MEAN))
 
 
@@ -92,15 +92,15 @@ def _angle(arcmin: float | None) -> Shown:
 
 
 def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
-    """Sums of the stages' ends against the distribution of the sum, a column a road and who published."""
+    """Sums of the stages' ends against the distribution of the sum, a column a method and who published."""
     distributions = distributions_of(train, summary)
     columns = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
-    columns = {name: columns[name] for name in (*ROAD_WORDS, *columns) if name in columns}
+    columns = {name: columns[name] for name in (*METHOD_WORDS, *columns) if name in columns}
     rows = [
         Row(f"sum of the stages' {word}", [_angle(own.by_word[word]) for own in columns.values()], unit="arcmin")
         for word in Range(None, None, None).by_word
     ]
-    highs = [distributions[name].high if name in ROAD_WORDS and name in distributions else None for name in columns]
+    highs = [distributions[name].high if name in METHOD_WORDS and name in distributions else None for name in columns]
     rows.append(Row("mean + 3 sigma of the sum", [_angle(high) for high in highs], unit="arcmin"))
     lever = train.lever_mm
     if lever is not None:
@@ -109,5 +109,5 @@ def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
         tips = [value_cell(tip_mm(high, lever), "mm") for high in highs]
         rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips, unit="mm"))
     styles = {"geometric": "bold", "analytic": ""}
-    headings = [Heading(ROAD_WORDS.get(name, name), styles.get(name, "green")) for name in columns]
+    headings = [Heading(METHOD_WORDS.get(name, name), styles.get(name, "green")) for name in columns]
     return Table(f"at {train.shaft}", headings, rows)

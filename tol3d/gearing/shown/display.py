@@ -35,7 +35,7 @@ class SeatedBuild:
         label: what it is, such as "trial-17" or "nominal", good as the start of a file's name.
         magnify: the factor of its deviations.
         meshes: each in a world of its own; those that are measured, or all of a model whose shafts are shown.
-        values: value of each measure on the geometric road, in the measure's unit, magnified too.
+        values: value of each measure on the geometric method, in the measure's unit, magnified too.
         notes: what the user should know.
         seen: the build itself, simulated again with its deviations as they are magnified.
     """

@@ -8,10 +8,10 @@ import numpy as np
 
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Contributor, Measure, Model, Planar, Positions
 from tol3d.gearing.model.contributor import Unit
 from tol3d.gearing.model.measure import at_one_position
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import reference_form
 from tol3d.numerics.arrays import Array
@@ -126,7 +126,7 @@ class Coefficient:
     Args:
         name: the contributor's.
         unit: of the slopes, "µm/µm" or "″/K".
-        stack_up, geometry: by either road.
+        stack_up, geometry: by either method.
         percent: its share of the variance by the stack-up; None with parallel load paths, or if only 3D sees it.
     """
 
@@ -170,14 +170,14 @@ def _of_measure(model: Model, engine: Engine, measure: Measure) -> Iterator[Coef
     form = reference_form(model, measure)
     shares = {share.name: share for share in form.shares} if form else {}
     seen = mean_slopes(model, engine, measure)
-    by_road = _road_slopes(model, measure, seen)
-    for contributor, slope, on_road in zip(model.contributors, seen, by_road, strict=True):
+    by_method = _method_slopes(model, measure, seen)
+    for contributor, slope, on_method in zip(model.contributors, seen, by_method, strict=True):
         per = (ARCSEC if measure.kind.is_angle else UM) * contributor.per_unit
         unit = f"{'″' if measure.kind.is_angle else 'µm'}/{UNIT_SIGNS[contributor.unit]}"
         found = Slopes(slope.below * per, slope.above * per)
         share = shares.get(contributor.name)
         if form is None or contributor.name in form.leaning:
-            expected = on_road
+            expected = on_method
         else:
             expected = _linear(contributor, share) if share else UNKNOWN
         by_stack = Slopes(expected.below * per, expected.above * per)
@@ -194,11 +194,11 @@ def _linear(contributor: Contributor, share: Share) -> Slopes:
     return Slopes(*(share.coefficient * sides).tolist())
 
 
-def _road_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list[Slopes]:
-    """Slopes of the analytic road's values beside the mean build [internal units], in the directions that are stated.
+def _method_slopes(model: Model, measure: Measure, along: Sequence[Slope]) -> list[Slopes]:
+    """Slopes of the analytic method's values beside the mean build [internal units], in the directions that are stated.
 
     Where a contributor is no term of a sum: it leans axes, or only the tighter of parallel load paths counts. Taken
-    STEP_ASIDE of the mean build, where those of the geometry are; the road is straight from kink to kink.
+    STEP_ASIDE of the mean build, where those of the geometry are; the method is straight from kink to kink.
     """
     mean = mean_deviations(model, measure.positions)
     lengths = np.array([STEP_ASIDE[contributor.unit] for contributor in model.contributors])

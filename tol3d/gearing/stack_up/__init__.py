@@ -1,4 +1,4 @@
-"""The reference road: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
+"""The reference method: nominal values and stack-ups with their sources. It never sees a mesh, a pose or an engine."""
 
 from tol3d.gearing.stack_up.backlash import analytic_backlash, first_order, per_normal_backlash, stack_of
 from tol3d.gearing.stack_up.closed_form import closed_form, reference_form

@@ -1,4 +1,4 @@
-"""First-order terms of effects, worked out without the geometric road.
+"""First-order terms of effects, worked out without the geometric method.
 
 Each effect registers its own, one from elsewhere by `contributes`.
 """

@@ -19,7 +19,7 @@ from tol3d.gearing.summary.types import (
     BacklashWords,
     Ends,
     FreeTurn,
-    StageRoads,
+    StageMethods,
     StageSummary,
     Sums,
     TrainMeasureWords,
@@ -102,7 +102,7 @@ UNKNOWN = made(
 ByLink = Mapping[str, Ends]
 
 Pooled = Mapping[str, Mapping[str, PooledTerms]]
-"""By measure and road."""
+"""By measure and method."""
 
 
 def train_sections(model: Model, pooled: Pooled, published: Published) -> dict[str, TrainSummary]:
@@ -115,10 +115,10 @@ def train_sections(model: Model, pooled: Pooled, published: Published) -> dict[s
 
 
 def _train(
-    model: Model, measure: Measure, kind: LostMotion, roads: Mapping[str, PooledTerms], others: Published
+    model: Model, measure: Measure, kind: LostMotion, methods: Mapping[str, PooledTerms], others: Published
 ) -> TrainSummary:
     train = model.train(kind.train)
-    found = {road: _within_sheets(model, _of_road(kind.stages, own)) for road, own in roads.items()}
+    found = {method: _within_sheets(model, _of_method(kind.stages, own)) for method, own in methods.items()}
     published = _published(model, kind, found[ANALYTIC], others)
     tip = _tip_of(model, kind)
     return made(
@@ -149,7 +149,9 @@ def _tip_of(model: Model, kind: LostMotion) -> Tip | None:
     return next((own.tip for own in read if own.tip), None)
 
 
-def _stage(model: Model, stage: AnyStage, roads: Mapping[str, ByLink], published: Mapping[str, ByLink]) -> StageSummary:
+def _stage(
+    model: Model, stage: AnyStage, methods: Mapping[str, ByLink], published: Mapping[str, ByLink]
+) -> StageSummary:
     """What a stage is, its shafts, gears and ratio, and what was found of it."""
     mesh = model.mesh(stage.link) if stage.backlash else None
     if isinstance(stage, ParallelStage):
@@ -169,10 +171,10 @@ def _stage(model: Model, stage: AnyStage, roads: Mapping[str, ByLink], published
         working_flank=None if mesh is None else "left" if mesh.working_flank == LEFT else "right",
         ways=len(stage.paths) if isinstance(stage, ParallelStage) else None,
         factor=stage.factor,
-        roads=made(
-            StageRoads,
-            analytic=roads[ANALYTIC][stage.link],
-            geometric=roads[GEOMETRIC][stage.link] if GEOMETRIC in roads else None,
+        methods=made(
+            StageMethods,
+            analytic=methods[ANALYTIC][stage.link],
+            geometric=methods[GEOMETRIC][stage.link] if GEOMETRIC in methods else None,
         ),
         published={column: own[stage.link] for column, own in published.items() if stage.link in own},
     )
@@ -188,8 +190,8 @@ def _kind(model: Model, stage: AnyStage, mesh: Mesh | None) -> str:
     return "mesh" if mesh.driven_flank == mesh.working_flank else "internal_mesh"
 
 
-def _of_road(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:
-    """What a road found of each stage, by link."""
+def _of_method(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:
+    """What a method found of each stage, by link."""
     shares = tallied.shares(np.array([stage.factor for stage in stages]))
     return {
         stage.link: made(

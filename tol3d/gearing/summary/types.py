@@ -214,7 +214,7 @@ def _chord_words(chord_error_um: float, whose: str) -> str:
 
 
 class Ends(Section):
-    """What a road, or somebody else, found of a train's stage or of their sum [arcmin]."""
+    """What a method, or somebody else, found of a train's stage or of their sum [arcmin]."""
 
     low_3sigma: Maybe[Known] = LEFT_OUT
     mean: Maybe[Known] = LEFT_OUT
@@ -225,15 +225,15 @@ class Ends(Section):
     share_percent: Maybe[Known] = LEFT_OUT
 
 
-class StageRoads(Section):
-    """What both roads found of a stage."""
+class StageMethods(Section):
+    """What both methods found of a stage."""
 
     analytic: Ends
     geometric: Maybe[Ends] = LEFT_OUT
 
-    def by(self, road: str) -> Ends:
-        """What a road found; the analytic one where there is no 3D simulation."""
-        return self.geometric if road == "geometric" and self.geometric is not None else self.analytic
+    def by(self, method: str) -> Ends:
+        """What a method found; the analytic one where there is no 3D simulation."""
+        return self.geometric if method == "geometric" and self.geometric is not None else self.analytic
 
 
 class StageSummary(Section):
@@ -251,7 +251,7 @@ class StageSummary(Section):
     working_flank: Literal["left", "right"] | None
     ways: Maybe[Annotated[int, Field(ge=2, le=MOST_ENTRIES, description="of parallel load paths")]] = LEFT_OUT
     factor: Number = Field(description="turn of the shaft that is read per turn of the driven shaft")
-    roads: StageRoads
+    methods: StageMethods
     published: Mapping[Label, Ends]
 
 

@@ -21,7 +21,7 @@ from tol3d.report.canvas import save_figure
 from tol3d.report.polar_map import plane_map, polar_map
 from tol3d.scene.nearest import hint
 from tol3d.study.simulation import Simulation
-from tol3d.system.road import ANALYTIC_ROAD
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.stated import component_slices, stated
 from tol3d.units import Quantity
 
@@ -187,8 +187,8 @@ def _sigmas(system: PosedSystem, move: ClosedLoop, workspace: Workspace, measure
         draw = next(each.draw for each in there.contributors if each.name == contributor)
         drawn = draw.deviations(*uniforms.random((draw.uniforms, DRAWS)))
         rows[:, columns] = np.array(drawn).T
-    road = there.road(ANALYTIC_ROAD, None)
-    values = road.answers(stated(there, rows), there.measures).values
+    method = there.method(ANALYTIC_METHOD, None)
+    values = method.answers(stated(there, rows), there.measures).values
     per = next(each.per_internal for each in there.measures)
     found = np.empty(workspace.tilts.shape)
     for place, name in names.items():

@@ -1,1 +1,1 @@
-"""The exact road of planetary sets: placed gears."""
+"""The exact method of planetary sets: placed gears."""

@@ -1,4 +1,4 @@
-"""The exact road: sets as they are placed, and how far shafts turn until contacts stop them; see contact_kernel.py."""
+"""The exact method: sets as placed, and the turn of shafts until contacts stop them; see contact_kernel.py."""
 
 import math
 from dataclasses import dataclass

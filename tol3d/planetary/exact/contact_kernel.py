@@ -1,4 +1,4 @@
-"""The exact road: flanks of gears where they really lie, and how far shafts turn until contacts stop them.
+"""The exact method: flanks of gears where they really lie, and how far shafts turn until contacts stop them.
 
 Gears are placed: their centres off their axes, pins off their places, all of it turned as far as shafts and planets
 have. What the flanks of a mesh leave along their common normal is exact for rigid involutes on parallel axes: with W

@@ -1,1 +1,1 @@
-"""The analytic road of planetary sets: gaps to first order."""
+"""The analytic method of planetary sets: gaps to first order."""

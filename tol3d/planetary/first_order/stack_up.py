@@ -1,4 +1,4 @@
-"""The analytic road: how far each flank of each mesh may go, to first order in the deviations, and what that leaves.
+"""The analytic method: how far each flank of each mesh may go, to first order in the deviations, and what that leaves.
 
 Along the line of action, with alpha_w the working pressure angle and s = 1 of a sun, -1 of a ring: a tooth thicker by
 an arc E takes E cos(alpha)/2 from each flank; a planet displaced against its central gear by d_r outwards and d_t

@@ -1,4 +1,4 @@
-"""Deviations of the gears, planets and pins of a set in some trials, and how far a shaft then turns by either road."""
+"""Deviations of the gears, planets and pins of a set in some trials, and the turn of a shaft by either method."""
 
 import math
 from dataclasses import dataclass

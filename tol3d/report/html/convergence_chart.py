@@ -44,7 +44,7 @@ def convergence_chart(measure: MeasureSummary, own: Convergence, factor: float =
 def _panel(
     word: str, values: Array, reach: Array, counts: Array, measure: MeasureSummary, x: Axis, top: float
 ) -> Iterator[Markup]:
-    bottom, road = top + HIGH, measure.best_road
+    bottom, method = top + HIGH, measure.best_method
     low, high = float((values - reach).min()), float((values + reach).max())
     margin = 0.05 * (high - low) or 1.0
     y = Axis(low - margin, high + margin, start=bottom, end=top, unit=measure.unit)
@@ -55,8 +55,8 @@ def _panel(
     places = [x(math.log10(own)) for own in counts]
     there = _points(places, values + reach, y)
     back = _points(places[::-1], (values - reach)[::-1], y)
-    yield tag("path", tag("title", "95 % of other draws"), d=f"M{there}L{back}Z", class_=f"band {road}")
-    yield tag("path", tag("title", word), d=f"M{_points(places, values, y)}", class_=f"line {road}")
+    yield tag("path", tag("title", "95 % of other draws"), d=f"M{there}L{back}Z", class_=f"band {method}")
+    yield tag("path", tag("title", word), d=f"M{_points(places, values, y)}", class_=f"line {method}")
     yield tag("path", d=f"M{LEFT:.1f} {y(float(values[-1])):.1f}H{WIDTH - RIGHT:.1f}", class_="dotted")
     yield tag("path", d=f"M{LEFT:.1f} {bottom:.1f}H{WIDTH - RIGHT:.1f}", class_="frame")
 

@@ -17,7 +17,7 @@ TOP, BOTTOM, FOOT = 20.0, 280.0, 44.0
 
 def curve_chart(name: str, measure: MeasureSummary) -> Markup:
     """A measure that takes a curve."""
-    stepped, own = Stepped(measure), measure.curve_sample(measure.best_road)
+    stepped, own = Stepped(measure), measure.curve_sample(measure.best_method)
     if own is None or all(value is None for value in own.mean):
         return tag("p", NO_VALUES, class_="warning")
     mean, sigma = stepped(own.mean), stepped(own.sigma)
@@ -29,15 +29,15 @@ def curve_chart(name: str, measure: MeasureSummary) -> Markup:
     last = float(stepped.x[-1])
     x = Axis(float(stepped.x[0]), last if last > stepped.x[0] else last + 1.0)
     y = Axis(float(every.min()) - margin, float(every.max()) + margin, start=BOTTOM, end=TOP, unit=measure.unit)
-    road = measure.best_road
+    method = measure.best_method
     inside = [
         *below(x, TOP, BOTTOM, position_label(measure)),
         *beside(y, LEFT, WIDTH - RIGHT, values_label(name, measure.unit, 34)),
-        _band(stepped.x, mean - 3 * sigma, mean + 3 * sigma, x, y, road),
-        *(_line(stepped.x, values, x, y, f"line thin {road}", "smallest and largest") for values in (lowest, highest)),
-        _line(stepped.x, mean, x, y, f"line {road}", "mean"),
+        _band(stepped.x, mean - 3 * sigma, mean + 3 * sigma, x, y, method),
+        *(_line(stepped.x, own, x, y, f"line thin {method}", "smallest and largest") for own in (lowest, highest)),
+        _line(stepped.x, mean, x, y, f"line {method}", "mean"),
     ]
-    if road != "analytic" and (analytic := measure.curve_sample("analytic")):
+    if method != "analytic" and (analytic := measure.curve_sample("analytic")):
         inside.append(_line(stepped.x, stepped(analytic.mean), x, y, "line dashed analytic", "analytic, mean"))
     inside += _limits(measure, y)
     return chart(f"{name} over its positions", BOTTOM + FOOT, *inside)
@@ -53,9 +53,9 @@ def _line(x: Array, values: Array, across: Axis, up: Axis, kind: str, words: str
     return tag("path", tag("title", words), d=f"M{points}" if points else None, class_=kind)
 
 
-def _band(x: Array, low: Array, high: Array, across: Axis, up: Axis, road: str) -> Markup:
+def _band(x: Array, low: Array, high: Array, across: Axis, up: Axis, method: str) -> Markup:
     there, back = _points(x, low, across, up), _points(x[::-1], high[::-1], across, up)
-    return tag("path", tag("title", "±3 sigma"), d=f"M{there}L{back}Z" if there else None, class_=f"band {road}")
+    return tag("path", tag("title", "±3 sigma"), d=f"M{there}L{back}Z" if there else None, class_=f"band {method}")
 
 
 def _limits(measure: MeasureSummary, y: Axis) -> Iterator[Markup]:

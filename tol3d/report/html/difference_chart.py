@@ -1,4 +1,4 @@
-"""How much both roads differ, trial by trial, as SVG."""
+"""How much both methods differ, trial by trial, as SVG."""
 
 from tol3d.report.compare import Difference
 from tol3d.report.comparison_picture import DIFFERENCE_UNITS
@@ -10,7 +10,7 @@ TOP, BOTTOM, FOOT = 14.0, 170.0, 44.0
 
 
 def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
-    """The histogram of the 3D simulation less the analytic road."""
+    """The histogram of the 3D simulation less the analytic method."""
     unit, factor = DIFFERENCE_UNITS[measure.unit]
     bars = own.bars.times(factor)
     x = Axis(float(bars.edges[0]), float(bars.edges[-1]))
@@ -35,4 +35,4 @@ def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
                     class_="geometric",
                 )
             )
-    return chart("difference of both roads", BOTTOM + FOOT, *inside)
+    return chart("difference of both methods", BOTTOM + FOOT, *inside)

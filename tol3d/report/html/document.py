@@ -199,7 +199,7 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
         yield page_blocks(blocks[first:], 4)
         if pareto := pareto_chart(measure) if measure.take != "curve" else None:
-            yield tag("figure", pareto, tag("figcaption", *_legend(_roads(measure))))
+            yield tag("figure", pareto, tag("figcaption", *_legend(_methods(measure))))
         if (
             run.keeps_trials
             and (difference := difference_of(run, name))
@@ -237,14 +237,14 @@ def _id_of(data: Markup) -> str:
     return data.partition('id="')[2].partition('"')[0]
 
 
-def _roads(measure: MeasureSummary) -> frozenset[str]:
-    return frozenset(("analytic", measure.best_road))
+def _methods(measure: MeasureSummary) -> frozenset[str]:
+    return frozenset(("analytic", measure.best_method))
 
 
 def _marks(measure: MeasureSummary) -> Sequence[Markup]:
     """The legend of a histogram or a curve."""
     closed = {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
-    return _legend(_roads(measure) | closed | ({"limit"} if measure.has_limits else set()))
+    return _legend(_methods(measure) | closed | ({"limit"} if measure.has_limits else set()))
 
 
 def _legend(keys: Set[str]) -> Sequence[Markup]:
@@ -256,7 +256,7 @@ def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> It
     samples = samples_of(measure)
     if not run.keeps_trials or not samples:
         return
-    column = value_column(measure.best_road, name)
+    column = value_column(measure.best_method, name)
     bars = _first_trials(run, column, samples[0].bars, _factor(run, name, measure))
     data = {"run": str(run.path.name), "bars": bars}
     text = json.dumps(data, sort_keys=True).replace("<", "\\u003c")

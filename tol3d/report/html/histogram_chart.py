@@ -1,4 +1,4 @@
-"""Histograms of a measure as SVG: both roads, the closed form, limits with what is beyond, mean and ends."""
+"""Histograms of a measure as SVG: both methods, the closed form, limits with what is beyond, mean and ends."""
 
 import math
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.report.bars import ROAD_WORDS, Bars
+from tol3d.report.bars import METHOD_WORDS, Bars
 from tol3d.report.column import columns_of
 from tol3d.report.distribution import (
     NO_VALUES,
@@ -73,7 +73,7 @@ def _bars(sample: DrawnSample, x: Axis, y: Axis, measure: MeasureSummary) -> Ite
             y=top,
             width=max(right - left - 0.8, 0.3),
             height=BOTTOM - top,
-            class_="beyond" if sample.outside[k] else measure.best_road,
+            class_="beyond" if sample.outside[k] else measure.best_method,
             data_bar=k,
         )
 
@@ -141,11 +141,11 @@ def _ranges(measure: MeasureSummary, x: Axis) -> Iterator[Markup]:
         ends, mean = Ends.of(column, bounded=bounded), column.value("mean")
         known = [own for own in (ends.low, mean, ends.high) if own is not None]
         words = f"{column.heading}: " + " … ".join(short_text(own, measure.unit) for own in known)
-        kind = column.road.replace(" ", "-")
-        colour = colours[column.heading] if column.road == "published" else None
+        kind = column.method.replace(" ", "-")
+        colour = colours[column.heading] if column.method == "published" else None
         if ends.low is not None and ends.high is not None:
             path = f"M{x(ends.low):.1f} {y:.1f}H{x(ends.high):.1f}"
             yield tag("path", tag("title", words), d=path, class_=f"range {kind}", stroke=colour)
         if mean is not None:
             yield tag("circle", tag("title", words), cx=x(mean), cy=y, r=4.0, class_=f"dot {kind}", fill=colour)
-        yield tag("text", ROAD_WORDS.get(column.road, column.heading), x=LEFT - 60, y=y - 4, class_="tick")
+        yield tag("text", METHOD_WORDS.get(column.method, column.heading), x=LEFT - 60, y=y - 4, class_="tick")

@@ -17,8 +17,8 @@ LONGEST: Final = 38
 
 
 def pareto_chart(measure: MeasureSummary) -> Markup | None:
-    """Shares of the variance by each road; None where none is known."""
-    columns = [own for own in shares_of(measure) if own.road != "published"]
+    """Shares of the variance by each method; None where none is known."""
+    columns = [own for own in shares_of(measure) if own.method != "published"]
     if not columns:
         return None
     shown, rest = shown_names(measure)
@@ -52,7 +52,7 @@ def pareto_chart(measure: MeasureSummary) -> Markup | None:
                     y=y,
                     width=x(share) - NAMES,
                     height=BAR - 1.5,
-                    class_=column.road,
+                    class_=column.method,
                 )
             )
             inside.append(tag("text", percent_text(share), x=x(share) + 4, y=y + BAR - 2.5, class_="tick"))

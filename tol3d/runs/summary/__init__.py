@@ -1,8 +1,8 @@
 """What summary.json holds, key by key: the one place that says so. `tol3d schema --summary` prints it as JSON Schema.
 
     values      numbers, names and sentences as a summary may hold them; the base of all classes here
-    sample      statistics of a measure's trials, by either road
-    agreement   how far both roads differ, and what explains it; what the witness found
+    sample      statistics of a measure's trials, by either method
+    agreement   how far both methods differ, and what explains it; what the witness found
     measure     one measure
     joint       what the measures do together
     run         the whole

@@ -1,4 +1,4 @@
-"""How far the roads of a measure differ and what explains it, and what the witness found; in the measure's unit."""
+"""How far the methods of a measure differ and what explains it, and what the witness found; in the measure's unit."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ from tol3d.runs.summary.values import (
 
 
 class LinearPart(Section):
-    """What a contributor adds to the difference of the roads."""
+    """What a contributor adds to the difference of the methods."""
 
     contributor: Label
     percent: Number = Field(description="of its own effect")
@@ -27,7 +27,7 @@ class LinearPart(Section):
 
 
 class Explanation(Section):
-    """What explains the difference of the roads, in the measure's unit."""
+    """What explains the difference of the methods, in the measure's unit."""
 
     undecided: Sentence
     faults: list[Sentence]

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Count, Label, Maybe, Ppm, PpmRange, Road, Section
+from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Count, Label, Maybe, Method, Ppm, PpmRange, Section
 from tol3d.strict import refused
 
 MOST_CORRELATED = 1000  # measures; a matrix of a million numbers
@@ -19,7 +19,7 @@ CountMatrix = Annotated[list[CountRow], Field(max_length=MOST_CORRELATED)]
 
 
 class JointYield(Section):
-    """One road's trials in which every measure that has a limit is valid and within its limits."""
+    """One method's trials in which every measure that has a limit is valid and within its limits."""
 
     trials: Count = Field(description="all of them, failed ones too")
     within: Count
@@ -36,7 +36,7 @@ class JointYield(Section):
 
 
 class Correlations(Section):
-    """One road's correlations, each over the trials that have both values; rows and columns as `correlated`."""
+    """One method's correlations, each over the trials that have both values; rows and columns as `correlated`."""
 
     r: Matrix = Field(description="Pearson's; null where a measure does not vary or fewer than two trials have both")
     r_low_95: Matrix | None = Field(description="bounds of the true correlation, 95 % confidence, by Fisher's artanh r")
@@ -48,12 +48,12 @@ class Joint(Section):
     """What measures do together."""
 
     limited: Annotated[list[Label], Field(max_length=MOST_ENTRIES)] = Field(description="measures that have a limit")
-    yields: Maybe[Mapping[Road, JointYield]] = LEFT_OUT
+    yields: Maybe[Mapping[Method, JointYield]] = LEFT_OUT
     correlated: Names = Field(description="the measures of the matrices, in the order of their rows and columns")
     correlated_of: Maybe[Count] = Field(
         default=LEFT_OUT, description="how many measures have correlations in correlations.csv, where that is more"
     )
-    correlations: Maybe[Mapping[Road, Correlations]] = LEFT_OUT
+    correlations: Maybe[Mapping[Method, Correlations]] = LEFT_OUT
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -62,9 +62,9 @@ class Joint(Section):
         if bool(self.correlated) != bool(self.correlations):
             raise refused("correlations", "matrices where measures are correlated, else none", "otherwise")
         size = len(self.correlated)
-        for road, own in (self.correlations or {}).items():
+        for method, own in (self.correlations or {}).items():
             for key in ("r", "r_low_95", "r_high_95", "trials"):
                 matrix = own[key]
                 if matrix is not None and [len(row) for row in matrix] != [size] * size:
-                    raise refused(f"correlations.{road}.{key}", f"{size} rows of {size}, as correlated", "others")
+                    raise refused(f"correlations.{method}.{key}", f"{size} rows of {size}, as correlated", "others")
         return self

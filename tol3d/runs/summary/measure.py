@@ -1,4 +1,4 @@
-"""One measure of a run: what it is, what each road found of it, and what others published."""
+"""One measure of a run: what it is, what each method found of it, and what others published."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,16 +8,16 @@ from pydantic import Field, model_validator
 
 from tol3d.runs.summary.agreement import Agreement
 from tol3d.runs.summary.published import in_summary
-from tol3d.runs.summary.sample import CurveRoads, CurveSample, Histogram, Normal, Roads, Sample
+from tol3d.runs.summary.sample import CurveMethods, CurveSample, Histogram, Methods, Normal, Sample
 from tol3d.runs.summary.values import (
     LEFT_OUT,
     Count,
     Known,
     Label,
     Maybe,
+    Method,
     NotNegative,
     Numbers,
-    Road,
     Section,
     Sentence,
     Unit,
@@ -106,15 +106,15 @@ class MeasureSummary(Section):
         description="standard deviation of the middle of each of these zones' features along one axis; of an "
         "orientation alone, of a rise at the edge or an end of the axis",
     )
-    nominal: Roads
-    mean_build: Roads
+    nominal: Methods
+    mean_build: Methods
     analytic: Maybe[Sample] = LEFT_OUT
     analytic_closed_form: Maybe[Normal] = LEFT_OUT
     histogram: Maybe[Histogram] = LEFT_OUT
     geometric: Maybe[Sample] = LEFT_OUT
     agreement: Maybe[Agreement] = LEFT_OUT
     position_deg: Maybe[Numbers] = LEFT_OUT
-    curve: Maybe[CurveRoads] = LEFT_OUT
+    curve: Maybe[CurveMethods] = LEFT_OUT
     contributors: list[ContributorShare]
     published: Mapping[Label, PublishedColumn]
 
@@ -167,8 +167,8 @@ class MeasureSummary(Section):
     # ------------------------------------------------------------------------------------------------------
 
     @property
-    def best_road(self) -> Road:
-        """The road by which it is shown: the 3D simulation where there is one."""
+    def best_method(self) -> Method:
+        """The method by which it is shown: the 3D simulation where there is one."""
         return "geometric" if self.geometric or (self.curve and self.curve.geometric) else "analytic"
 
     @property
@@ -195,18 +195,18 @@ class MeasureSummary(Section):
         """How many trials there were."""
         return sum(self.status.values())
 
-    def sample(self, road: Road) -> Sample | None:
-        """What a road found of a measure with one value a trial."""
-        return self.geometric if road == "geometric" else self.analytic
+    def sample(self, method: Method) -> Sample | None:
+        """What a method found of a measure with one value a trial."""
+        return self.geometric if method == "geometric" else self.analytic
 
-    def curve_sample(self, road: Road) -> CurveSample | None:
-        """What a road found of a curve."""
-        return getattr(self.curve, road, None)
+    def curve_sample(self, method: Method) -> CurveSample | None:
+        """What a method found of a curve."""
+        return getattr(self.curve, method, None)
 
     @property
     def shares(self) -> Sample | CurveSample:
-        """What is out of its limits, by the best road."""
-        found = self.curve_sample(self.best_road) if self.take == "curve" else self.sample(self.best_road)
+        """What is out of its limits, by the best method."""
+        found = self.curve_sample(self.best_method) if self.take == "curve" else self.sample(self.best_method)
         assert found is not None, "a summary that was read has one"
         return found
 
@@ -224,14 +224,14 @@ class MeasureSummary(Section):
             raise refused("agreement", "one where there is a 3D simulation", "one of the two")
         return self
 
-    def _refuse_uneven_curves(self, curve: CurveRoads) -> None:
+    def _refuse_uneven_curves(self, curve: CurveMethods) -> None:
         count = len(self.position_deg or ())
-        for road in (curve.analytic, curve.geometric):
-            lists = (road.mean, road.sigma, road.min, road.max) if road is not None else ()
+        for method in (curve.analytic, curve.geometric):
+            lists = (method.mean, method.sigma, method.min, method.max) if method is not None else ()
             if any(len(values) != count for values in lists):
                 raise refused("curve", f"{count} values each, as positions", "another number")
-            if road is not None and road.spectrum is not None:
-                road.spectrum.refuse_uneven()
+            if method is not None and method.spectrum is not None:
+                method.spectrum.refuse_uneven()
         for build in (self.nominal, self.mean_build):
             for value in (build.analytic, build.geometric):
                 if value is not None and not (isinstance(value, list) and len(value) == count):
@@ -243,9 +243,9 @@ class MeasureSummary(Section):
             raise refused("histogram", "lower_edge, bin_width and counts", ", ".join(sorted(histogram.keys())))
         if counts is not None and width is not None:
             if len({len(each) for each in counts.values()}) != 1 or not width > 0.0:
-                raise refused("histogram", "as many bars of both roads, wider than 0", "something else")
+                raise refused("histogram", "as many bars of both methods, wider than 0", "something else")
             if not any(counts.values()):
                 raise refused("histogram.counts", "at least one bar", "none")
         for build in (self.nominal, self.mean_build):
             if isinstance(build.analytic, list) or isinstance(build.geometric, list):
-                raise refused("nominal", "a number of each road, or null", "a list")
+                raise refused("nominal", "a number of each method, or null", "a list")

@@ -16,16 +16,16 @@ from tol3d.runs.summary.values import (
     Known,
     Label,
     Maybe,
+    Method,
     NotNegative,
     Positive,
-    Road,
     Section,
     Sentence,
     Sha256,
 )
 from tol3d.strict import refused
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.outcome import SEATED
-from tol3d.system.road import ANALYTIC_ROAD
 from tol3d.system.statuses import Meaning
 
 
@@ -113,9 +113,9 @@ class RunSummary(Findings):
     versions: Mapping[Label, Sentence] = Field(description="of what decides a result's last bit")
 
     @property
-    def roads(self) -> tuple[Road, ...]:
-        """The roads by which it was measured."""
-        return ("analytic",) if self.engine == ANALYTIC_ROAD else ("analytic", "geometric")
+    def methods(self) -> tuple[Method, ...]:
+        """The methods by which it was measured."""
+        return ("analytic",) if self.engine == ANALYTIC_METHOD else ("analytic", "geometric")
 
     @property
     def lacking(self) -> frozenset[str]:
@@ -127,9 +127,9 @@ class RunSummary(Findings):
         return "seated" if status == SEATED else (self.status_words or {}).get(status, status)
 
     @property
-    def best_road(self) -> Road:
-        """The road by which it is shown."""
-        return self.roads[-1]
+    def best_method(self) -> Method:
+        """The method by which it is shown."""
+        return self.methods[-1]
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -143,10 +143,10 @@ class RunSummary(Findings):
             raise refused("status", f"{self.trials} trials in all", sum(self.status.values()))
         if "scene.yaml" not in self.files:
             raise refused("files", "scene.yaml among them", "none of that name")
-        simulated = self.engine != ANALYTIC_ROAD
+        simulated = self.engine != ANALYTIC_METHOD
         for name, measure in self.measures.items():
-            road = measure.curve.geometric if measure.curve and measure.take == "curve" else measure.geometric
-            if (road is not None) != simulated:
+            method = measure.curve.geometric if measure.curve and measure.take == "curve" else measure.geometric
+            if (method is not None) != simulated:
                 raise refused(f"measures.{name}", f"geometric as the engine is {self.engine}", "otherwise")
         if self.joint:
             self._refuse_another_joint(self.joint)
@@ -156,6 +156,6 @@ class RunSummary(Findings):
         for key, names in (("limited", joint.limited), ("correlated", joint.correlated)):
             if unknown := sorted(set(names) - set(self.measures)):
                 raise refused(f"joint.{key}", "names of measures", unknown[0])
-        for key, by_road in (("yields", joint.yields), ("correlations", joint.correlations)):
-            if by_road is not None and set(by_road) != set(self.roads):
-                raise refused(f"joint.{key}", f"those of {' and '.join(self.roads)}", ", ".join(by_road) or "none")
+        for key, by_method in (("yields", joint.yields), ("correlations", joint.correlations)):
+            if by_method is not None and set(by_method) != set(self.methods):
+                raise refused(f"joint.{key}", f"those of {' and '.join(self.methods)}", ", ".join(by_method) or "none")

@@ -1,4 +1,4 @@
-"""Statistics of a measure's trials by either road, in the measure's unit."""
+"""Statistics of a measure's trials by either method, in the measure's unit."""
 
 from collections.abc import Mapping
 from typing import Literal
@@ -13,12 +13,12 @@ from tol3d.runs.summary.values import (
     KnownRange,
     Label,
     Maybe,
+    Method,
     NotNegative,
     Number,
     Numbers,
     Ppm,
     PpmRange,
-    Road,
     Section,
 )
 from tol3d.strict import refused
@@ -26,8 +26,8 @@ from tol3d.strict import refused
 PpkBy = Literal["quantiles", "share out of limits", "mean and sigma"]
 
 
-class Roads(Section):
-    """A value of both roads of one build; of a curve at each position; null where it does not seat."""
+class Methods(Section):
+    """A value of both methods of one build; of a curve at each position; null where it does not seat."""
 
     analytic: Known | KnownNumbers
     geometric: Known | KnownNumbers
@@ -45,7 +45,7 @@ class LimitShares(Section):
 
 
 class Sample(LimitShares):
-    """One road's sample of a measure, in its unit."""
+    """One method's sample of a measure, in its unit."""
 
     count: Count = Field(description="trials with a value")
     mean: Known
@@ -88,15 +88,15 @@ class Normal(Section):
 
 
 class Histogram(Section):
-    """Counts of both roads over the same bars; empty where no trial has a value."""
+    """Counts of both methods over the same bars; empty where no trial has a value."""
 
     lower_edge: Maybe[Number] = LEFT_OUT
     bin_width: Maybe[NotNegative] = LEFT_OUT
-    counts: Maybe[Mapping[Road, list[Count]]] = LEFT_OUT
+    counts: Maybe[Mapping[Method, list[Count]]] = LEFT_OUT
 
 
 class SpectrumSample(Section):
-    """One road's amplitudes of harmonics, half of peak to peak, pooled over the trials: a list each, as `order`."""
+    """One method's amplitudes of harmonics, half of peak to peak, pooled over the trials: a list each, as `order`."""
 
     order: Numbers = Field(description="cycles per turn of the shaft whose positions the curve is over")
     mean: KnownNumbers = Field(description="of the trials' amplitudes, not the amplitude of the mean curve")
@@ -118,7 +118,7 @@ class SpectrumSample(Section):
 
 
 class CurveSample(LimitShares):
-    """One road's curves: statistics at each position, and shares of the trials with any position out of limits."""
+    """One method's curves: statistics at each position, and shares of the trials with any position out of limits."""
 
     mean: KnownNumbers
     sigma: KnownNumbers
@@ -130,13 +130,13 @@ class CurveSample(LimitShares):
     spectrum: Maybe[SpectrumSample] = LEFT_OUT
 
 
-class CurveRoads(Section):
-    """The curves of both roads."""
+class CurveMethods(Section):
+    """The curves of both methods."""
 
     analytic: CurveSample
     geometric: Maybe[CurveSample] = LEFT_OUT
 
     @property
-    def by_road(self) -> Mapping[Road, CurveSample]:
-        """The curves of each road that there is."""
+    def by_method(self) -> Mapping[Method, CurveSample]:
+        """The curves of each method that there is."""
         return {"analytic": self.analytic, **({"geometric": self.geometric} if self.geometric else {})}

@@ -6,7 +6,7 @@ from functools import cache
 from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Optional, ParamSpec, TypeVar, get_args
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from tol3d.strict import Strict, refused
 from tol3d.units import shown
@@ -41,7 +41,7 @@ Numbers = Annotated[list[Number], Field(max_length=MOST_ENTRIES)]
 KnownNumbers = Annotated[list[Known], Field(max_length=MOST_ENTRIES)]
 KnownRange = Annotated[list[Known], Field(min_length=2, max_length=2)]
 Unit = Literal["um", "mm", "arcmin", "pins"]
-Road = Literal["analytic", "geometric"]
+Method = Literal["analytic", "geometric"]
 
 T = TypeVar("T")
 Keys = ParamSpec("Keys")
@@ -90,6 +90,20 @@ class Section(Strict):
     def items(self) -> list[tuple[str, Any]]:
         """Keys and values."""
         return [(key, self[key]) for key in self.keys()]
+
+
+class MethodSection(Section):
+    """A section computed by one of the two methods."""
+
+    method: Label
+
+    @model_validator(mode="before")
+    @classmethod
+    def _named_as_before(cls, data: Any) -> Any:
+        """Reads the key `road`, as the method was called until November 2026."""
+        if isinstance(data, dict) and "road" in data and "method" not in data:
+            return {"method" if key == "road" else key: value for key, value in data.items()}
+        return data
 
 
 def key_of(kind: type[Section], name: str) -> str:

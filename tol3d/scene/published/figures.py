@@ -165,7 +165,7 @@ class PublishedHistogram(Strict):
 
 
 class PublishedAgreement(Strict):
-    """How far two roads of others differ, trial by trial: simulation less theory."""
+    """How far two methods of others differ, trial by trial: simulation less theory."""
 
     max_abs_difference: Quantity | None = None
     rms_difference: Quantity | None = None

@@ -22,7 +22,7 @@ Problem = tuple[KeyPath, str]
 
 
 class PublishedFigures(Strict):
-    """Keys of a published column beside the measures: sections of summary.json, by its keys, roads left out.
+    """Keys of a published column beside the measures: sections of summary.json, by its keys, methods left out.
 
     A mechanism declares a subclass with the sections that it adds: fields of plain numbers, of quantities (lengths um,
     angles arcmin in summary.json), of `Strict` classes and of mappings and lists of these; none is required.

@@ -1,1 +1,1 @@
-"""How far the two roads lie apart, and what explains it."""
+"""How far the two methods lie apart, and what explains it."""

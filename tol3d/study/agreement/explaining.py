@@ -1,8 +1,8 @@
-"""What explains the difference of the two roads: decided contributor by contributor and trial by trial, or warned of.
+"""What explains the difference of the two methods: decided contributor by contributor and trial by trial, or warned of.
 
 A stack-up is of first order. So the difference (geometric - analytic) may be of second order, which `second_look.py`
 measures; and of first order only where the stack-up leaves something out on purpose, and by how much at most
-(`System.neglected`). Anything else is an error of one of the roads.
+(`System.neglected`). Anything else is an error of one of the methods.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit
 from tol3d.study.agreement.explanation import Explanation, LinearPart
-from tol3d.study.agreement.road_fits import RoadFits
+from tol3d.study.agreement.method_fits import MethodFits
 from tol3d.study.agreement.second_look import SecondLook, bends, largest_bends, scalars_of, second_look
 from tol3d.study.evaluation import Evaluation, measures_alike
 from tol3d.study.regressors import MOST_REGRESSED, Regressed, regressor_groups
@@ -22,8 +22,8 @@ from tol3d.study.simulation import Simulation
 from tol3d.study.tally import Tally
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method
 from tol3d.system.regressors import has_square
-from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
@@ -38,26 +38,26 @@ FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is lef
 FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds
 CHORDS_OF_A_LOOK = 4  # chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
 SECOND_ORDER = "second order, for the means lie off the nominal build"
-ROUNDING = 1e-9  # of the measure's unit; roads that never differ by more agree
-ROUNDINGS = 32 * 2.0**-52  # of a coordinate; 14 were seen in a difference of the roads and its second look
+ROUNDING = 1e-9  # of the measure's unit; methods that never differ by more agree
+ROUNDINGS = 32 * 2.0**-52  # of a coordinate; 14 were seen in a difference of the methods and its second look
 REACH = 1e4  # mm; coordinates of a scene, or the measure where it is larger
 
 
-def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dict[str, Explanation]:
-    """What explains the difference of each scalar measure that both roads gave."""
+def explanations(simulation: Simulation, method: Method | None, tally: Tally) -> dict[str, Explanation]:
+    """What explains the difference of each scalar measure that both methods gave."""
     system = simulation.system
-    measures = [m for m in scalars_of(system) if road is not None and tally.measures[m.name].disagreement]
-    if road is None or not measures:
+    measures = [m for m in scalars_of(system) if method is not None and tally.measures[m.name].disagreement]
+    if method is None or not measures:
         return {}
-    fits = {measure.name: RoadFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
+    fits = {measure.name: MethodFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
     undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
     if len(undecided) == len(measures):
         return undecided
     widest = max(_together(system, measure) for measure in measures)
-    looked = 2 * widest + (FURTHER_SLOW_LOOKS if road.chord_error else FURTHER_LOOKS)
+    looked = 2 * widest + (FURTHER_SLOW_LOOKS if method.chord_error else FURTHER_LOOKS)
     worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
-    look = second_look(simulation, road, looked, [max(trial, 0) for trial in worst])
-    bent, by_means = bends(simulation, road), _effects_of_means(system)
+    look = second_look(simulation, method, looked, [max(trial, 0) for trial in worst])
+    bent, by_means = bends(simulation, method), _effects_of_means(system)
     return undecided | {
         measure.name: _Case(
             system,
@@ -67,7 +67,7 @@ def explanations(simulation: Simulation, road: Road | None, tally: Tally) -> dic
             looked + k,
             looked,
             by_means[measure.name],
-            system.chord_bound(measure, road.chord_error),
+            system.chord_bound(measure, method.chord_error),
         ).explained(bent[measure.name])
         for k, measure in enumerate(measures)
         if (fit := fits[measure.name]) is not None
@@ -87,7 +87,7 @@ def _together(system: System, measure: Measure) -> int:
 
 
 def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
-    """How far each contributor's mean shifts each measure on the analytic road, in its unit, by measure and name."""
+    """How far each contributor's mean shifts each measure on the analytic method, in its unit, by measure and name."""
     found = {}
     slices = component_slices(system)
     for _, alike in measures_alike(system, scalars_of(system)):
@@ -114,7 +114,7 @@ class _Case:
 
     system: System
     measure: Measure
-    fits: RoadFits
+    fits: MethodFits
     look: SecondLook
     worst: int
     looked: int
@@ -132,7 +132,7 @@ class _Case:
         parts = tuple(self._linear_parts(first_order))
         mean = self._mean(curved, first_order, sum((own[first].mean() for own in bounds.values()), 0.0))
         allowed = math.hypot(self._negligible, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
-        jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one road counts and the other does not
+        jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one method counts and the other does not
         known = not jumps and not np.isnan(curved[first]).all()
         left_rms = min(left.residual, self.fits.difference.residual) if left else None
         beyond: tuple[str, ...] = ()
@@ -250,9 +250,9 @@ class _Case:
         for part in parts:
             if not part.by:
                 yield (
-                    f"the two roads disagree on {part.contributor}: their difference depends on it by "
+                    f"the two methods disagree on {part.contributor}: their difference depends on it by "
                     f"{part.percent:.3g} % of its own effect ({part.standard_errors:.3g} standard errors), "
-                    "which no second-order term explains; one of the roads is wrong there"
+                    "which no second-order term explains; one of the methods is wrong there"
                 )
 
     def _largest_percent(self, besides: list[str]) -> float:
@@ -306,7 +306,7 @@ class _Case:
         return sum(float(own.mean()) for own in self.system.neglected(self.measure, nominal).values())
 
     def _accuracies(self, first_order: LinearFit) -> Array:
-        """To which share of its effect both roads are known to agree on each contributor's coefficient, SHARE at most.
+        """Share of its effect to which both methods are known to agree on a contributor's coefficient, SHARE at most.
 
         Counts may not change with one at all.
         """
@@ -320,7 +320,7 @@ class _Case:
         unit = self.measure.unit
         allowed = self._negligible + self.chords
         if abs(mean.nominal) > allowed and abs(mean.nominal) > allowed + self._left_out_at_nominal():
-            yield f"the roads differ by {mean.nominal:.3g} {unit} in the mean at the nominal build already"
+            yield f"the methods differ by {mean.nominal:.3g} {unit} in the mean at the nominal build already"
         if abs(mean.left) > mean.allowed:
             yield (
                 f"the means differ by {mean.difference:.3g} {unit} (standard error {mean.error:.2g} {unit}), of which "

@@ -1,4 +1,4 @@
-"""What explains the difference of the two roads, as it is kept and shown."""
+"""What explains the difference of the two methods, as it is kept and shown."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ class LinearPart:
 
     Args:
         contributor: its name.
-        percent: of its own effect, the larger of both roads' [%].
+        percent: of its own effect, the larger of both methods' [%].
         standard_errors: how sure that is.
         by: what explains it, "" where nothing does.
     """

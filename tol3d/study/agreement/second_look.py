@@ -1,4 +1,4 @@
-"""Some trials again with a part of their deviations: how the roads' difference grows shows of what order it is.
+"""Some trials again with a part of their deviations: how the methods' difference grows shows of what order it is.
 
 A first-order stack-up is right if its difference to the geometry goes as the square of the deviations. Along the ray
 from the nominal build to a trial's the difference is D(t) = D(0) + t L + t^2 Q + ...: two short steps give Q, which a
@@ -22,8 +22,8 @@ from tol3d.study.regressors import Regressed, regressor_sets
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import component_sigmas
 from tol3d.system.measure import Measure
+from tol3d.system.method import Method
 from tol3d.system.positions import AT_RANDOM
-from tol3d.system.road import Road
 from tol3d.system.stated import component_count, component_slices, mean_deviations
 from tol3d.system.system import Described, System
 from tol3d.system.trials import Trials, joined
@@ -73,15 +73,16 @@ def scalars_of(system: Described) -> tuple[Measure, ...]:
     return tuple(measure for measure in system.measures if measure.take != "curve")
 
 
-def second_look(simulation: Simulation, road: Road, count: int, others: Sequence[int]) -> SecondLook:
+def second_look(simulation: Simulation, method: Method, count: int, others: Sequence[int]) -> SecondLook:
     """Look at a study's first `count` trials again, and after them at some others."""
     system = simulation.system
     measures = scalars_of(system)
     trials = joined([drawn(simulation, 0, count), drawn_ones(simulation, others)])
-    near, far = SHORT_STEPS if road.chord_error == 0.0 else LONG_STEPS
-    whole = _differences(system, road, trials, measures)
+    near, far = SHORT_STEPS if method.chord_error == 0.0 else LONG_STEPS
+    whole = _differences(system, method, trials, measures)
     nominal, at_near, at_far = (
-        whole if step == 1.0 else _differences(system, road, trials.scaled(step), measures) for step in (0.0, near, far)
+        whole if step == 1.0 else _differences(system, method, trials.scaled(step), measures)
+        for step in (0.0, near, far)
     )
     ratio = far / near  # D(far) - ratio D(near) has no L left
     second_order = {
@@ -95,14 +96,14 @@ def second_look(simulation: Simulation, road: Road, count: int, others: Sequence
     return SecondLook(trials, whole, nominal, second_order, rows)
 
 
-def _differences(system: System, road: Road, trials: Trials, measures: Sequence[Measure]) -> Mapping[str, Array]:
+def _differences(system: System, method: Method, trials: Trials, measures: Sequence[Measure]) -> Mapping[str, Array]:
     """Of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
     analytic = Evaluation(system).of(trials, measures)
-    geometric = Evaluation(system, road).of(trials, measures, lambda own: own.keeps_overlap)
+    geometric = Evaluation(system, method).of(trials, measures, lambda own: own.keeps_overlap)
     return {own.name: geometric[own.name] - analytic[own.name] for own in measures}
 
 
-def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float]]:
+def bends(simulation: Simulation, method: Method) -> Mapping[str, Mapping[str, float]]:
     """Second differences of (geometric - analytic) at +-3 sigma of each contributor alone, by measure and contributor.
 
     Half of f(m + 3 s) - 2 f(m) + f(m - 3 s), averaged over positions, in the measure's unit; a contributor with
@@ -117,7 +118,7 @@ def bends(simulation: Simulation, road: Road) -> Mapping[str, Mapping[str, float
     each = []
     for position in range(BEND_POSITIONS if first.positions else 1):  # one by one: builds go with contributors squared
         there = {name: np.full(len(builds), values[position]) for name, values in first.positions.items()}
-        each.append(_differences(system, road, Trials(builds, there), measures))
+        each.append(_differences(system, method, Trials(builds, there), measures))
     return {m.name: _bends(system, np.stack([found[m.name] for found in each])) for m in measures}
 
 

@@ -28,7 +28,7 @@ from tol3d.units import Dimension
 class AssemblyMeasureSpec(MeasureEntry):
     """A measure of an assembly: one number a trial, of features as they lie in it.
 
-    A kind declares here all that is its own: its fields, `reads`, how both roads read it, and by `measured` what.
+    A kind declares here all that is its own: its fields, `reads`, how both methods read it, and by `measured` what.
     """
 
     words: ClassVar[str] = "a measure of an assembly"
@@ -57,7 +57,7 @@ class AssemblyMeasureSpec(MeasureEntry):
         if hasattr(cls, "reads"):
             yield from cls.reads.lacking()
         else:
-            yield "`reads`, how both roads read it"
+            yield "`reads`, how both methods read it"
 
     @property
     @abstractmethod

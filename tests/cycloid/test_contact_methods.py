@@ -1,4 +1,4 @@
-"""Both roads of a cycloid stage, trial by trial, with errors on everything."""
+"""Both methods of a cycloid stage, trial by trial, with errors on everything."""
 
 import math
 
@@ -38,7 +38,7 @@ def test_what_first_order_neglects_shrinks_with_the_square_of_errors() -> None:
 
 
 @pytest.mark.slow
-def test_roads_agree_trial_by_trial_in_both_senses() -> None:
+def test_methods_agree_trial_by_trial_in_both_senses() -> None:
     trials = 5000
     deviated, phis = drawn(trials, 0.002, seed=6), np.random.default_rng(3).uniform(0, 245, (trials, 4))
     exact = ContactStage(*STAGE).touches(deviated, phis)

@@ -1,4 +1,4 @@
-"""Both roads of a measure, and their difference, on what the measure sees of its contributors."""
+"""Both methods of a measure, and their difference, on what the measure sees of its contributors."""
 
 import math
 from collections.abc import Mapping
@@ -17,16 +17,16 @@ LEAST_OWN = 1e-3  # of the measure's sigma; effects below it count as that, or r
 
 
 @dataclass(frozen=True, eq=False)
-class RoadFits:
-    """Both roads and their difference on a measure's regressors, all its trials.
+class MethodFits:
+    """Both methods and their difference on a measure's regressors, all its trials.
 
     Args:
         regressed: what they are regressed on.
-        disagreement: of the roads.
+        disagreement: of the methods.
         difference, analytic, geometric: the fits.
-        sigma: of the measure, the larger of both roads'.
+        sigma: of the measure, the larger of both methods'.
         magnitude: the largest |value| by the stack-up.
-        own: effect of each contributor (contributors,), a standard deviation, the larger of both roads'.
+        own: effect of each contributor (contributors,), a standard deviation, the larger of both methods'.
 
     Both are of an extreme over positions at least what they are at one of them: what chooses another position changes
     by that what a contributor does.
@@ -42,18 +42,18 @@ class RoadFits:
     own: Array
 
     @classmethod
-    def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "RoadFits | None":
+    def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "MethodFits | None":
         """None where there are too few trials."""
         if tally.disagreement is None or tally.geometric_regressors is None:
             return None
         regressed = regressor_set(system, measure).of(measure)
-        roads = (tally.analytic_regressors, tally.geometric_regressors)
-        fits = [LinearFit.of(sums, regressed.parts) for sums in (tally.disagreement.sums, *roads)]
+        methods = (tally.analytic_regressors, tally.geometric_regressors)
+        fits = [LinearFit.of(sums, regressed.parts) for sums in (tally.disagreement.sums, *methods)]
         difference, analytic, geometric = fits
         if difference is None or analytic is None or geometric is None:
             return None
         alone = _effects_at_one_position(system, measure)
-        sigma = max(*(own.target_sigma for own in roads), math.hypot(*alone.values()))
+        sigma = max(*(own.target_sigma for own in methods), math.hypot(*alone.values()))
         least = np.maximum([alone.get(name, 0.0) for name in regressed.names], LEAST_OWN * sigma)
         own = np.maximum(np.maximum(analytic.effects, geometric.effects), least)
         ends = tally.analytic.moments

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.links import LinkTrials, StatedLink
+from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
 from tol3d.gearing.play.linked import link_contributors
-from tol3d.gearing.roads.analytic import analytic_values
 from tol3d.numerics.arrays import Array
 from tol3d.system.itself import Itself
 from tol3d.system.regressors import is_group, regress_plainly, regress_term

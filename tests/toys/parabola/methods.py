@@ -1,4 +1,4 @@
-"""Three roads to how far a spring lifts."""
+"""Three methods to how far a spring lifts."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.system.measure import Measure
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.stated import component_slices
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
@@ -145,7 +145,7 @@ class Chords(Exact):
         return 1e3 * self.chord_error, ROUNDING
 
 
-def chords_road(springs: Springs, system: System, materials: Mapping[str, Array]) -> Chords:
+def chords_method(springs: Springs, system: System, materials: Mapping[str, Array]) -> Chords:
     """The chords of x^2 between the knots; a chord over h lies at most h^2/4 above the square."""
     knots, squares = materials["knots"], materials["squares"]
     step = float(np.diff(knots).max())

@@ -1,4 +1,4 @@
-"""Parts at rest on both roads: small displacements by scipy, what rocks, what finds no room."""
+"""Parts at rest on both methods: small displacements by scipy, what rocks, what finds no room."""
 
 from itertools import combinations, pairwise
 
@@ -12,8 +12,8 @@ from scipy.stats import norm
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ def test_small_displacements_are_those_of_the_linear_programme(seed: int) -> Non
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, pytest.param(3, marks=pytest.mark.slow)])  # where a tilt lifts a contact
-def test_both_roads_differ_by_terms_of_second_order_away_from_switches(seed: int) -> None:
+def test_both_methods_differ_by_terms_of_second_order_away_from_switches(seed: int) -> None:
     rng = np.random.default_rng(seed)
     model = random_contacts(rng).rested(seen=SEEN)
     heights = rng.normal(0, 0.2, (30, model.width))

@@ -1,4 +1,4 @@
-"""Both roads of assemblies, as studies ask them."""
+"""Both methods of assemblies, as studies ask them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,37 +6,37 @@ from functools import cached_property
 from typing import ClassVar
 
 from tol3d.assembly.model import Assembly
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.plan import PlacingPlan, planned
 from tol3d.assembly.placing.world import SolidReader
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.system.measure import Measure
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.trials import Trials
 
 
 @dataclass(frozen=True)
-class TorsorRoad:
-    """The analytic road: small displacements."""
+class TorsorMethod:
+    """The analytic method: small displacements."""
 
     assembly: Assembly
 
     chord_error: ClassVar[float] = 0.0
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road; every trial is built."""
+        """See Method; every trial is built."""
         found = torsors.values(self.assembly, trials.deviations, [measure.name for measure in measures])
         return Answers({name: own[:, None] for name, own in found.items()})
 
 
 @dataclass(frozen=True)
-class PlacingRoad:
-    """The exact road: parts are placed, move by move.
+class PlacingMethod:
+    """The exact method: parts are placed, move by move.
 
     Args:
         assembly: the model.
         solids: reads clearances of whole parts; None where there are none.
-        chord_error: see Road.
+        chord_error: see Method.
     """
 
     assembly: Assembly
@@ -49,7 +49,7 @@ class PlacingRoad:
         return planned(self.assembly, self.solids)
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         names = [measure.name for measure in measures]
         found, decided = placing.planned_answers(self.plan, trials.deviations, names)
         return Answers(

@@ -1,4 +1,4 @@
-"""A road from deviations to values: what it answers, and what is known of it before it is made."""
+"""A method from deviations to values: what it answers, and what is known of it before it is made."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,13 +13,13 @@ from tol3d.system.trials import Trials
 
 Codes = NDArray[np.int8]
 
-ANALYTIC_ROAD: Final = "analytic"
-"""The road that every system has: its theory. A study that names it as its engine has no 3D simulation."""
+ANALYTIC_METHOD: Final = "analytic"
+"""The method that every system has: its theory. A study that names it as its engine has no 3D simulation."""
 
 
 @dataclass(frozen=True)
 class Answers:
-    """What a road answers of some trials.
+    """What a method answers of some trials.
 
     Args:
         values: by measure, (trials, positions) [mm or rad].
@@ -47,7 +47,7 @@ def joined_answers(pieces: Sequence[Answers]) -> Answers:
     )
 
 
-class Road(Protocol):
+class Method(Protocol):
     """Goes from deviations to values. Made in the worker, for what it holds need not pickle."""
 
     @property
@@ -60,8 +60,8 @@ class Road(Protocol):
         ...
 
 
-class WitnessRoad(Road, Protocol):
-    """A road that checks another one, and knows its own errors."""
+class WitnessMethod(Method, Protocol):
+    """A method that checks another one, and knows its own errors."""
 
     def reads(self, measure: Measure) -> bool:
         """Whether it can read a measure; those that it cannot are left out of what it finds."""
@@ -73,14 +73,14 @@ class WitnessRoad(Road, Protocol):
 
 
 @dataclass(frozen=True)
-class RoadKind:
-    """What is known of a road before it is made.
+class MethodKind:
+    """What is known of a method before it is made.
 
     Args:
         setup: what goes on while it is made ready, for a progress line.
         threads: whether workers are threads that take whole blocks; else processes that take pieces of blocks.
         compiled: whether it loads the compiler of kernels anyway, so that draws and sums may use it too.
-        witness: whether it can check another road.
+        witness: whether it can check another method.
         contacts_per_minute: of one core, draws and statistics included; only for the estimate before what takes long.
         block_contacts: the most that a block of trials takes; None where even large blocks are soon done.
     """

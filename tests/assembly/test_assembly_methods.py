@@ -1,4 +1,4 @@
-"""Both roads on the same assemblies: what the analytic road leaves out is of second order in the deviations."""
+"""Both methods on the same assemblies: what the analytic method leaves out is of second order in the deviations."""
 
 import numpy as np
 import pytest
@@ -31,8 +31,8 @@ from tol3d.assembly.model import (
 )
 from tol3d.assembly.model.datum_frame import Simulator
 from tol3d.assembly.model.statuses import OK
-from tol3d.assembly.placing import road as placing
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.placing import method as placing
+from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ NEST = [((20, 15, 0), Z), ((180, 15, 0), Z), ((100, 90, 0), Z), ((30, 0, 25), Y)
 
 
 def leaves_out(assembly: Assembly, name: str, deviations: Array) -> Array:
-    """Largest amount by which the roads differ, at the deviations and at a tenth of them."""
+    """Largest amount by which the methods differ, at the deviations and at a tenth of them."""
     found = []
     for factor in (1.0, 0.1):
         exact, codes = placing.values(assembly, factor * deviations, [name])[name]
@@ -191,7 +191,7 @@ def test_locators_mates_and_welded_bodies(points_on: str) -> None:
 
 
 @pytest.mark.parametrize("points_on", ["part", "fixture"])
-def test_slopes_are_central_differences_of_the_exact_road(points_on: str) -> None:
+def test_slopes_are_central_differences_of_the_exact_method(points_on: str) -> None:
     """Steps of 0.01 mm leave (0.01 / 50)^2 of a slope, and 1e-12 mm of rounding over the step."""
     assembly = nested(points_on)
     step, width = 0.01, assembly.width

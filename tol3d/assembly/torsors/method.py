@@ -1,4 +1,4 @@
-"""The analytic road of assemblies: values of measures, and their slopes, from the nominal geometry alone."""
+"""The analytic method of assemblies: values of measures, and their slopes, from the nominal geometry alone."""
 
 from collections.abc import Sequence
 from weakref import WeakKeyDictionary

@@ -1,4 +1,4 @@
-"""The exact road: where parts are and what measures read, by finite poses, block by block of trials."""
+"""The exact method: where parts are and what measures read, by finite poses, block by block of trials."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

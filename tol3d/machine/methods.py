@@ -1,4 +1,4 @@
-"""Both roads of a machine: the assembly is placed, gears mesh on the axes of its bores, trains turn its joints.
+"""Both methods of a machine: the assembly is placed, gears mesh on the axes of its bores, trains turn its joints.
 
 The assembly is read where its joints then stand, in each pose.
 """
@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import NO_BUILD
-from tol3d.assembly.placing import road as placing
+from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.world import SolidReader
-from tol3d.assembly.torsors import road as torsors
+from tol3d.assembly.torsors import method as torsors
 from tol3d.gearing.model.measure import Measure as GearMeasure
 from tol3d.machine.drives import HALF, JointDrive
 from tol3d.machine.joined import Joined
@@ -24,8 +24,8 @@ from tol3d.machine.statuses import FROM_ASSEMBLIES
 from tol3d.machine.turned import Turned, Turning
 from tol3d.numerics.arrays import Array
 from tol3d.system.measure import Measure
+from tol3d.system.method import Answers, Codes, Method
 from tol3d.system.outcome import reason_column
-from tol3d.system.road import Answers, Codes, Road
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
@@ -39,34 +39,34 @@ NOT_TURNED: Final = int(FROM_ASSEMBLIES[NO_BUILD])
 
 
 @dataclass(frozen=True, eq=False)
-class MachineRoad:
-    """A road of the gears behind one of the assembly; implements WitnessRoad where the gears' does.
+class MachineMethod:
+    """A method of the gears behind one of the assembly; implements WitnessMethod where the gears' does.
 
     Args:
         system: whose.
-        gears: the gears' own road.
+        gears: the gears' own method.
         exact: whether parts are placed by finite poses; else by torsors.
         solids: by pose, what reads clearances of whole parts; none where there are none.
         chords: by clearance, what chord errors of a witness and of what it checks explain [mm]; else empty.
     """
 
     system: Joined
-    gears: Road
+    gears: Method
     exact: bool
     solids: Mapping[str, SolidReader] = field(default_factory=dict)
     chords: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return self.gears.chord_error
 
     def reads(self, measure: Measure) -> bool:
-        """See WitnessRoad: every one."""
+        """See WitnessMethod: every one."""
         return True
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessRoad; of the assembly clearances and joints are read otherwise than by the witnessed road."""
+        """See WitnessMethod; of the assembly clearances and joints are read otherwise than by the witnessed method."""
         witness: Any = self.gears
         if isinstance(measure, GearMeasure):
             found: tuple[float, float] = witness.bounds(measure)
@@ -88,7 +88,7 @@ class MachineRoad:
         return float(found[0]), float(found[1])
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         system = self.system
         of_gears = [measure for measure in measures if isinstance(measure, GearMeasure)]
         worst = [measure for measure in measures if isinstance(measure, WorstMeasure)]

@@ -1,4 +1,4 @@
-"""The geometric road: builds whose meshes an engine brings to contact and reads."""
+"""The geometric method: builds whose meshes an engine brings to contact and reads."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from tol3d.gearing.stack_up import first_order, per_normal_backlash
 from tol3d.numerics.arrays import Array
 from tol3d.solids import FlankStrips
 from tol3d.system import measure as system_measure
-from tol3d.system.road import Answers, Codes, joined_answers
+from tol3d.system.method import Answers, Codes, joined_answers
 from tol3d.system.trials import Trials
 
 Details = dict[str, NDArray[np.generic]]
@@ -29,7 +29,7 @@ BUILDS_AT_ONCE = 4096  # builds x positions: 2.5 MB of them
 
 
 @dataclass(frozen=True, eq=False)
-class GeometricRoad:
+class GeometricMethod:
     """The meshes of a model by an engine."""
 
     model: Model
@@ -37,11 +37,11 @@ class GeometricRoad:
 
     @property
     def chord_error(self) -> float:
-        """See Road."""
+        """See Method."""
         return self.engine.chord_error
 
     def answers(self, trials: Trials, measures: Sequence[system_measure.Measure]) -> Answers:
-        """See Road: by an engine that reads meshes itself so many builds at once that they stay in the cache."""
+        """See Method: by an engine that reads meshes itself so many builds at once that they stay in the cache."""
         own = gear_measures(measures)
         if not isinstance(self.engine, ReadingEngine):
             return self._by_gaps(trials, own)
@@ -188,8 +188,8 @@ rounding (0.002 um a millimetre), and squares of tilts within a section's width.
 
 
 @dataclass(frozen=True, eq=False)
-class FclRoad(GeometricRoad):
-    """The geometric road by FCL, which witnesses the exact one: it knows how far it may be off. Implements WitnessRoad.
+class FclMethod(GeometricMethod):
+    """The geometric method by FCL, the witness of the exact one, with its error bound. Implements WitnessMethod.
 
     A strip's chords lie inside the tooth, by the chord error at most: FCL sees up to four of them more backlash than
     there is, for two flanks touch and two are measured.
@@ -201,11 +201,11 @@ class FclRoad(GeometricRoad):
     strips: Mapping[str, FlankStrips]
 
     def reads(self, measure: system_measure.Measure) -> bool:
-        """See WitnessRoad: every one."""
+        """See WitnessMethod: every one."""
         return True
 
     def bounds(self, measure: system_measure.Measure) -> tuple[float, float]:
-        """See WitnessRoad: by chords, and by all else."""
+        """See WitnessMethod: by chords, and by all else."""
         chords = {
             mesh.name: FLANKS_OF_A_BACKLASH * max(self.strips[gear].chord_error for gear in (mesh.driver, mesh.driven))
             for mesh in self.model.meshes

@@ -1,4 +1,4 @@
-"""The analytic road: stack-ups of single meshes, added up and compared as their trains say."""
+"""The analytic method: stack-ups of single meshes, added up and compared as their trains say."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -14,12 +14,12 @@ from tol3d.gearing.stack_up import analytic_backlash, analytic_transmission_erro
 from tol3d.gearing.stack_up.tooth_pairs import pieces, teeth_deviate
 from tol3d.numerics.arrays import Array
 from tol3d.system import measure as system_measure
-from tol3d.system.road import Answers
+from tol3d.system.method import Answers
 from tol3d.system.trials import Trials
 
 
 @dataclass(frozen=True)
-class AnalyticRoad:
+class AnalyticMethod:
     """The stack-ups of a model's meshes."""
 
     model: Model
@@ -27,7 +27,7 @@ class AnalyticRoad:
     chord_error = 0.0
 
     def answers(self, trials: Trials, measures: Sequence[system_measure.Measure]) -> Answers:
-        """See Road."""
+        """See Method."""
         stacks = _Stacks(self.model, trials)
         own = gear_measures(measures)
         law = Remembered(by_theory)
@@ -43,12 +43,12 @@ class AnalyticRoad:
 
 
 def analytic_play(model: Model, measure: Measure, trials: Trials) -> Play:
-    """The backlashes of a measure on the analytic road."""
+    """The backlashes of a measure on the analytic method."""
     return Play(model, measure, trials, _Stacks(model, trials), by_theory)
 
 
 def analytic_values(model: Model, measure: Measure, trials: Trials) -> Array:
-    """Values of a measure on the analytic road [mm or rad], (trials, positions)."""
+    """Values of a measure on the analytic method [mm or rad], (trials, positions)."""
     return _values(analytic_play(model, measure, trials))
 
 
@@ -62,7 +62,7 @@ def _values(play: Play) -> Array:
 
 
 def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Iterator[tuple[Backlash, Array]]:
-    """The backlashes of the meshes that a measure reads, each with its values on the analytic road [mm or rad]."""
+    """The backlashes of the meshes that a measure reads, each with its values on the analytic method [mm or rad]."""
     stacks = _Stacks(model, trials)
     for _, read in measure.kind.backlashes:
         backlash = replace(read, quantity="angular_backlash") if read.quantity == "rest_angle" else read
@@ -70,7 +70,7 @@ def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Itera
 
 
 class _Stacks:
-    """Reads backlashes on the analytic road; those that are read alike share one stack-up."""
+    """Reads backlashes on the analytic method; those that are read alike share one stack-up."""
 
     def __init__(self, model: Model, trials: Trials) -> None:
         self._model, self._trials = model, trials

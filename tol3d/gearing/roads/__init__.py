@@ -1,1 +1,0 @@
-"""The roads of gears in mesh: the stack-up, and the geometry by an engine."""
