@@ -1,4 +1,4 @@
-"""How fast the samplers converge, and whether the standard errors they state are true: makes docs/convergence.png.
+"""Convergence of the samplers, and truth of the standard errors that they state: makes docs/convergence.png.
 
     python benchmarks/convergence.py [--studies 100] [--largest 65536] [--out docs/convergence.png]
 
@@ -125,7 +125,7 @@ def print_curves(what: str, by_sampler: Mapping[SamplerKind, Curve]) -> None:
 
 
 def legend_handles(studies: int) -> list[Line2D]:
-    """What lines and marks are, whatever their colour."""
+    """Handles of lines and marks, whatever their colour."""
     true = Line2D([], [], color=BLACK, linewidth=1.8, label=f"true error: rms over {studies} studies")
     stated = Line2D([], [], color=BLACK, linestyle="none", marker="o", markerfacecolor="white", markersize=5.5)
     stated.set(markeredgewidth=1.3, label="standard error that the studies state of themselves")

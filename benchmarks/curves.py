@@ -35,7 +35,7 @@ ROWS: Mapping[str, tuple[int, Mapping[str, Mapping[str, Any]]]] = {
     "ranges of both sides": (2, {side: {**ERROR, "flank": side, "take": "range"} for side in ("drive", "back")}),
     "curve of the angular backlash": (1, {"play": {**PLAY, "take": "curve"}}),
 }
-"""What is measured: how many sides, and the measures."""
+"""Measurements: number of sides, and the measures."""
 
 ASKED = 1.7e6  # contacts/s on two cores
 LONG = "ranges of both sides, long"

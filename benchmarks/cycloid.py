@@ -1,4 +1,4 @@
-"""How many cycloid reducers a minute: exact first contact of two discs with forty pins over a turn of the output.
+"""Cycloid reducers per minute: exact first contact of two discs with forty pins over a turn of the output.
 
     python benchmarks/cycloid.py [--units 1000] [--angles 200] [--rounds 2] [--threads 2]
     python benchmarks/cycloid.py --memory 1000 20000 100000

@@ -1,4 +1,4 @@
-"""How fast the geometric method is by FCL, and how much faster than the obvious program.
+"""Speed of the geometric method by FCL, and its ratio to the obvious program.
 
     python benchmarks/fcl_speed.py [--trials 2000] [--naive 20] [--rounds 5]
 

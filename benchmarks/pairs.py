@@ -1,4 +1,4 @@
-"""What a trial of a pair costs on one core in the exact engine's kernels, by the kind of pair.
+"""Cost of a trial of a pair on one core in the exact engine's kernels, by the kind of pair.
 
     python benchmarks/pairs.py [--trials 20000] [--rounds 9]
 

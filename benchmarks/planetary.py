@@ -1,4 +1,4 @@
-"""How many planetary reducers a second: free turns of placed gears, of first-order gaps, and whole studies.
+"""Planetary reducers per second: free turns of placed gears, of first-order gaps, and whole studies.
 
     python benchmarks/planetary.py [--trials 200000] [--rounds 3] [--workers 2]
 

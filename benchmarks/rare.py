@@ -1,4 +1,4 @@
-"""What a small probability costs, and whether its interval says what it is worth: the spur pair below 15 µm.
+"""Cost of a small probability, and coverage of its interval: the spur pair below 15 µm.
 
     python benchmarks/rare.py [--seeds 100] [--level 14000]
 

@@ -111,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _by_another_process(*arguments: str) -> str:
-    """What it prints; a process begins with the peak memory of the one that starts it, so this one stays small."""
+    """Output of another process; a process begins with its parent's peak memory, so this one stays small."""
     words = [sys.executable, str(Path(__file__).resolve()), *arguments]
     return subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True).stdout
 

@@ -1,4 +1,4 @@
-"""What a trial of an exact study costs, stage by stage, on one core.
+"""Cost of a trial of an exact study, stage by stage, on one core.
 
     python benchmarks/stages.py [--trials 65536] [--rounds 7]
 

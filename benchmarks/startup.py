@@ -1,8 +1,8 @@
-"""How long `tol3d run spur_pair` takes, cold and warm, and what its imports cost.
+"""Duration of `tol3d run spur_pair`, cold and warm, and cost of its imports.
 
     python benchmarks/startup.py [--runs 5] [--cold] [--ways NAME …] [--packages NAME …]
 
-What a package costs is the time of its own modules, as `python -X importtime` gives it, in the process of a plain run;
+The cost of a package is the time of its own modules, as `python -X importtime` gives it, in the process of a plain run;
 the picture's process is not in it, for it loads beside the study. Below stand packages that have no place on that path,
 each with what it would cost. Measured on two cores with nothing else running (2000 trials, exact, 20 of them measured
 again by FCL, with the picture): 2.2 s warm, 11.7 s cold. Imports, in ms:
@@ -67,7 +67,7 @@ def print_walls(runs: int, ways: Sequence[str]) -> None:
 
 
 def print_imports(packages: Sequence[str]) -> None:
-    """What the imports of a plain run cost, by package, and what other packages would."""
+    """Print the cost of a plain run's imports, by package, and that of other packages."""
     found = imports((*RUN, "--witness", "0", "--no-picture"))
     own: Counter[str] = Counter()
     for module, us in found:

@@ -75,7 +75,7 @@ class Walk:
 
     @property
     def route_returns(self) -> int:
-        """How often run_scene itself calls a room that it left before."""
+        """Number of times that run_scene itself calls a room that it left before."""
         return len(self.route) - len(set(self.route))
 
 
@@ -149,7 +149,7 @@ def functions(file: Path) -> Iterator[tuple[str, int]]:
 
 
 def lengths(package: Path) -> Lengths:
-    """Of a package's files and functions."""
+    """Lengths of a package's files and functions."""
     paths = sorted(package.rglob("*.py"))
     files = [(len(path.read_text("utf-8").splitlines()), str(path.relative_to(package))) for path in paths]
     found = [(lines, f"{path.relative_to(package)}:{name}") for path in paths for name, lines in functions(path)]
@@ -255,7 +255,7 @@ def counted(tree: Path, scene: str, trials: int) -> Structure:
 
 
 def rows(found: Structure) -> dict[str, str]:
-    """What is printed of a tree."""
+    """Printed rows of a tree."""
     return {
         "loose files at the top of tol3d/": str(found.loose_files),
         "rooms": str(found.rooms),

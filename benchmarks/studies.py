@@ -74,7 +74,7 @@ class TimedStudy:
 
 @dataclass(frozen=True)
 class Found:
-    """What a study took: trials/s of its simulation stage, s of its process, peak MB."""
+    """Cost of a study: trials/s of its simulation stage, s of its process, peak MB."""
 
     rate: float
     seconds: float

@@ -1,4 +1,4 @@
-"""What a drawn component of a tolerance zone costs on one core.
+"""Cost of a drawn component of a tolerance zone on one core.
 
     python benchmarks/zones.py [--trials 65536] [--rounds 7]
 

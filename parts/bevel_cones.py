@@ -32,11 +32,11 @@ class EndCone:
 
     @property
     def distance(self) -> float:
-        """Of the pitch line's end from the apex [mm]."""
+        """Distance of the pitch line's end from the apex [mm]."""
         return self.gear.inner_cone_distance if self.end == TOE else self.gear.outer_cone_distance
 
     def v_at(self, polar: float) -> float:
-        """Where the cone of that polar angle cuts this one."""
+        """Place where the cone of that polar angle cuts this one."""
         return self.distance * math.tan(polar - self.gear.pitch_angle)
 
     def reach(self, polar: float) -> float:

@@ -82,7 +82,7 @@ def _complete_spline(q: Array, values: Array, slopes: Array) -> BSpline:
 
 
 def _end_curve(cone: EndCone, direction: Array, slope: Array) -> tuple[Array, Array]:
-    """Where the directions g meet front or back cone, six columns as in FlankSplines, and their slopes.
+    """Points where the directions g meet front or back cone, six columns as in FlankSplines, and their slopes.
 
     With f = g . (pitch line of its own meridian), the point is g R/f, and v = R (g . line across it)/f.
     """

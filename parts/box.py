@@ -72,7 +72,7 @@ class Box:
         return self.sides[name]
 
     def level(self, side: Side) -> float:
-        """Where the face of a side is along its axis [mm]."""
+        """Place of the face of a side along its axis [mm]."""
         return (self.high if side.sign > 0 else self.low)[side.axis]
 
     def depth(self, side: Side) -> float:

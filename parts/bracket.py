@@ -61,7 +61,7 @@ def bracket(
 
 
 def _legs(length: float, height: float, width: float, thickness: float, reach: float) -> tuple[Box, Box]:
-    """Of both legs what is clear of the other and of the fillet."""
+    """Boxes of both legs, each clear of the other and of the fillet."""
     base = dict(zip(FLAT, (Side(2, -1), Side(2, 1)), strict=True))
     upright = dict(zip(UPRIGHT, (Side(0, -1), Side(0, 1)), strict=True))
     return (

@@ -1,4 +1,4 @@
-"""What is cut into a part or stands on it, by numbers: holes, slots and pins. Loads no CAD."""
+"""Cuts and bosses of a part, by numbers: holes, slots and pins. Loads no CAD."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class DetailError(GeometryError):
 
 @dataclass(frozen=True)
 class Round:
-    """What is round about an axis square to its face: a name, the place of the axis, a diameter [mm]."""
+    """Round detail about an axis square to its face: a name, the place of the axis, a diameter [mm]."""
 
     name: str
     at: Place
@@ -32,7 +32,7 @@ class Round:
 
     @property
     def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
+        """Reach from its place along both coordinates [mm]."""
         return self.diameter / 2, self.diameter / 2
 
 
@@ -82,7 +82,7 @@ class Slot:
 
     @property
     def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
+        """Reach from its place along both coordinates [mm]."""
         straight = (self.length - self.width) / 2
         return (
             straight * abs(math.cos(self.turned)) + self.width / 2,
@@ -170,7 +170,7 @@ class Spigot:
 
     @property
     def reach(self) -> Place:
-        """How far it reaches from its place along both coordinates [mm]."""
+        """Reach from its place along both coordinates [mm]."""
         return self.length / 2, self.width / 2
 
     @property

@@ -107,7 +107,7 @@ class _OpenBox:
 
     @property
     def hollow(self) -> NamedSolid:
-        """What is taken away inside."""
+        """Solid that is taken away inside."""
         names = {
             "floor" if name == OPPOSITE[self.opening] else f"inside {name}": side for name, side in TOP_IS_Y.items()
         }
@@ -124,7 +124,7 @@ class _OpenBox:
         return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]), self.outer.sides)
 
     def thickness(self, side: Side) -> float:
-        """Of the wall of a side, or of the whole box below the rim [mm]."""
+        """Thickness of the wall of a side, or of the whole box below the rim [mm]."""
         whole: float = self.outer.depth(side)
         between = abs(self.outer.level(side) - self.inner.level(side))
         return between if between > 0.0 else whole
@@ -164,7 +164,7 @@ def _pin(box: _OpenBox, pin: Pin) -> NamedSolid:
 
 
 def _bore_or_hole(box: _OpenBox, bosses: Sequence[Boss], detail: Bore | Hole) -> NamedSolid:
-    """What it takes away, from its boss or its face inwards."""
+    """Solid that a bore or a hole takes away, from its boss or its face inwards."""
     refuse_sizes(detail)
     if isinstance(detail, Bore):
         _refuse_no_end_wall(box, detail)
@@ -182,10 +182,10 @@ def _bore_or_hole(box: _OpenBox, bosses: Sequence[Boss], detail: Bore | Hole) ->
 
 
 def _lies_in(detail: Bore | Hole, boss: Boss) -> bool:
-    """Whether a bore or a hole goes through a boss of its wall.
+    """True if a bore or a hole goes through a boss of its wall.
 
     Raises:
-        GeometryError: it does by a part of it only.
+        GeometryError: only a part of it does.
     """
     apart = math.dist(detail.at, boss.at)
     if apart >= (detail.diameter + boss.diameter) / 2 + LEAST_WALL:

@@ -67,7 +67,7 @@ def tools_of(details: Sequence[Some], made: Callable[[Some], NamedSolid]) -> lis
 
 
 def cutter(box: Box, detail: Hole | Slot) -> NamedSolid:
-    """What a hole or a slot takes away, from just outside its face inwards.
+    """Solid that a hole or a slot takes away, from just outside its face inwards.
 
     Raises:
         GeometryError: it has no size, is deeper than the material or leaves its face.
@@ -156,7 +156,7 @@ def point(side: Side, at: Place, level: float) -> Direction:
 
 
 def _apart(one: cq.BoundBox, other: cq.BoundBox) -> bool:
-    """Whether two bounding boxes leave a wall between them."""
+    """True if two bounding boxes leave a wall between them."""
     first = ((one.xmin, one.xmax), (one.ymin, one.ymax), (one.zmin, one.zmax))
     second = ((other.xmin, other.xmax), (other.ymin, other.ymax), (other.zmin, other.zmax))
     return any(max(a[0] - b[1], b[0] - a[1]) > LEAST_WALL for a, b in zip(first, second, strict=True))
@@ -169,7 +169,7 @@ def _outwards(side: Side) -> Direction:
 
 
 def _slot(slot: Slot, side: Side, bottom: Direction, height: float) -> NamedSolid:
-    """What a slot takes away, from its bottom on."""
+    """Solid that a slot takes away, from its bottom on."""
     swept = extruded(list(_stadium(slot, -height / 2)), [], height)
     faces = {f"{slot.name} floor" if name == BACK else name: face for name, face in swept.faces.items()}
     del faces[FRONT]  # outside the material

@@ -30,7 +30,7 @@ class Assembled:
 
     @property
     def system(self) -> AssemblySystem:
-        """What is simulated."""
+        """System that is simulated."""
         system = self.simulation.system
         assert isinstance(system, AssemblySystem)
         return system

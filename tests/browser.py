@@ -30,7 +30,7 @@ class Page:
         self.asked: list[str] = []
 
     def call(self, method: str, **params: Any) -> Any:
-        """What the browser answers."""
+        """Answer of the browser."""
         self._number += 1
         message: dict[str, Any] = {"id": self._number, "method": method, "params": params}
         if self.session:
@@ -78,7 +78,7 @@ class Page:
         return time.monotonic() - began
 
     def picture(self, selector: str) -> np.ndarray:
-        """What an element looks like (height, width, 3)."""
+        """Picture of an element (height, width, 3)."""
         element = f"document.querySelector({json.dumps(selector)})"
         self.ask(f"{element}.scrollIntoView({{block: 'center'}})")
         box = self.ask(f"(b => [b.x + scrollX, b.y + scrollY, b.width, b.height])({element}.getBoundingClientRect())")

@@ -120,7 +120,7 @@ def _phase(place: int, made: AsMade, phi: float, profile: DiscProfile) -> float:
 
 
 def _lever(phase: float, profile: DiscProfile) -> float:
-    """Of a pin about the disc's axis, over a Zc; positive where it stops clockwise turning."""
+    """Lever of a pin about the disc's axis, over a Zc; positive where it stops clockwise turning."""
     k = profile.eccentricity * profile.pins / profile.pin_circle_radius
     return -math.sin(phase) / math.sqrt(1 + k * k - 2 * k * math.cos(phase))
 
@@ -128,7 +128,7 @@ def _lever(phase: float, profile: DiscProfile) -> float:
 def _turn(
     made: AsMade, trial: int, phi: float, at: tuple[int, int], rolling: float, profile: DiscProfile, tilts: Tilts
 ) -> float:  # fmt: skip
-    """Where the gap of one pin changes its sign."""
+    """Turn at which the gap of one pin changes its sign."""
     low, high = -4e-4, 4e-4
     sections = _sections(made, trial, phi, at, profile, tilts)
     before = _gap(made, trial, phi, at, low, rolling, sections) > 0

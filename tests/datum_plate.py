@@ -37,6 +37,6 @@ def plate(laws: dict[str, str]) -> str:
 
 
 def covariance() -> np.ndarray:
-    """Of dx and dy [mm^2]: dx = ex - c + (60 - 50)/160 (b2 - b1), dy = ey - 0.1875 b1 - 0.8125 b2."""
+    """Covariance of dx and dy [mm^2]: dx = ex - c + (60 - 50)/160 (b2 - b1), dy = ey - 0.1875 b1 - 0.8125 b2."""
     rows = np.array([[-1 / 16, 1 / 16, -1, 1, 0], [-0.1875, -0.8125, 0, 0, 1]])
     return np.asarray(rows @ np.diag(np.square(list(SIGMAS.values()))) @ rows.T)

@@ -107,5 +107,5 @@ def moved_as_a_whole(assembly: Assembly, pose: Array) -> Assembly:
 
 
 def displacement(name: str, along: Vector, start: str) -> Measured:
-    """How far a feature lies from another along a direction that is fixed in that one's part."""
+    """Displacement of a feature from another along a direction that is fixed in that one's part."""
     return Measured(GapSpec.reads, (start, name), np.asarray(along, float))

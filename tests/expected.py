@@ -14,12 +14,12 @@ PRINTED: Final = 1e-5  # um, mm or arcmin; the files give that many digits
 
 @cache
 def expected(scene: str) -> dict[str, Any]:
-    """What a scene must give, by measure, and with how many trials."""
+    """Expected values of a scene, by measure, and the number of trials."""
     return tomllib.loads((SCENES / f"{scene}.expected.toml").read_text("utf-8"))
 
 
 def measures_of(scene: str) -> dict[str, dict[str, Any]]:
-    """What its measures must give."""
+    """Expected values of its measures."""
     return {name: own for name, own in expected(scene).items() if isinstance(own, dict) and name != "stages"}
 
 

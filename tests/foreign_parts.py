@@ -14,7 +14,7 @@ from tol3d.files import FileContent, read_file
 
 NIST: Final = TESTS / "step" / "nist"
 TURNED: Final = ((40.0, -7.0, 12.5), (1.0, 2.0, 3.0), 37.0)
-"""Where a part stands that is not at its origin: place [mm], axis, angle [deg]."""
+"""Pose of a part that is not at its origin: place [mm], axis, angle [deg]."""
 
 
 def nist_file(model: str) -> FileContent:
@@ -24,7 +24,7 @@ def nist_file(model: str) -> FileContent:
 
 
 def solid(made: cq.Workplane) -> cq.Shape:
-    """What a workplane has made."""
+    """Solid that a workplane has made."""
     shape = made.val()
     assert isinstance(shape, cq.Shape)
     return shape

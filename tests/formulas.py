@@ -40,7 +40,7 @@ def formula(
     high: float | None = None,
     blocks: Sequence[Block] = (),
 ) -> Response:
-    """Of contributors x0, x1 …, standard normals where only their number is given; limits of the measure."""
+    """Formula of contributors x0, x1 …, standard normals where only their number is given; limits of the measure."""
     given = [Scalar(Normal(0.0, 1.0))] * draws if isinstance(draws, int) else draws
     contributors = tuple(PlainContributor(f"x{k}", "x", own, "1", 1.0) for k, own in enumerate(given))
     measure = PlainMeasure("value", "value", low, high, unit="1", per_internal=1.0)

@@ -28,7 +28,7 @@ def simulated(model: Model, **study: Any) -> Simulation:
 
 
 def model_of_scene(scene: Scene | Path | str, overrides: Overrides = Overrides()) -> Model:  # noqa: B008
-    """What a run simulates, refused where a run refuses it."""
+    """Model that a run simulates, refused where a run refuses it."""
     return gear_model(simulation_of(load(scene), overrides).system)
 
 

@@ -38,7 +38,7 @@ def row_of(spec: type[Entry], dimension: str, of_all: Set[str]) -> str:
 
 
 def words(text: str) -> set[str]:
-    """What stands between backticks and is one word, such as a field or one of its values."""
+    """Texts between backticks that are one word, such as a field or one of its values."""
     return {word for word in re.findall(r"`([^`]+)`", text) if re.fullmatch(r"[a-z_0-9]+", word)}
 
 
@@ -83,12 +83,12 @@ class KindsPage:
         return next(each for each in self.tables if each.section == section and each.head[0] == head)
 
     def row(self, section: str, word: str) -> str:
-        """What a section's table of kinds says of one."""
+        """Row of a section's table of kinds for one of them."""
         cells = next(cells for row, cells in self.table(section.capitalize()).rows if row == word)
         return " ".join(cells)
 
     def definition(self, reference: Definition) -> Definition:
-        """What a reference of the schema refers to."""
+        """Definition that a reference of the schema refers to."""
         found: Definition = self.schema["$defs"][reference["$ref"].removeprefix("#/$defs/")]
         return found
 

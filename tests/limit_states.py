@@ -25,7 +25,7 @@ from tol3d.system.system import StreamKey
 
 Array = NDArray[np.float64]
 Value = Callable[[Array, Array], Array]
-"""Of deviations (n, components) and the position [rad] (n,); not a number where a build does not seat."""
+"""Value of deviations (n, components) and the position [rad] (n,); nan where a build does not seat."""
 
 
 class FormulaMethod:

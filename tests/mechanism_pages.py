@@ -46,12 +46,12 @@ class MechanismPage:
 
     @property
     def path(self) -> Path:
-        """Where it is."""
+        """Path of the page."""
         return ROOT / "docs" / f"{self.name}.md"
 
     @property
     def quoted(self) -> list[str]:
-        """What it quotes of scenes."""
+        """Quotations from scenes."""
         return re.findall(r"```yaml\n(.*?)```", self.kinds.text, re.DOTALL)
 
 

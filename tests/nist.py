@@ -29,7 +29,7 @@ def step_bytes(model: str) -> bytes:
 
 @cache
 def step_text(model: str) -> StepText:
-    """What is read of a model."""
+    """Text read from a model."""
     return read_step_text(step_bytes(model), f"{FILES[model]}.stp")
 
 

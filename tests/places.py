@@ -1,4 +1,4 @@
-"""Where the tree's folders lie, for tests wherever they stand."""
+"""Folders of the tree, for tests wherever they stand."""
 
 from pathlib import Path
 from typing import Final

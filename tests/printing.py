@@ -1,4 +1,4 @@
-"""What a terminal of some width shows."""
+"""Output of a terminal of some width."""
 
 import io
 

@@ -49,7 +49,7 @@ class RandomTouch:
         return move
 
     def errors(self, deviations: Array, pose: Array) -> Array:
-        """What each contact lacks [mm] where the part is at a pose (4, 4)."""
+        """Residual of each contact [mm] with the part at a pose (4, 4)."""
         rigid = RigidParts(self.assembly, deviations, {})
         base = self.assembly.part["base"].pose
         found: list[float] = []
@@ -62,7 +62,7 @@ class RandomTouch:
         return np.array(found)
 
     def radius(self, name: str, deviations: Array) -> float:
-        """Of a feature in the trial [mm]."""
+        """Radius of a feature in the trial [mm]."""
         feature = self.assembly.features[name]
         nominal = getattr(feature.shape, "diameter", None) or 0.0
         return float(nominal + sum(float(deviations[own.columns].sum()) for own in feature.size_by)) / 2.0
@@ -111,7 +111,7 @@ class RandomTouch:
 
 
 def errors_of(kind: str, own: tuple[Array, Array], other: tuple[Array, Array], radii: list[float]) -> list[float]:
-    """What a contact lacks, from origin and z of both sides."""
+    """Residuals of a contact, from origin and z of both sides."""
     (p, a), (q, b) = own, other
     match kind:
         case "ball on plane":

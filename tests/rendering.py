@@ -1,4 +1,4 @@
-"""What tests of pictures in 3D need."""
+"""Requirements of tests of pictures in 3D."""
 
 import ctypes.util
 import os

@@ -62,7 +62,7 @@ class RigidParts:
         return feature.shape.diameter + sum(float(self.deviations[each.columns].sum()) for each in feature.size_by)
 
     def origin(self, name: str, poses: Poses) -> Array:
-        """Where a feature's origin is in the world."""
+        """Origin of a feature in the world."""
         pose = poses[self.assembly.features[name].part]
         return np.asarray(pose[:3, :3] @ self.on_part(name)[0] + pose[:3, 3])
 

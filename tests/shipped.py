@@ -10,7 +10,7 @@ from tol3d.scene import read_scene
 
 @cache
 def _mechanisms() -> dict[str, str]:
-    """Of each scene."""
+    """Mechanism of each scene."""
     return {
         path.stem: _last([own.name for own in all_kinds().vocabularies_of(read_scene(path, all_kinds(), settle=False))])
         for path in sorted(SCENES.glob("*.yaml"))

@@ -65,7 +65,7 @@ class LonelyPressSpec(PressSpec):
 
 
 class TravelSpec(LengthSpec):
-    """How far a spring gives."""
+    """Give of a spring."""
 
     kind: Literal["travel"]
 

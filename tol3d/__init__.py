@@ -71,7 +71,7 @@ _HOMES = {
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
 }
-"""Where each name lives; what functions return and raise, and gears, are here for annotations and `except`."""
+"""Module of each public name; names that functions return or raise, and gears, serve annotations and `except`."""
 
 __all__ = [
     "Overrides",
@@ -103,5 +103,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """What a notebook completes."""
+    """Names that a notebook completes."""
     return sorted({*__all__, "__version__"})

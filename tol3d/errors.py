@@ -1,4 +1,4 @@
-"""What a user must mend, said in the user's words; everything else is a fault of ours, or of the disk."""
+"""Errors that a user must mend, in the user's words; any other error is a fault of ours, or of the disk."""
 
 import errno
 from pathlib import Path
@@ -44,7 +44,7 @@ class DiskError(RunError):
 
 
 def refused_by_disk(error: OSError) -> bool:
-    """Whether a write failed by the disk or the system's limits: neither the user's input nor the code is wrong."""
+    """True if a write failed by the disk or the system's limits: neither the input nor the code is wrong."""
     return error.errno in REFUSED_BY_DISK
 
 
@@ -53,8 +53,8 @@ def unwritable(path: Path, error: OSError, advice: str) -> RunError:
 
     Args:
         path: the file or folder.
-        error: what the system said.
-        advice: what helps where another place would be better; a disk that refuses is said to be mended.
+        error: that of the system.
+        advice: remedy where another place would be better; for a failing disk, to mend it.
     """
     why = f"{path}: cannot be written ({error.strerror or error})"
     if refused_by_disk(error):

@@ -1,4 +1,4 @@
-"""Files that a scene names: read once, so that what ran, what is kept and what is hashed are the same bytes."""
+"""Files that a scene names: read once, so that the same bytes are run, kept and hashed."""
 
 import hashlib
 import os
@@ -18,10 +18,10 @@ KEPT_HASH, KEPT_NAME = 12, 60  # characters of the name under which a run keeps 
 
 @dataclass(frozen=True)
 class FileContent:
-    """A file's content, and where it was read.
+    """A file's content and path.
 
     Args:
-        path: where it lay.
+        path: the path that was read.
         content: its bytes.
     """
 
@@ -66,11 +66,11 @@ def kept_name(name: str, sha256: str) -> str:
 
 
 class UnreadableFileError(Exception):
-    """A file that is not read; its text says why, without the file's name."""
+    """A file that is not read; its text is the reason, without the file's name."""
 
 
 def contained(name: str) -> bool:
-    """Whether a relative path stays in the folder that it starts from, by its words.
+    """True if a relative path stays in the folder that it starts from, judged by its text.
 
     >>> contained("trials/block-000000.parquet"), contained("../mine"), contained("/etc/passwd"), contained("C:/x")
     (True, False, False, False)

@@ -1,4 +1,4 @@
-"""Import paths `package.module:name`, by which what is light names code that is loaded when it is needed."""
+"""Import paths `package.module:name`, by which light modules name code that is loaded on demand."""
 
 import re
 import sys
@@ -12,7 +12,7 @@ DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILIN
 
 
 def named(path: str) -> Any:
-    """What an import path names.
+    """Object that an import path names.
 
     >>> named("math:hypot")(3.0, 4.0)
     5.0
@@ -22,7 +22,7 @@ def named(path: str) -> Any:
 
 
 def is_named(path: str) -> bool:
-    """Whether an import path names something; where the module's source tells, it is not loaded.
+    """True if an import path names something; where the module's source tells, it is not loaded.
 
     >>> is_named("tol3d.errors:InputError"), is_named("tol3d.errors:Forgotten"), is_named("forgotten:it"), is_named("")
     (True, False, False, False)
@@ -44,7 +44,7 @@ def _defined(module: str) -> frozenset[str]:
 
 
 def _source(module: str) -> str:
-    """The source of a module: only its outermost package is loaded, for what is between may load much."""
+    """The source of a module: only its outermost package is loaded, as packages in between may load much."""
     outermost, *inner = module.split(".")
     spec = find_spec(outermost)
     if spec is None or not inner:

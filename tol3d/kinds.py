@@ -1,4 +1,4 @@
-"""The one registration: what scenes may have, and the mechanisms that understand it.
+"""The one registration: kinds of scenes, and the mechanisms that understand them.
 
 A mechanism that tol3d brings along is a line of SHIPPED. Others come with packages, by an entry point of the group
 `tol3d.mechanisms`, or are registered by the program that uses them:
@@ -6,7 +6,7 @@ A mechanism that tol3d brings along is a line of SHIPPED. Others come with packa
     tol3d.register(mechanism)
 
 All are named by import paths. A scene loads the shipped ones whose kinds it names, which `kind: Literal["…"]` in the
-files of a mechanism's `grammar/` tells without importing them; whatever is wrong in it is said by all of them.
+files of a mechanism's `grammar/` tells without importing them; any fault in it is reported by all of them.
 """
 
 import re
@@ -87,10 +87,10 @@ NEEDED_KINDS: Final[Kinds] = _EveryKind()
 
 
 def summary_kinds(summary: Mapping[str, Any] | None = None) -> "SummaryKinds":
-    """What summaries of runs hold of every mechanism, besides what every one holds.
+    """Summary contents of every mechanism, besides those of all runs.
 
     Args:
-        summary: one, as JSON; only what it may hold by its mechanism and the kinds of its measures.
+        summary: one, as JSON, to get only those of its mechanism and of the kinds of its measures.
     """
     return _summary_kinds(all_kinds() if summary is None else _grammar_of(_needed_by(summary)))
 
@@ -109,11 +109,11 @@ def load_scene(
     only where that is allowed.
 
     Args:
-        path: the YAML file, or the name of a scene that tol3d brings along.
-        kinds: what it may have; every mechanism's kinds if not given.
+        path: the YAML file, or the name of a bundled scene.
+        kinds: allowed kinds; default: those of every mechanism.
         trust_parts: whether the scene may name files outside its own folder.
         run_builders: whether programs that it names as builders of its parts may be run.
-        files: the contents of the files that it names, where they are known; none is read then, and nothing built.
+        files: the contents of the files that it names, if known; then none is read, and nothing built.
 
     Raises:
         SceneError: one or several messages `file:line: place: what was expected, what came`.
@@ -123,7 +123,7 @@ def load_scene(
 
 
 def _grammar_of(shipped: Iterable[str]) -> Grammar:
-    """The kinds of some shipped mechanisms; all kinds where there are none, or where others are there too."""
+    """The kinds of some shipped mechanisms; all kinds if there are none, or others too."""
     paths = tuple(shipped)
     if not paths or _registered or _offered():
         return all_kinds()
@@ -182,7 +182,7 @@ def _added(vocabulary: Vocabulary) -> "SummaryKinds":
 
 @cache
 def _brought() -> tuple[Mechanism, ...]:
-    """What tol3d ships, then what installed packages offer."""
+    """Mechanisms that tol3d ships, then those of installed packages."""
     brought = tuple(_mechanism(named(path), path) for path in SHIPPED)
     for point in _offered():
         brought = _with_installed(brought, point)
@@ -191,12 +191,12 @@ def _brought() -> tuple[Mechanism, ...]:
 
 @cache
 def _offered() -> tuple[EntryPoint, ...]:
-    """What installed packages offer."""
+    """Entry points of installed packages."""
     return tuple(sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)))
 
 
 def _with_installed(brought: tuple[Mechanism, ...], point: EntryPoint) -> tuple[Mechanism, ...]:
-    """With what an installed package offers, if that can be used."""
+    """Mechanisms with those that an installed package offers, if they can be used."""
     try:
         offered = _mechanism(point.load(), point.value)
         Grammar((*brought, offered))

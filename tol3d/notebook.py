@@ -1,7 +1,7 @@
-"""What the commands show, for notebooks and scripts: tables, pictures, files and parts in space, nothing printed.
+"""Results of the commands, for notebooks and scripts: tables, pictures, files and parts in space, nothing printed.
 
-Objects here show themselves where a notebook ends a cell with them; `str()` is the text of a table, `path` is where a
-picture lies. Libraries that draw are loaded by who asks for a drawing.
+Objects here show themselves as the last value of a notebook cell; `str()` is the text of a table, `path` the place of a
+picture. Drawing libraries are loaded on demand.
 """
 
 import operator
@@ -78,7 +78,7 @@ class Report:
         return report.page_html(self.page)
 
     def to_csv(self, path: Path | str | None = None) -> str | None:
-        """Its tables as comma-separated values, written to a file, or returned where none is named.
+        """Its tables as comma-separated values, written to a file, or returned if none is named.
 
         Raises:
             InputError: the file cannot be written.
@@ -100,8 +100,8 @@ class Picture:
     """A picture that was drawn, shown inline by notebooks.
 
     Args:
-        path: where it lies; None of a window that was closed again.
-        notes: what the user should know, such as the magnification in use.
+        path: its place; None for a window that was closed again.
+        notes: remarks for the user, such as the magnification in use.
     """
 
     path: Path | None
@@ -117,17 +117,17 @@ class Picture:
 
 @dataclass(frozen=True, repr=False)
 class Check(Report):
-    """What a scene means.
+    """Report on a scene before any trial.
 
     Args:
-        system: what is built and measured.
+        system: the system that is built and measured.
     """
 
     system: System
 
     @property
     def model(self) -> Model:
-        """Of gears: the parts, moves, measures and contributors, in mm and rad.
+        """Model of gears: the parts, moves, measures and contributors, in mm and rad.
 
         Raises:
             InputError: it is a system of something else.
@@ -136,7 +136,7 @@ class Check(Report):
 
     @cached_property
     def coefficients(self) -> Mapping[str, Sequence[Coefficient]]:
-        """What each contributor does to each measure of gears by its name, by either method, with its share.
+        """Coefficient of each contributor in each measure of gears by its name, by either method, with its share.
 
         Raises:
             InputError: it is a system of something else.
@@ -240,11 +240,11 @@ def check_scene(
     trust_parts: bool = False,
     run_builders: bool = False,
 ) -> Check:
-    """What a scene means before any trial, as `tol3d check` shows it.
+    """Report on a scene before any trial, as `tol3d check` shows it.
 
     Args:
         scene: a scene, its path, or the name of a bundled one.
-        overrides: what is said otherwise than in its study.
+        overrides: values that replace those of its study.
         trust_parts: allow files outside the scene's folder.
         run_builders: run the Python files that the scene names as builders of its parts.
 
@@ -291,7 +291,7 @@ def write_report(
         trials: which the 3D view has besides the nominal build and the worst one.
         in_3d: whether the parts are shown in 3D, which takes a megabyte.
         format: "html" the page; "xlsx", "csv" and "json" its tables, numbers with all their digits.
-        force: replace what is there.
+        force: replace existing files.
 
     Raises:
         RunError: one is no run, or changed since. InputError: the file is there, or cannot be written.
@@ -345,7 +345,7 @@ def keep_report(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> Path:
 
 
 def _about(runs: Sequence[Run]) -> Mapping[str, object]:
-    """What stands beside the tables of a report."""
+    """Items beside the tables of a report."""
     return {
         "runs": [
             {"run": run.path.name, "scene": run.found.scene, "trials": run.trials, "seed": run.found.seed}
@@ -429,7 +429,7 @@ def find_shims(
         minimum: which number is called so.
         stock: thicknesses there are: a step, or pieces with commas between them.
         rounding: "down" never falls below the target, "nearest" takes the nearest thickness.
-        overrides: what is said otherwise than in the scene's study.
+        overrides: values that replace those of the scene's study.
         trust_parts: allow files outside the scene's folder.
         run_builders: run the Python files that the scene names as builders of its parts.
 
@@ -460,11 +460,11 @@ def sweep(
     Args:
         scene: a scene, its path, or the name of a bundled one.
         vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
-        latin_hypercube: how many variants are drawn from ranges; None for a grid.
+        latin_hypercube: number of variants drawn from ranges; None for a grid.
         hypercube_seed: of that drawing.
         out: a folder that keeps the variants, so that a sweep goes on there; None keeps none.
         picture: a file to draw them in.
-        overrides: what is said otherwise than in the scene's study, for all variants.
+        overrides: values that replace those of the scene's study, for all variants.
         workers: that run the trials of one.
         trust_parts, run_builders: see run_scene.
 
@@ -494,7 +494,7 @@ def response(
 
     Args:
         scene: a scene, its path, or the name of a bundled one.
-        overrides: what is said otherwise than in its study, such as its engine.
+        overrides: values that replace those of its study, such as its engine.
         analytic: by the analytic model, not by the 3D simulation.
         trust_parts, run_builders: see run_scene.
 

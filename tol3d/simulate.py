@@ -57,7 +57,7 @@ Machines are both in one world (`machine/`): shafts lie in bores of parts, and t
     all          placed, meshed, turned     machine/methods.py            MachineMethod
 
 Each method of the assembly hands the axes of the trial to the same method of the gears, which hands back how far its
-trains turn the joints, pose by pose: both as deviations that nobody draws.
+trains turn the joints, pose by pose: both as deviations that are not drawn.
 
 Linkages bring one move into an assembly, `close_loop`, which places several bodies at once (`linkage/`).
 
@@ -128,19 +128,19 @@ def run_scene(
 
     Args:
         scene: a scene, the path of one, or the name of a bundled one.
-        overrides: what is said otherwise than in the scene's study.
+        overrides: values that replace those of the scene's study.
         out: the run's folder; None takes a new one in the system's temporary folder, says where that is, and leaves
             it there until the user or the system deletes it. A run of the same
             study there is replaced, if nothing but its own files is in its folder.
-        execution: who runs it and what is kept; the results are the same to the last bit for any.
+        execution: workers and storage; the results are the same to the last bit for any.
         trust_parts: allow files outside the scene's folder.
         run_builders: run the Python files that the scene names as builders of its parts.
-        force: replace a run of another study too; one that holds more than its own files is moved aside.
+        force: replace a run of another study too; one with other files is moved aside.
         watch: callbacks while it goes on.
-        kinds: what the scene may have; every mechanism's kinds if not given.
+        kinds: allowed kinds; default: those of every mechanism.
 
     Raises:
-        SceneError, RunError, InputError: with the place and what to do.
+        SceneError, RunError, InputError: with the place and the remedy.
         MechanismError: a mechanism of another package is at fault.
     """
     clock = Clock()
@@ -160,11 +160,11 @@ def run_simulation(
     force: bool = False,
     watch: Watch = UNWATCHED,
 ) -> Run:
-    """Run a scene whose meaning is known: what `simulation_of` made of it, for a large one takes seconds to make.
+    """Run a scene with its simulation from `simulation_of`, which takes seconds to make for a large scene.
 
     Args:
         scene: a scene.
-        simulation: what it means, overrides included.
+        simulation: of the scene, overrides included.
         out, execution, force, watch: see run_scene.
 
     Raises:
@@ -191,11 +191,11 @@ class _Order:
     """A run that was asked for.
 
     Args:
-        scene, simulation: what is simulated.
-        execution: who runs it and what is kept.
-        folder: where it goes.
-        fingerprint: what makes an interrupted run its own.
-        plan: how its trials are cut.
+        scene, simulation: to run.
+        execution: workers and storage.
+        folder: of the run.
+        fingerprint: identity of an interrupted run.
+        plan: division of its trials.
         clock: since it was asked for.
     """
 
@@ -230,7 +230,7 @@ class _Order:
         return f"{kept} of {self.plan.trials} trials are"
 
     def task(self, watch: Watch) -> Task:
-        """What workers run; kernels that this machine has not compiled yet take ten seconds."""
+        """Task of the workers; kernels that this machine has not compiled yet take ten seconds."""
         compiled = self.simulation.system.is_compiled(self.simulation.study.engine)
         watch.activity(self.simulation.method.setup if compiled else COMPILING)
         return task_of(self.simulation, str(self.fingerprint), keep_trials=self.execution.keep_trials)
@@ -295,7 +295,7 @@ def load(
     """A scene from a path or a bundled name, or the scene itself; one made in Python is checked first.
 
     Args:
-        scene: the scene, or where it is.
+        scene: the scene, or its path.
         trust_parts, run_builders, kinds: see run_scene.
         resumed: folders, in one of which a run is to go on; no program is run for one of other files.
     """
@@ -329,7 +329,7 @@ def simulation_again(run: Run, kinds: Grammar | None = None) -> Simulation:
 
 
 def folder_for(scene: Scene, simulation: Simulation, execution: Execution, runs: Path) -> tuple[Path, str]:
-    """Where a run of a scene goes by default, and what is in the folder of the scene's name where it is another one.
+    """Default folder of a scene's run, and the contents of the folder of the scene's name if it is another one.
 
     Args:
         scene, simulation, execution: of the run.

@@ -34,9 +34,9 @@ def refused(field: str, expected: str, got: object) -> PydanticCustomError:
     """The error with which a validator refuses a value, in the user's words.
 
     Args:
-        field: dotted name of the field below what is validated; "" is that itself.
-        expected: what would do, such as "more than 0".
-        got: what came; a quantity is shown in quotes, as it was written.
+        field: dotted name of the field below the validated value; "" is that itself.
+        expected: allowed value, such as "more than 0".
+        got: given value; a quantity is shown in quotes, as it was written.
     """
     came = repr(str(got)) if isinstance(got, Quantity) else str(got)
     return PydanticCustomError(

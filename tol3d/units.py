@@ -38,7 +38,7 @@ FACTORS: Final[dict[Dimension, dict[str, float]]] = {
     "mass": {"kg": 1.0, "g": 1e-3, "t": 1e3},
     "count": {"pins": 1.0, "pin": 1.0},
 }
-"""What one of each unit is in mm, rad, K, 1/K, N, N/mm or kg; counts are numbers of what is counted."""
+"""One of each unit in mm, rad, K, 1/K, N, N/mm or kg; counts are numbers of what is counted."""
 
 EXAMPLES: Final[dict[Dimension, str]] = {
     "length": "4.5 um",
@@ -70,7 +70,7 @@ LARGEST: Final[dict[Dimension, float]] = {
     "mass": 1e9,
     "count": 1e6,
 }
-"""Of a quantity in a scene [mm, rad, K, 1/K, N, N/mm, kg, 1]: a kilometre, 1600 turns; products of such stay finite."""
+"""Largest quantity in a scene [mm, rad, K, 1/K, N, N/mm, kg, 1]: a kilometre, 1600 turns; products stay finite."""
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 ABSOLUTE_ZERO: Final = -293.15  # K from 20 degC, from which temperatures count
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
@@ -98,7 +98,7 @@ class Quantity:
 
     @property
     def dimension(self) -> Dimension:
-        """What the unit measures."""
+        """Dimension of the unit."""
         return UNITS[self.unit]
 
     @property
@@ -115,7 +115,7 @@ class Quantity:
         return Quantity(float(f"{internal / FACTORS[self.dimension][self.unit]:.{WRITTEN_DIGITS}g}"), self.unit)
 
     def __str__(self) -> str:
-        """As a user may write it, with as few digits as give the same number back."""
+        """Quantity as a user may write it, with as few digits as give the same number back."""
         short = f"{self.number:g}"
         return f"{short if float(short) == self.number else repr(self.number)} {self.unit}"
 
@@ -124,7 +124,7 @@ class Quantity:
         """Read `number unit`.
 
         Raises:
-            ValueError: a bare number, an unknown unit or anything else; the text says which.
+            ValueError: a bare number, an unknown unit or anything else; the text tells which.
         """
         if isinstance(text, Quantity):
             return text
@@ -210,8 +210,8 @@ def refuse_dimension(quantity: Quantity, expected: tuple[Dimension, ...], field:
     """Raise unless the quantity has one of the expected dimensions.
 
     Args:
-        quantity: what came.
-        expected: what would do.
+        quantity: the given one.
+        expected: allowed units.
         field: dotted name of the field below the one that is validated; "" is that one itself.
 
     Raises:
@@ -231,7 +231,7 @@ def refuse_dimension(quantity: Quantity, expected: tuple[Dimension, ...], field:
 
 
 def expectation(*dimensions: Dimension) -> str:
-    """What such a field takes, for messages.
+    """Expected value of such a field, for messages.
 
     >>> expectation("length")
     'a length with its unit, such as "4.5 um"'

@@ -172,7 +172,7 @@ def test_the_own_mean_is_exact_in_3d_where_tooth_thickness_alone_varies(tmp_path
 
 
 def turning_variance(positions: int) -> float:
-    """Of what turns with gears, behind the own mean of so many positions [rad^2], by hand from the scene's scales.
+    """Variance of what turns with gears, less the own mean of so many positions [rad^2], by hand from the scales.
 
     The long period is 14 turns of the spline shaft (28 and 110 teeth meet again after 55 turns of the pinion).
     """

@@ -165,7 +165,7 @@ def test_shims_that_are_there_are_found_again() -> None:
 
 CONE = math.atan(17 / 43)
 BESIDE = math.cos(math.radians(20.0)) * math.cos(CONE) * math.pi / (2 * 43)
-"""Where a driven tooth that stands in the middle of its space is touched, from the pitch line [rad]: its half angle
+"""Contact azimuth of a driven tooth in the middle of its space, from the pitch line [rad]: its half angle
 pi / (2 z2) times the sine of its base cone. A shift of an apex along its axis acts there by cos(delta) of that, more or
 less: see BevelPair.touching_angle."""
 

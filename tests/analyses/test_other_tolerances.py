@@ -34,7 +34,7 @@ def meant(scene: Scene, response: Response, entry: str) -> list[str]:
 
 
 def _same(scene: Scene, response: Response, entry: str, factor: float) -> bool:
-    """Whether a scene with a scaled tolerance draws and measures as the response does; False where it is refused."""
+    """True if a scene with a scaled tolerance draws and measures as the response does; False where it is refused."""
     names = meant(scene, response, entry)
     if not names:
         return False

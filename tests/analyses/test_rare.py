@@ -23,7 +23,7 @@ from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
 
 SPUR_15 = 0.0507e-6
-"""Of the spur pair, below 15 µm: by 10^10 draws of a formula of its own."""
+"""Probability of the spur pair below 15 µm: by 10^10 draws of an independent formula."""
 SLOW = ("curved much in 12 dimensions", "curved in 60 dimensions", "60 contributors", "a ball in 8 dimensions")
 QUICK = [own for own in (*CASES, *OTBENCHMARK) if own.name not in SLOW]
 
@@ -63,7 +63,7 @@ MORE = {"a plane": (1000, 931)}
 @pytest.mark.slow
 @pytest.mark.parametrize("case", [*CASES, *OTBENCHMARK], ids=lambda own: own.name)
 def test_its_interval_holds_the_truth_in_about_95_of_100_seeds(case: Case) -> None:
-    """Of 100 at 95 %, fewer than 88 happen in one of 300; wider intervals where the method cannot know are no fault."""
+    """Fewer than 88 of 100 at 95 % happen in one of 300; wider intervals where the method cannot know are no fault."""
     seeds, least = MORE.get(case.name, (100, 88))
     found = [rare_event(case.response(), case.side, case.limit, method="importance", seed=k) for k in range(seeds)]
     assert sum(own.interval[0] <= case.probability <= own.interval[1] for own in found) >= least
@@ -105,7 +105,7 @@ def test_second_order_knows_curvatures(curvature: float, beta: float) -> None:
 
 
 def test_builds_that_do_not_seat_are_told() -> None:
-    """Of the jam most failures do not seat: their share is that of the two probabilities."""
+    """Most failures of the jam do not seat: their share is that of the two probabilities."""
     case = next(own for own in CASES if own.name == "a jam")
     own = rare_event(case.response(), case.side, case.limit)
     assert own.estimate.unseated == pytest.approx(norm.sf(3.6) / case.probability, abs=0.01)

@@ -232,7 +232,7 @@ def test_two_correlated_normals() -> None:
 
 
 def test_frequent_failures_are_blamed_by_indices_of_failing() -> None:
-    """Of x0 + 2 x1 beyond 3: pairs with one in common are both normal, correlated by its share."""
+    """For x0 + 2 x1 beyond 3, pairs with one in common are both normal, correlated by its share."""
     own = formula(lambda x: x[:, 0] + 2 * x[:, 1], 2, high=3.0)
     found = only(effects(own, base=16384))
     limit = 3.0 / math.sqrt(5.0)
@@ -251,7 +251,7 @@ def test_frequent_failures_are_blamed_by_indices_of_failing() -> None:
 
 @pytest.mark.parametrize("rho", [0.0, 0.5])
 def test_rare_failures_are_blamed_by_design_points(rho: float) -> None:
-    """Of a plane squared direction cosines are shares of the variance, or Shapley effects of correlated ones."""
+    """For a plane, squared direction cosines are shares of the variance, or Shapley effects of correlated ones."""
     slopes, correlation = np.array([1.0, 2.0]), np.array([[1.0, rho], [rho, 1.0]])
     blocks = [Block(("x0", "x1"), ((1.0, rho), (rho, 1.0)))] if rho else []
     own = formula(lambda x: x @ slopes, 2, low=-15.0, blocks=blocks)
@@ -312,7 +312,7 @@ KINDS = ("bevel_pair", "every_field", "housed_gears", "robot_shoulder_swing", "s
 @pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_scenes_of_every_mechanism_have_effects(name: str) -> None:
-    """Of all measures, ends of curves too, each with what acts on it; what is shown of them has as many rows."""
+    """All measures, ends of curves too, with all that acts on each; what is shown of them has as many rows."""
     response = response_of(simulation_of(load(name)))
     found = effects(response, base=4)
     assert list(found.measures) == [own.name for own in response.measures]

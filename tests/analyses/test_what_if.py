@@ -1,4 +1,4 @@
-"""What-if: sums of normals in closed form, and the tail of the spur pair against importance sampling and trials."""
+"""What-if studies: sums of normals in closed form, and the tail of the spur pair by importance sampling and trials."""
 
 import math
 import time

@@ -1,4 +1,4 @@
-"""What to change: closed forms of a normal sum, and scenes changed as it says and simulated again."""
+"""Proposed changes: closed forms of a normal sum, and scenes changed as proposed and simulated again."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What messages advise: to heed it mends the scene, and nothing that a user wrote is dropped without a word."""
+"""Advice in messages: to follow it mends the scene, and nothing that a user wrote is dropped without a word."""
 
 from pathlib import Path
 

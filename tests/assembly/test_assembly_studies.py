@@ -56,7 +56,7 @@ def test_sobol_points_know_the_sigma_sooner(tmp_path: Path, normals: str) -> Non
 
 
 def test_shares_of_what_takes_a_size_are_those_of_squares(tmp_path: Path, normals: str) -> None:
-    """Of position^2 = 4 (dx^2 + dy^2) each deviation's square has a share; that of its root is close."""
+    """For position^2 = 4 (dx^2 + dy^2) each deviation's square has a share; that of its root is close."""
     run = ran(tmp_path, "run", normals, trials=40_000)
     found = {own["name"]: own["geometric_percent"] for own in run.summary["measures"]["position"]["contributors"]}
     rows = np.array([[-1 / 16, 1 / 16, -1, 1, 0], [-0.1875, -0.8125, 0, 0, 1]])
@@ -84,7 +84,7 @@ def test_bits_of_a_trial_do_not_depend_on_its_neighbours() -> None:
 
 
 def test_shares_do_not_depend_on_the_order_of_measures(tmp_path: Path) -> None:
-    """What takes a size is regressed on squares, what is linear on the deviations: each by its own rows."""
+    """Sizes are regressed on squares, linear measures on the deviations: each by its own rows."""
     position = "  position: {kind: inspected_position, of: plate.hole}\n"
     across = "  across: {kind: gap, from: plate.b1, to: plate.hole, along: [1, 0, 0]}\n"
     text = plate({name: constant(0.0) for name in SIGMAS})

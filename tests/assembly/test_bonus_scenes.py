@@ -140,7 +140,7 @@ def zoned(law: str = "uniform", position: str = "mmc", square: str | None = None
 
 
 def test_discs_widened_by_sizes_have_the_sigma_of_the_mean_square_diameter(tmp_path: Path) -> None:
-    """Of the middle of both ends: each has sigma sqrt(E t^2) / 4 = 0.061712 mm, both share the width alone."""
+    """Middle of both ends: each has sigma sqrt(E t^2) / 4 = 0.061712 mm, both share the width alone."""
     made = assembled(zoned(), tmp_path)
     expected = math.sqrt(integrate.quad(lambda own: (T0 + own) ** 2 / HIGH, 0, HIGH)[0]) / 4
     assert expected == pytest.approx(0.061712, abs=1e-6)

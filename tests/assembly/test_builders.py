@@ -37,7 +37,7 @@ GEARS = {"gear 1": "tooth", "gear 2": "space"}
 
 
 def rows(head: str) -> dict[str, list[str]]:
-    """Of a table of the page, by the first cell."""
+    """Rows of a table of the page, by the first cell."""
     table = PAGE[PAGE.index(f"| {head} |") :].split("\n\n")[0].splitlines()[2:]
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in table]
     return {row[0].strip("`"): row[1:] for row in cells}

@@ -109,7 +109,7 @@ def test_moments_by_quadrature_over_builds() -> None:
 
 
 def share_below(limit: float) -> float:
-    """Of contact angles below a limit [deg]: the hub's height alone is normal for given radii."""
+    """Fraction of contact angles below a limit [deg]: the hub's height alone is normal for given radii."""
     nodes, weights = hermegauss(40)
     share, cos = 0.0, math.cos(math.radians(limit))
     for (x, u), (y, v) in product(zip(nodes, weights / weights.sum(), strict=True), repeat=2):

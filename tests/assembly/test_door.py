@@ -35,7 +35,7 @@ def coefficients(at: Array) -> Array:
 
 
 def expected() -> Mapping[str, tuple[Array, float]]:
-    """Of each measure: coefficients of the contacts, variance of the body's own edges."""
+    """Coefficients of the contacts for each measure, and variance of the body's own edges."""
     rows = {name: coefficients(at) for name, at in EDGES.items()}
     found = {
         "upper gap": (-rows["upper"][0], BODY[0] ** 2),

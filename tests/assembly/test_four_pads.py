@@ -102,7 +102,7 @@ def test_with_the_weight_in_the_middle_the_height_is_unique_and_the_tilt_is_not(
 
 @pytest.mark.slow
 def test_rocking_asks_for_either_end_or_the_middle_of_both(tmp_path: Path) -> None:
-    """Of the two pads that do not carry one has all of the gap |D|, or the other one, or each a half."""
+    """One of the two pads that do not carry has all of the gap |D|, or the other one, or each a half."""
     exact, linear, codes, h = found(plate(tmp_path, 0.0, 0.0))
     d = h @ (1, -1, 1, -1)
     for method in (exact, linear):

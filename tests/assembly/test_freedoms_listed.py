@@ -1,4 +1,4 @@
-"""What `check` lists of freedoms: of each datum and each move, worked out by hand."""
+"""Freedoms that `check` lists: of each datum and each move, worked out by hand."""
 
 from pathlib import Path
 

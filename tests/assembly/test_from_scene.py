@@ -1,4 +1,4 @@
-"""What a scene's words become in an assembly: planes that are touched, form, run-out, copies, parents; by hand."""
+"""Assembly from a scene's words: touched planes, form, run-out, copies, parents; by hand."""
 
 import math
 from collections.abc import Mapping

@@ -89,7 +89,7 @@ def test_bore_and_slot_share_one_room(tmp_path: Path, method: str) -> None:
 @pytest.mark.parametrize("method", ["exact", "analytic"])
 @pytest.mark.parametrize("far", [0.03, 0.08, 0.3])
 def test_an_inspected_position_takes_its_least_over_the_room(tmp_path: Path, method: str, far: float) -> None:
-    """How far the gauges can follow a hole that lies aside: a linear programme over shift along y and turn."""
+    """Motion of the gauges after a hole that lies aside: a linear programme over shift along y and turn."""
     made = assembled(plate("[floor, bore, slot]", BOTH.format("least"), far), tmp_path)
     found = made.values(drawn(made.simulation, 0, 3), method)["least"]
     rows = np.array([[1.0, 0.0], [1.0, 72.0], [1.0, 88.0]])

@@ -51,13 +51,13 @@ def holes(modifier: str = ", modifier: mmc") -> str:
 
 
 def errors_of(trials: Trials) -> tuple[Array, Array]:
-    """Of the holes' centres (trials, holes, 2), and their bonuses (trials, holes) [mm]."""
+    """Errors of the holes' centres (trials, holes, 2), and their bonuses (trials, holes) [mm]."""
     rows = trials.deviations.reshape(len(trials), 4, 3)
     return rows[:, :, 1:], rows[:, :, 0]
 
 
 def have_a_point(centres: Array, radii: Array) -> bool:
-    """Whether discs have a point in common: a centre, or where two circles meet, lies in all of them."""
+    """True if discs have a point in common: a centre, or the intersection of two circles, lies in all of them."""
     places = [*centres]
     for (one, r), (other, s) in combinations(list(zip(centres, radii, strict=True)), 2):
         apart = other - one
@@ -71,7 +71,7 @@ def have_a_point(centres: Array, radii: Array) -> bool:
 
 
 def goes_over(errors: Array, radii: Array, facets: int = 180) -> bool:
-    """Whether a gauge that shifts and turns a little goes over the holes, each disc a polygon (outside it)."""
+    """True if a gauge that shifts and turns a little goes over the holes, each disc a polygon (outside it)."""
     angles = 2 * np.pi * np.arange(facets) / facets
     sides = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     about = PLACES - PLACES.mean(axis=0)

@@ -76,7 +76,7 @@ def is_inner(name: str) -> bool:
 
 
 def ends(name: str, own: dict[str, float]) -> list[tuple[Array, Array, Array]]:
-    """Of each end of a feature: where, the directions that count, and how far it lies off along these."""
+    """Ends of a feature: place, the directions that count, and the offset along these."""
     where, shape = SHAPES[name][:2] if name in SHAPES else MEASURED[name]
     (x, y, z, at), moved = where[:3, :4].T, [own[f"p.{name} {c}"] for c in shape.components]
     if isinstance(shape, Axis):

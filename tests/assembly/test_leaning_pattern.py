@@ -100,7 +100,7 @@ class Drawn:
     hole_sizes: Array
 
     def slacks(self, pose: Array) -> Array:
-        """Of each end after x, y and a turn of the holes (places * 2,)."""
+        """Slacks of each end after x, y and a turn of the holes (places * 2,)."""
         cos, sin = np.cos(pose[2]), np.sin(pose[2])
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
         shift, found = np.array([pose[0], pose[1], 0.0]), []
@@ -119,11 +119,11 @@ class Drawn:
 
     @cached_property
     def scale(self) -> Array:
-        """Of x, y and the turn, alike at the farthest pin."""
+        """Scale of x, y and the turn, alike at the farthest pin."""
         return np.array([1.0, 1.0, 1.0 / np.linalg.norm(self.pins[:, 0, :2], axis=1).max()])
 
     def slopes(self, pose: Array) -> Array:
-        """Of the slacks with the pose, its turn at the farthest pin (places * 2, 3)."""
+        """Slopes of the slacks with the pose, its turn at the farthest pin (places * 2, 3)."""
         steps = NUDGE * np.diag(self.scale)
         return np.stack([(self.slacks(pose + own) - self.slacks(pose - own)) / (2 * NUDGE) for own in steps], axis=1)
 
@@ -154,13 +154,13 @@ class Drawn:
         return found
 
     def lacking_balance(self, pose: Array, slack: float) -> float:
-        """How far the ends that touch are from holding the part: 0 at the optimum (Karush, Kuhn and Tucker)."""
+        """Residual of the ends that touch in holding the part: 0 at the optimum (Karush, Kuhn and Tucker)."""
         touching = np.abs(self.slacks(pose) - slack) < 1e-9
         matrix = np.vstack([self.slopes(pose)[touching].T, np.ones(touching.sum())])
         return float(nnls(matrix, np.array([0.0, 0.0, 0.0, 1.0]))[1])
 
     def leaves_open(self, pose: Array, slack: float) -> bool:
-        """Whether the ends that touch hold less than x, y and the turn nominally, such as those of one hole alone."""
+        """True if the ends that touch hold less than x, y and the turn nominally, such as those of one hole alone."""
         held = []
         for k in np.flatnonzero(np.abs(self.slacks(pose) - slack).reshape(-1, 2).min(axis=1) < 1e-8):
             x, y = self.holes[k].mean(axis=0)[:2] * self.scale[2]
@@ -183,7 +183,7 @@ class Case:
 
     @cached_property
     def poses(self) -> Array:
-        """Of the upper plate: x, y and the turn (trials, 3)."""
+        """Poses of the upper plate: x, y and the turn (trials, 3)."""
         placed = placing.placed(self.made.system.assembly, self.rows)["upper"]
         shift = placed[:, :2, :2] @ self.middle + placed[:, :2, 3] - self.middle
         return np.column_stack([shift, np.arctan2(placed[:, 1, 0], placed[:, 0, 0])])

@@ -257,7 +257,7 @@ def test_a_datum_that_leans_limits_the_shift_at_both_ends(tmp_path: Path) -> Non
 
 
 def test_circles_that_no_shift_reaches_have_no_value() -> None:
-    """Of places and a room by numbers: reached, reached where the room ends, and a room that is empty."""
+    """Places and a room by numbers: reached, reached where the room ends, and a room that is empty."""
     x = np.array([[1.0, 1.0, 1.0], [0.0, 0.0, 0.3], [0.0, 0.0, -0.3]])
     radii = np.array([[0.0, 0.1, 0.0], [2.0, 0.5, 0.2], [2.0, 0.5, 0.2]])
     least = np.empty(3)

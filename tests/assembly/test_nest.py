@@ -77,7 +77,7 @@ measures:
 
 
 def displaced(heights: Array, points_on: str) -> Array:
-    """How far the points that are seen move (2, 3) [mm], by scipy's least squares on the six contacts."""
+    """Displacement of the points that are seen (2, 3) [mm], by scipy's least squares on the six contacts."""
 
     def gaps(q: Array) -> Array:
         turn, shift = Rotation.from_rotvec(q[:3]).as_matrix(), q[3:]

@@ -1,4 +1,4 @@
-"""What contributing.md says of adding kinds, done from outside the package: a measure and a zone law of assemblies.
+"""Added kinds as contributing.md describes them, from outside the package: a measure and a zone law of assemblies.
 
 The measure is half of a size; the law puts an axis at one end of x in its zone, or the other.
 """
@@ -84,7 +84,7 @@ class StrangePositionSpec(PositionSpec):
 
 @dataclass(frozen=True)
 class TwoEnds(UnitLaw):
-    """Of a section: x = ±1."""
+    """Law of a section: x = ±1."""
 
     uniforms = 1
 

@@ -36,14 +36,14 @@ def read(plates: Assembled, rows: Array, method: str = "exact") -> Mapping[str, 
 
 
 def offsets(at: Array, lack: Array, pose: Array) -> Array:
-    """Of pins from holes (pins, 2), after a shift and a small turn of the holes."""
+    """Offsets of pins from holes (pins, 2), after a shift and a small turn of the holes."""
     x, y, turn = pose
     moved = np.stack([x - turn * at[:, 1], y + turn * at[:, 0]], axis=1)
     return np.asarray(lack - moved)
 
 
 def finite_offsets(holes: Array, pins: Array, pose: Array) -> tuple[Array, Array]:
-    """Of pins from holes (pins, 2) after a shift and a finite turn of the holes, and their change with the pose."""
+    """Offsets of pins from holes (pins, 2) after a shift and a finite turn of the holes, and their Jacobian."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     turned, change = holes @ np.array([[cos, sin], [-sin, cos]]), holes @ np.array([[-sin, cos], [-cos, -sin]])
     ones = np.broadcast_to(-np.eye(2)[:, :, None], (2, 2, len(holes))).transpose(2, 0, 1)
@@ -153,7 +153,7 @@ def test_four_pins(tmp_path: Path, method: str) -> None:
 
 
 def lacking_balance(own: Array, change: Array, clearances: Array, slack: float, reach: float) -> float:
-    """How far the pins that touch are from holding the part: 0 at the optimum.
+    """Residual of the pins that touch in holding the part: 0 at the optimum.
 
     At the largest slack some multipliers of the touching pins, 1 in all and none negative, balance in force and moment.
     """
@@ -209,7 +209,7 @@ def test_random_patterns_are_at_their_optimum(tmp_path: Path, seed: int, method:
 
 
 def lens_reach(first: Array, second: Array, radius: Array, along: Array) -> Array:
-    """How far the lens of two discs reaches along a direction (trials,): to a disc's own end, or to a corner."""
+    """Reach of the lens of two discs along a direction (trials,): to a disc's own end, or to a corner."""
     apart = second - first
     length = np.linalg.norm(apart, axis=0)
     tips = [centre + radius * along[:, None] for centre in (first, second)]

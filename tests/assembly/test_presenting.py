@@ -1,4 +1,4 @@
-"""How assemblies are shown: symbols are closed and as large as stated, features lie where the trial has them."""
+"""Presentation of assemblies: symbols are closed and as large as stated, features lie where the trial has them."""
 
 import math
 from pathlib import Path
@@ -42,7 +42,7 @@ def ball(radius: float) -> float:
 
 
 def zone(radius: float) -> float:
-    """Of a ball between 45 degrees of latitude, less the cones from its middle that end there."""
+    """Volume of a ball between 45 degrees of latitude, less the cones from its middle that end there."""
     latitudes = np.linspace(-math.pi / 4, math.pi / 4, SIDES // 4 + 1)
     cones = 2 * POLYGON / 3 * radius**3 * math.sqrt(0.5) ** 3
     return frusta(radius * np.cos(latitudes), radius * np.sin(latitudes)) - cones

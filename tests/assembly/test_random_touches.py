@@ -20,7 +20,7 @@ def drawn(made: RandomTouch, seed: int, count: int) -> Array:
 
 
 def poses_agree(made: RandomTouch, deviations: Array) -> int:
-    """Of how many trials: the others have no contact, by scipy either."""
+    """Number of trials compared: the others have no contact, by scipy either."""
     found, count = placing.placed(made.assembly, deviations)["part"], 0
     codes = placing.values(made.assembly, deviations, ["x"])["x"][1]
     for row, pose, code in zip(deviations, found, codes, strict=True):

@@ -1,4 +1,4 @@
-"""What the reference problems print besides what their own modules hold: tails, worst cases, and what a toy answers.
+"""Printed reference numbers besides those in the problems' own modules: tails, worst cases, and answers of a toy.
 
 Each number is worked out here before it is compared, and each trap is shown to lie ten standard errors away.
 """

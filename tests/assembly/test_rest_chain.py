@@ -1,4 +1,4 @@
-"""What lies on a part that rocks rocks along: welded parts, parts that rest on parts, measures before and after."""
+"""Parts on a part that rocks: welded parts, parts that rest on parts, measures before and after."""
 
 from collections.abc import Sequence
 from dataclasses import replace

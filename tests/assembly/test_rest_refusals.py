@@ -1,4 +1,4 @@
-"""What is wrong with a part at rest is said once: what its contacts do not hold, and how it would move."""
+"""Errors of a part at rest are reported once: motions that its contacts do not hold."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -40,7 +40,7 @@ def on_pads(relations: tuple[Relation, ...]) -> Assembly:
 
 
 def on_line(point: Array, ends: tuple[Array, Array]) -> float:
-    """How far a point lies off a line (mm)."""
+    """Distance of a point from a line (mm)."""
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     return float(np.linalg.norm(np.cross(point - ends[0], along)))
 

@@ -268,7 +268,7 @@ def test_a_common_datum_of_several_is_the_line_of_least_squares_through_their_ce
 
 
 def middle_off(assembly: Assembly, name: str, row: Array) -> Array:
-    """How far the middle of a datum lies off (3,), by its own components."""
+    """Offset of the middle of a datum (3,), by its own components."""
     found = []
     for own in name.split("-"):
         feature = assembly.features[f"p.{own}"]

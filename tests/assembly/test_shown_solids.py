@@ -1,4 +1,4 @@
-"""How parts with solids are shown and exported: at their poses in the trial, their features on them."""
+"""Presentation and export of parts with solids: at their poses in the trial, their features on them."""
 
 import math
 import sys

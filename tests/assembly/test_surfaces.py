@@ -1,4 +1,4 @@
-"""How far surfaces are apart and which way their normal points, against distances and central differences."""
+"""Distances of surfaces and directions of their normals, against distances and central differences."""
 
 from dataclasses import replace
 

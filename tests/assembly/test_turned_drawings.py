@@ -106,7 +106,7 @@ WITHOUT_ROUND_DRAWS = {
     "box_with_discs": (("  socket position: {kind: position", "  # {"),),
     "hole_and_slot": (("float: {kind: random}", "float: {kind: centred}"),),
 }
-"""What is left out of a scene so that nothing is drawn in a disc or a ball."""
+"""Lines left out of a scene so that nothing is drawn in a disc or a ball."""
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""What is wrong in a scene of an assembly is said once: where, what was expected, what came, what to do."""
+"""Errors in a scene of an assembly are reported once: place, expectation, what came, remedy."""
 
 from collections.abc import Sequence
 from pathlib import Path

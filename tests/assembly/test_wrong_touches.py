@@ -1,4 +1,4 @@
-"""What is wrong in a touch is said once: where, what was expected, what came, what to do."""
+"""Errors in a touch are reported once: place, expectation, what came, remedy."""
 
 from pathlib import Path
 

@@ -497,7 +497,7 @@ LOADED = {
 @pytest.mark.slow
 @pytest.mark.parametrize("what", LOADED)
 def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_path: Path) -> None:
-    """What a command has loaded at its end, in a process of its own; strips and kernels are in the cache."""
+    """Modules loaded at a command's end, in a process of its own; strips and kernels are in the cache."""
     arguments, wanted, never = LOADED[what]
     measuring_strips_of_the_spur_pair()
     if set(COMPILING) <= set(never):

@@ -23,7 +23,7 @@ def drawn(trials: int, scale: float, seed: int) -> Deviated:
 
 
 def test_what_first_order_neglects_shrinks_with_the_square_of_errors() -> None:
-    """Of a disc without clearance; a tenth of the errors leaves a hundredth of the difference."""
+    """A disc without clearance: a tenth of the errors leaves a hundredth of the difference."""
     bare = (PROFILE.__class__(40, 114.5, 5.0, 2.2), *STAGE[1:])
     phis = np.random.default_rng(2).uniform(0, 245, (20, 3))
     off = []

@@ -49,7 +49,7 @@ def face_points(face: cq.Face, count: int) -> tuple[NDArray[np.float64], NDArray
 
 
 def worst_of_pins(part: NamedSolid, profile: DiscProfile, lobes: list[int], each: int, clocking: float = 0.0) -> float:
-    """How far pins that stand about lobes miss their faces, or enter them [mm]."""
+    """Largest gap or overlap of pins that stand about lobes and their faces [mm]."""
     worst = 0.0
     for lobe in lobes:
         for share in (np.arange(each) + 0.37) / each:

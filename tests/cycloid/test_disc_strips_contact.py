@@ -51,7 +51,7 @@ def test_turns_differ_by_the_chord_error_over_the_least_lever_at_most(steps: int
 
 
 def test_a_disc_that_clears_its_pins_turns_by_the_clearance_over_the_lever() -> None:
-    """Of an offset alone the pin with the longest lever is first: at most 85.8 mm, and little less at 40 pins."""
+    """With an offset alone the pin with the longest lever is first: at most 85.8 mm, and little less at 40 pins."""
     stage = replace(STAGE, profile=replace(PROFILE, modification=Modification(offset=0.01)), discs=1, rolling=0.0)
     strips = lobe_strips(CycloidDisc(20.0, stage.profile, HOLES), 128)
     phi = -stage.profile.best_phase  # pin 0 has it

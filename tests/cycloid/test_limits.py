@@ -1,4 +1,4 @@
-"""What makes no disc is refused with the number that would do: that number does, and a little more does not."""
+"""Impossible discs are refused with the number that would do: that number does, and a little more does not."""
 
 import math
 import re
@@ -151,7 +151,7 @@ def test_gaps_are_those_found_by_search(modification: Modification) -> None:
 def test_the_largest_window_is_the_least_over_positions_of_the_longest_lever(
     pins: int, circle: float, eccentricity: float
 ) -> None:
-    """Of one flank, by the moment of the normal through each pin, over a pitch; 2000 positions leave 1e-3."""
+    """Longest lever of one flank, by the moment of the normal through each pin; 2000 positions a pitch leave 1e-3."""
     profile = DiscProfile(pins, circle, 1.0, eccentricity)
     phases = np.arange(2000)[:, None] / 2000 * 2 * math.pi / pins + 2 * math.pi * np.arange(pins) / pins
     u = phases / (pins - 1)

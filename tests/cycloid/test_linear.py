@@ -272,7 +272,7 @@ def test_exact_contact_differs_by_a_tenth_of_an_arc_second_and_by_a_quarter_of_t
 
 @pytest.mark.slow
 def test_what_the_analytic_method_neglects_is_the_bend_of_the_flank() -> None:
-    """Of 0.11'' root mean square a hundredth is left where the same pin touches: terms of third order and of lobes."""
+    """A hundredth of 0.11'' rms is left where the same pin touches: terms of third order and of lobes."""
     _, both, phis = as_drawn(20_000, 16)
     own, stage = of_first_disc(both), stage_of(rv_250(), discs=1)
     exact = ContactStage(stage.profile, 1, 3, CRANK_CIRCLE, 0.0, 0.7).touches(own, phis, (1.0,))

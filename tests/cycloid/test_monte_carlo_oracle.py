@@ -1,4 +1,4 @@
-"""What a plain Monte Carlo of the published example comes to, by an oracle of its own; known figures beside it."""
+"""Plain Monte Carlo of the published example, by an independent oracle; known figures beside it."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def half_range(values: Array) -> float:
 
 
 def standard_error(values: Array) -> float:
-    """Of the half-range of all values, by how blocks of them scatter."""
+    """Standard error of the half-range of all values, from the scatter of blocks of them."""
     blocks = [half_range(block) for block in np.split(values, BLOCKS)]
     return float(np.std(blocks, ddof=1)) / BLOCKS**0.5
 

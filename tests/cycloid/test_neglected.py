@@ -1,4 +1,4 @@
-"""What the analytic method leaves out of readings of a reducer covers what it differs by from the exact one."""
+"""Neglected terms of a reducer's analytic method cover its difference from the exact one."""
 
 import numpy as np
 import pytest

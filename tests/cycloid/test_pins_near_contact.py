@@ -1,4 +1,4 @@
-"""How many pins share a load once they give way by a deflection: counts of both methods against counts gap by gap."""
+"""Number of pins that share a load once they give way by a deflection: both methods against counts gap by gap."""
 
 import cmath
 import math

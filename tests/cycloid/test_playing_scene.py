@@ -48,7 +48,7 @@ def turned(simulation: Simulation, method: str, trials: int) -> dict[str, Array]
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [30, 200])
 def test_builds_of_a_scene_rest_where_highs_finds_them(count: int, tmp_path: Path) -> None:
-    """Of each by turns with the torque back and on, by both methods."""
+    """Each build in turn with the torque back and on, by both methods."""
     made = simulated(tmp_path, TEXT.replace("\nmoves:", f"{MORE}\nmoves:").replace("\nstudy:", BACK))
     method, trials = made.system.method("exact", None), drawn(made, 0, count)
     columns = columns_of(made.system, method, trials)

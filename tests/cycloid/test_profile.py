@@ -154,7 +154,7 @@ def test_the_output_turns_by_0_96296_of_the_disc_where_the_sun_is_held() -> None
 
 
 def circumradius(a: complex, b: complex, c: complex) -> float:
-    """Of the circle through three points; negative where they turn right."""
+    """Radius of the circle through three points; negative where they turn right."""
     area = ((b - a).conjugate() * (c - a)).imag
     return abs(b - a) * abs(c - b) * abs(c - a) / (2 * area) if area else math.inf
 

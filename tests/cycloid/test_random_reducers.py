@@ -44,7 +44,7 @@ OF_GEARS = {
 
 
 def random_numbers(seed: int) -> Numbers:
-    """Of a reducer that can be made, with a first stage if its number is even."""
+    """Numbers of a reducer that can be made, with a first stage if its number is even."""
     rng = np.random.default_rng(seed)
     pins, circle = int(rng.integers(6, 62)), float(rng.choice([30.0, 50.0, 80.0, 114.5]))
     eccentricity = round(float(rng.uniform(0.5, 0.85)) * circle / pins, 3)

@@ -69,7 +69,7 @@ class Posed:
         self.lobes = at["lobe_pitch"] * 40 / (39 * 114.5), at["lobe_profile"]
 
     def gaps(self, unknowns: Array, sense: float) -> Array:
-        """Of working pins of both discs [um]; unknowns as lengths [um], turns at 100 mm."""
+        """Gaps of working pins of both discs [um]; unknowns as lengths [um], turns at 100 mm."""
         z = unknowns / 1e3
         found = []
         for disc in range(2):

@@ -145,7 +145,7 @@ measures: {{lost: {{kind: planetary_lost_motion, of: 3K}}}}
 
 
 def answered(system: System, train: tuple[GearSystem, Trials], method: str, at: Array) -> Answers:
-    """What a link's own scene reads of the trials of its train; contributors are called alike in both."""
+    """Answers of a link's own scene for the trials of its train; contributors are called alike in both."""
     whole, trials = train
     slots = whole.model.component_slices
     deviations = np.concatenate([trials.deviations[:, slots[own.name]] for own in system.contributors], axis=1)

@@ -40,7 +40,7 @@ def trial() -> ShownReducer:
 
 
 def test_a_turn_of_the_cranks_turns_the_output_back_by_one_lobe(system: RVSystem) -> None:
-    """Of nominal parts the error is the same at every crank angle that differs by a turn: one lobe of 39 further."""
+    """The error of nominal parts is the same at every crank angle that differs by a turn: one lobe of 39 further."""
     states = turned(ShownReducer(system.own, RVDeviated.nothing(system.own, 1), 0.1), 5)
     assert len(states) == 5
     assert carrier_angles(states)[-1] == pytest.approx(-360 / 39, abs=1e-9)

@@ -153,7 +153,7 @@ def test_planets_stand_above_the_carrier_and_share_no_plane_with_their_cranks(bo
 
 @pytest.mark.slow
 def test_nominal_parts_overlap_nowhere() -> None:
-    """Of those whose boxes meet; ring, pins and first stage are looked at apart."""
+    """Parts whose boxes meet are checked; ring, pins and first stage apart."""
     parts = [part for part in nominal(0.4) if "pin " not in part.name]
     made = {part.name: placed(part) for part in parts}
     seconds = {"sun", "planet 1", "planet 2", "planet 3", "pin ring"}
@@ -198,7 +198,7 @@ def test_the_reducer_is_exported_whole(tmp_path: Path) -> None:
 
 
 def test_the_ring_is_a_tube_less_the_outer_parts_of_its_pin_holes() -> None:
-    """Of each hole what lies outside the bore: the disc less the lens of two circles."""
+    """The part of each hole outside the bore: the disc less the lens of two circles."""
     shape = reducer().ring
     bore, hole, circle = shape.bore_radius, shape.pin_radius, shape.pin_circle_radius
     part = ring(shape)
@@ -279,7 +279,7 @@ def test_lobes_reach_the_tip_circle_and_the_eccentricity() -> None:
 def test_whatever_goes_through_the_discs_is_drawn_with_walls_about_it(
     pins: int, shortening: float, cranks: int, discs: int, place: float, stated: bool
 ) -> None:
-    """Of all circles of crankshafts that are not refused, and the smallest holes that are not."""
+    """All circles of crankshafts that are not refused, and the smallest holes that are not."""
     bare = DiscProfile(pins, 100.0, 0.1, shortening * 100.0 / pins)
     profile = replace(bare, pin_radius=0.8 * min(bare.smallest_convex_radius, 100.0 * math.sin(math.pi / pins)))
     circle, eccentricity = place * profile.root_radius, profile.eccentricity

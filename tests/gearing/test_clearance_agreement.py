@@ -43,7 +43,7 @@ def changed(folder: Path, *replacements: tuple[str, str]) -> Path:
 
 
 def direction_of(gear: str, direction: str, sigma: Flank) -> tuple[float, float]:
-    """Where a gear's axis goes, (x, y) in the world of the mesh; sigma is +1 for a right working flank."""
+    """Direction of a gear's axis, (x, y) in the world of the mesh; sigma is +1 for a right working flank."""
     if direction == "{at: 50 deg}":
         return 0.642787609686539, 0.766044443118978
     away = 1.0 if gear == "wheel" else -1.0

@@ -1,4 +1,4 @@
-"""What is approximated, and how fast the error falls: strips with their steps, extremes with their positions."""
+"""Orders of the approximations: strips with their steps, extremes with their positions."""
 
 from dataclasses import replace
 from typing import Literal

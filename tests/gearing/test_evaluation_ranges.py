@@ -31,7 +31,7 @@ def model_of(folder: Path, *tolerances: str) -> Model:
 
 
 def out_um(model: Model, flank: Flank, roll: float, z: float = 0.0) -> float:
-    """What the pinion's flanks of a side stand out by at a place, all tolerances at what is given [um]."""
+    """Protrusion of the pinion's flanks of a side at a place, all tolerances at their given values [um]."""
     deviations = np.concatenate([np.array(own.draw.deviations(), dtype=float) for own in model.contributors])
     seat, at = model.seat_index["pair", "pinion"], (np.array([roll]), np.array([z]))
     rates = FlankPlaces.of(model).rates(model, seat, flank, np.array([3]), at)

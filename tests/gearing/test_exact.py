@@ -631,7 +631,7 @@ print(read(random_builds(PAIRS["paper"], RIGHT, 3, 1, spread=Spread(), thinner=0
 
 
 def first_read(cache: Path, *tree: Path) -> str:
-    """What another process reads, its kernels kept in `cache`; of a copy of the tree elsewhere if one is given."""
+    """Output of another process, its kernels kept in `cache`; of a copy of the tree elsewhere if one is given."""
     command = [sys.executable, "-c", FIRST_READ, *map(str, tree), str(Path(__file__).parent), str(TESTS)]
     environment = os.environ | {"TOL3D_CACHE": str(cache)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)

@@ -335,7 +335,7 @@ def random_shaft(seed: int) -> str:
 
 @pytest.mark.slow
 def test_random_shafts_have_the_closed_form_of_their_samples(tmp_path: Path) -> None:
-    """Of some 110 means and as many sigmas none is off by 4.5 standard errors (one in 600 such tests), rms near 1.
+    """None of some 110 means and as many sigmas is off by 4.5 standard errors (one in 600 such tests), rms near 1.
 
     The rms of 110 independent ones is within 0.2 of 1 in three standard deviations; those of one shaft depend on each
     other, which widens that by up to the root of their number, 2.

@@ -141,7 +141,7 @@ def test_methods_that_differ_are_explained_by_what_differs(runs: Mapping[str, Ru
 
 
 def beside(columns: Mapping[str, Array], method: str, clocking: Array) -> Array:
-    """What belt and gears leave free together, and the jaws after them [arcmin]."""
+    """Joint play of belt and gears, and of the jaws after them [arcmin]."""
     belt, middle = of_belt(columns, 20.0)
     gears = of_teeth(columns, 20.0, "first", "second", "third", "fourth")  # 20:40:20 teeth, twice 20 mm over 40 mm
     shift = -clocking  # a gear that sits ahead leaves its shaft behind
@@ -212,7 +212,7 @@ Play = tuple[float, float]
 
 
 def reach(links: Sequence[Link], plays: Mapping[str, Play], read: str, held: str) -> float:
-    """How far a shaft can turn while another one is held, by a linear programme."""
+    """Largest turn of a shaft while another one is held, by a linear programme."""
     shafts = list(dict.fromkeys(shaft for link in links for shaft in (link.driver, link.driven)))
     rows, bounds = [], []
     for link in links:

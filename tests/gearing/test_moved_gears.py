@@ -53,7 +53,7 @@ def moved(run: Run, which: int | str, name: str, frames: int) -> Motion:
 
 
 def azimuths(motion: Motion, name: str) -> NDArray[np.float64]:
-    """Of a gear's x in each frame [rad], without jumps."""
+    """Azimuths of a gear's x in each frame [rad], without jumps."""
     poses = (frame.poses[name] for frame in motion.frames)
     return np.unwrap([math.atan2(pose[1, 0], pose[0, 0]) for pose in poses])
 

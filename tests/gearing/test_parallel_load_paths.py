@@ -52,7 +52,7 @@ FACING = {1: "forward", -1: "backward"}
 
 @dataclass(frozen=True)
 class Drawing:
-    """What is built, for a scene and for a mechanism; the input turns, the output is read.
+    """Drawing of a train, for a scene and for a mechanism; the input turns, the output is read.
 
     Args:
         gears: by name, without deviations.
@@ -252,7 +252,7 @@ def test_clocking_shifts_what_each_load_path_leaves_free(tmp_path: Path) -> None
 
 THICKNESS = 0.05  # mm that each gear lacks
 FREE = 2 * THICKNESS * COS * (SLOW / ARMS["wheel"] + 1 / ARMS["bull"])
-"""Of either load path [rad], where each gear lacks that."""
+"""Play of either load path [rad], where each gear lacks that."""
 
 
 def constants(*gears: str) -> list[str]:
@@ -291,7 +291,7 @@ RUN_OUT = ["  {0} run-out: {{kind: run_out, of: {0}, distribution: {{kind: rayle
 def against_mechanism(
     drawing: Drawing, lines: Sequence[str], folder: Path, seed: int, *, as_meshes: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What tol3d finds and what the mechanism leaves free [rad], 50 random builds at each of four positions."""
+    """Results of tol3d and play of the mechanism [rad], 50 random builds at each of four positions."""
     each = []
     for degrees in POSITIONS:
         model = model_of(folder, drawing.text(lines, over=f"{{at: {degrees} deg}}"))
@@ -482,7 +482,7 @@ STEP = 0.01  # mm
 
 
 def middles(model: Model, moved: Mapping[str, tuple[float, ...]]) -> tuple[np.ndarray, np.ndarray]:
-    """Where the middle of the driven gear's play lies aside [mm], (positions,), by the contact and by the stack-up."""
+    """Offset of the middle of the driven gear's play [mm], (positions,), by the contact and by the stack-up."""
     (own,), (measure,), positions = model.meshes, model.measures, 40
     row = np.zeros(model.component_count)
     for name, values in {"thickness": (-0.2,), **moved}.items():
@@ -630,7 +630,7 @@ BAD = {
 def said_of(
     text: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> tuple[int, str]:
-    """What `tol3d run` says of a scene, and its exit code."""
+    """Output of `tol3d run` for a scene, and its exit code."""
     scene = folder / "bad.yaml"
     scene.write_text(text, encoding="utf-8")
     monkeypatch.setattr(sys, "argv", ["tol3d", "run", str(scene), "--out", str(folder / "run")])

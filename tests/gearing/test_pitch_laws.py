@@ -67,7 +67,7 @@ def test_pitches_of_a_random_walk_are_alike_and_pull_each_other_back() -> None:
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.7])
 def test_the_wave_round_the_gear_has_its_share_of_the_variance(share: float) -> None:
-    """Of white noise the first order has 2 parts of 19."""
+    """The first order of white noise has 2 parts of 19."""
     index = drawn(law(RunOutAndRandom(share), fill=(1.0, 1.0)))
     power = np.abs(np.fft.rfft(index, axis=0)) ** 2
     power[1:-1] *= 2.0

@@ -1,4 +1,4 @@
-"""How measures are read: by default as the pair is; one tooth where it is in action, and told where it is not."""
+"""Reading of measures: by default as the pair is; one tooth where it is in action, with a message where it is not."""
 
 import math
 from dataclasses import replace
@@ -136,7 +136,7 @@ def within_action(model: Model, angles: np.ndarray, owner: Owner) -> np.ndarray:
 
 
 def hold_one_tooth(pair: ThinnedPair, owner: Owner, positions: int, seed: int) -> None:
-    """What is told of one tooth is the closed form; told it is where its flanks are in action, and only there."""
+    """The value of one tooth is the closed form, given where its flanks are in action and only there."""
     model = read_as(pair.model(DEFAULTS), owner)
     block = at_positions(model, positions, seed)
     normal, turn, status = values_of(model, block)

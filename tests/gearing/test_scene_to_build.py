@@ -51,7 +51,7 @@ def built(model: Model, count: int = 1) -> Build:
 
 @dataclass(frozen=True)
 class Gear:
-    """What one tolerance does to one gear.
+    """Effect of one tolerance on one gear.
 
     Args:
         shift: of its axis in the world of the mesh [um].

@@ -62,7 +62,7 @@ def curves(system: GearSystem, trials: Trials) -> dict[str, Array]:
 
 
 def summed(row: Array, side: int) -> tuple[Array, NDArray[np.bool_]]:
-    """What the pair that stands out most stands out by [um], and where no edge may touch beyond the path of contact.
+    """Protrusion of the most prominent pair [um], and where no edge may touch beyond the path of contact.
 
     The driver's tooth k stands at the azimuth theta + 2 pi k/z1 and touches from where the wheel's tip meets it to
     where its own tip does; along the line of contact that is a path from a sin(alpha_w) - (the wheel tip's radius of
@@ -107,7 +107,7 @@ def test_errors_are_those_of_the_tooth_that_stands_out_most(
 
 
 def test_teeth_turn_up_at_the_order_of_the_teeth_and_its_harmonics(curves: dict[str, Array]) -> None:
-    """Where two pairs are in mesh the better one of them carries: once a tooth, whatever the teeth are."""
+    """With two pairs in mesh the better one of them carries: once a tooth, whatever the teeth are."""
     power = (np.abs(np.fft.rfft(curves["drive"], axis=1)) ** 2).mean(axis=0)
     for harmonic in (1, 2):
         order = TURNS * TEETH[0] * harmonic

@@ -1,4 +1,4 @@
-"""Where the shafts of trains lie, how they turn with each other, and which flanks work: each worked out by hand.
+"""Layout of the shafts of trains, their turns, and the flanks that work: each worked out by hand.
 
 Gears of module 2 mm, so that z teeth roll on a circle of radius z mm.
 """
@@ -281,7 +281,7 @@ def test_whatever_sits_anyhow_on_shafts_meshes(
 
 
 def pitch_point(driver: np.ndarray, driven: np.ndarray, teeth: tuple[int, int]) -> np.ndarray:
-    """Where pitch circles of radii z mm touch: between parallel axes, or off a common apex at the outer cone."""
+    """Contact point of pitch circles of radii z mm: between parallel axes, or off a common apex at the outer cone."""
     apart = driven[:3, 3] - driver[:3, 3]
     if np.linalg.norm(apart) > 1.0:
         return driver[:3, 3] + apart * teeth[0] / sum(teeth)
@@ -294,7 +294,7 @@ def pitch_point(driver: np.ndarray, driven: np.ndarray, teeth: tuple[int, int]) 
 
 
 def tooth_along(pose: np.ndarray, teeth: int, point: np.ndarray, along: np.ndarray) -> float:
-    """How far from a point at the pitch circle the middle of a tooth stands [pitches], along a direction there."""
+    """Distance of the middle of a tooth from a point at the pitch circle [pitches], along a direction there."""
     x, y, _ = pose[:3, :3].T @ (point - pose[:3, 3])
     behind = math.atan2(y, x) * teeth / (2 * math.pi)
     return -behind * math.copysign(1.0, along @ np.cross(pose[:3, 2], point - pose[:3, 3]))
@@ -345,7 +345,7 @@ def test_all_meshes_of_a_trial_stand_at_one_turn_of_the_motor(train: tuple[str, 
 
 
 def whole(angle: float, turns: int) -> bool:
-    """Whether an angle [rad] is a whole number of so many turns."""
+    """True if an angle [rad] is a whole number of so many turns."""
     share = angle / (2 * math.pi * turns)
     return abs(share - round(share)) < 1e-9
 
@@ -449,7 +449,7 @@ def clearance(name: str, bearing: str, direction: str) -> str:
 def axes(
     model: Model, deviations: Mapping[str, list[float]], mesh: str, gear_name: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Of a gear's axis, in its shaft's frame at rest: how far [mm] it moved in mid-face, and its direction."""
+    """Displacement [mm] of a gear's axis in mid-face, in its shaft's frame at rest, and its direction."""
     row = nominal_build(model).deviations.copy()
     rest = build(model, row)
     for name, values in deviations.items():

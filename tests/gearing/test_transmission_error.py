@@ -93,7 +93,7 @@ def scene_of(pair: EccentricPair, flank: str = "left", *, half_play: bool = True
 
 @dataclass(frozen=True)
 class Curves:
-    """What a method finds at the driver's positions [rad], angles in rad."""
+    """Findings of a method at the driver's positions [rad], angles in rad."""
 
     positions: np.ndarray
     drive: np.ndarray
@@ -220,7 +220,7 @@ def test_the_centres_y_add_up_because_the_driven_gear_turns_against_the_driver(r
     x = REFERENCE.centre + e2 * np.cos(phi2 + t2) - e1 * np.cos(phi + t1)
 
     def gap(sign: float) -> float:
-        """Of the drive flanks along their normals, mm."""
+        """Gap of the drive flanks along their normals, mm."""
         y = -e2 * np.sin(phi2 + t2) - e1 * np.sin(phi + t1)
         beta, apart = np.arctan2(y, x), np.hypot(x, e1 * np.sin(phi + t1) + sign * e2 * np.sin(phi2 + t2))
         alpha = np.arccos((r1 + r2) / apart)

@@ -1,4 +1,4 @@
-"""What a transmission error cannot be read of, or not so: one message each, with its place."""
+"""Refused requests for a transmission error: one message each, with its place."""
 
 import json
 from pathlib import Path

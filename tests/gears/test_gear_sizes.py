@@ -77,7 +77,7 @@ def model_of(folder: Path, text: str, module: float, teeth: tuple[int, int], gra
 
 @dataclass(frozen=True)
 class Both:
-    """What both engines read of the same trials [modules, rad], (trials,) each by measure."""
+    """Readings of both engines for the same trials [modules, rad], (trials,) each by measure."""
 
     fcl: dict[str, np.ndarray]
     exact: dict[str, np.ndarray]
@@ -204,7 +204,7 @@ study: {{trials: 300, seed: 1, engine: exact, witness: 100}}
 
 @pytest.mark.parametrize("tooth", ["driver", "all"])
 def test_a_witness_of_edges_is_content(tmp_path: Path, tooth: str) -> None:
-    """Of a pair so far shifted that tips reach far down their mates' flanks."""
+    """A pair so far shifted that tips reach far down their mates' flanks."""
     path = tmp_path / "scene.yaml"
     path.write_text(ONE_TOOTH.format(tooth=tooth, face="face_width: 10 mm"), "utf-8")
     model = simulation_of(load_scene(path))

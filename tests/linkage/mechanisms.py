@@ -62,7 +62,7 @@ FOUR = {"crank": 40.0, "coupler": 110.0, "rocker": 80.0, "ground": 120.0}
 
 
 def four_bar_points(angle: float) -> tuple[Array, Array]:
-    """Where crank and coupler, and coupler and rocker, meet: by the cosine rule."""
+    """Joints of crank and coupler, and of coupler and rocker: by the cosine rule."""
     first = FOUR["crank"] * np.array([np.cos(angle), np.sin(angle)])
     away = np.array([FOUR["ground"], 0.0]) - first
     far = float(np.linalg.norm(away))

@@ -12,7 +12,7 @@ AXIAL = ("revolute", "prismatic", "cylindrical", "screw")
 
 @dataclass(frozen=True)
 class Play:
-    """Of a joint: diameter and length [mm], how it floats."""
+    """Play of a joint: diameter and length [mm], how it floats."""
 
     diameter: float
     floating: str
@@ -28,7 +28,7 @@ class Play:
         return f", {key}: {{diameter: {self.diameter} mm{length}{law}, float: {{kind: {self.floating}{along}}}}}"
 
     def offset(self, shares: Array, wider: float) -> Array:
-        """What it makes of the frame before (4, 4); shares of the radius, and a deviation of the diameter [mm]."""
+        """Offset of the frame before (4, 4); shares of the radius, and a deviation of the diameter [mm]."""
         radius = (self.diameter + wider) / 2
         if self.floating == "toward":
             return pose(np.zeros(3), radius * np.array(self.along) / np.linalg.norm(self.along))

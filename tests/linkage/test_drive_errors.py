@@ -1,4 +1,4 @@
-"""How well the spherical drive points: its digest's figures, trial by trial against an oracle, both methods."""
+"""Pointing errors of the spherical drive: its digest's figures, trial by trial against an oracle, both methods."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ DIGEST = {
 
 @dataclass(frozen=True)
 class Sample:
-    """What both methods make of the same trials."""
+    """Results of both methods for the same trials."""
 
     made: Assembled
     trials: Trials
@@ -117,7 +117,7 @@ def test_beyond_70_degrees_it_no_longer_is(sample: Sample) -> None:
 
 
 def test_the_components_make_up_the_size(sample: Sample) -> None:
-    """Of angles of 0.01 rad at most, to 1e-4 of them squared."""
+    """Angles of 0.01 rad at most, to 1e-4 of them squared."""
     for pose in ("rest", "middle", "far"):
         along, across = (sample.exact[f"{part} {pose}"] for part in PARTS)
         assert np.hypot(along, across) == pytest.approx(sample.exact[f"error {pose}"], abs=5e-3)

@@ -18,7 +18,7 @@ def own() -> Kinematics:
 
 
 def at(own: Kinematics, angle: float, azimuth: float, start: Position | None = None) -> Position:
-    """Where the ring tilts by an angle towards an azimuth [deg]."""
+    """Position with the ring tilted by an angle towards an azimuth [deg]."""
     return own.at_output(tilt(np.radians(angle), np.radians(azimuth)), start)
 
 

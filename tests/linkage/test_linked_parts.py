@@ -121,7 +121,7 @@ def planes(floor: Array, back: float, left: float) -> tuple[Array, Array]:
 
 
 def corners(name: str, off: float) -> Array:
-    """Of the back or the left plane (4, 3), whose extent is 60 mm along the world's x, or y, and 40 mm across."""
+    """Corners of the back or the left plane (4, 3), 60 mm long along the world's x, or y, and 40 mm across."""
     at, normal = PLANES[name]
     long = np.eye(3)[0 if name == "back" else 1]
     ends = [a * 30.0 * long + b * 20.0 * np.cross(normal, long) for a in (-1, 1) for b in (-1, 1)]
@@ -129,7 +129,7 @@ def corners(name: str, off: float) -> Array:
 
 
 def datum_frame(normals: Array, distances: Array, back: float, left: float) -> Array:
-    """What the planes make of the part's frame (4, 4): what touches the second and third is square to those before.
+    """Part's frame from its planes (4, 4): each of the second and third is square to those before.
 
     It touches them where they reach furthest out.
     """

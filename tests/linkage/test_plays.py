@@ -1,4 +1,4 @@
-"""Where joints lie in their plays, against the oracle."""
+"""Positions of joints in their plays, against the oracle."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""How linkages are shown: their tables, how far they reach, and how they move."""
+"""Presentation of linkages: their tables, their reach, and their motion."""
 
 import csv
 from pathlib import Path
@@ -59,7 +59,7 @@ def test_the_workspace_ends_where_the_loop_is_singular(simulation: Simulation) -
 
 @pytest.mark.slow
 def test_a_map_of_sigma_is_that_of_the_measure(simulation: Simulation, tmp_path: Path) -> None:
-    """Where nothing tilts sigma is 0.70 arc minutes, by the digest; it is drawn, and written as numbers."""
+    """Without a tilt sigma is 0.70 arc minutes, by the digest; it is drawn, and written as numbers."""
     presenter = presenter_at(simulation.presenter)
     assert isinstance(presenter, Mapped)
     found = presenter.workspace(simulation, "error", lambda text: None)
@@ -72,7 +72,7 @@ def test_a_map_of_sigma_is_that_of_the_measure(simulation: Simulation, tmp_path:
 
 
 def test_a_loop_whose_output_does_not_tilt_is_mapped_over_its_inputs(tmp_path: Path) -> None:
-    """Of a slider-crank one: as well conditioned at either side of the dead centre, for the mechanism is symmetric."""
+    """A slider-crank: as well conditioned at either side of the dead centre, for the mechanism is symmetric."""
     own = simulation_of(load("slider_crank"))
     presenter = presenter_at(own.presenter)
     assert isinstance(presenter, Mapped)

@@ -26,7 +26,7 @@ REACHES = {
     "swash on universal": {"turn 0": 20.0, "turn 1": 2.0},
     "planet": {"tilt x": 0.8, "tilt y": 0.8},
 }
-"""How far inputs go at random either way [mm or rad]."""
+"""Random range of inputs, either way [mm or rad]."""
 
 
 def at_random(linkage: Linkage, reaches: dict[str, float], count: int, seed: int) -> Linkage:
@@ -38,7 +38,7 @@ def at_random(linkage: Linkage, reaches: dict[str, float], count: int, seed: int
 
 
 def steps_of(system: Any) -> Array:
-    """How far each deviation goes either way (components,)."""
+    """Step of each deviation, either way (components,)."""
     found = np.empty(component_count(system))
     slices = component_slices(system)
     for own in system.contributors:
@@ -47,7 +47,7 @@ def steps_of(system: Any) -> Array:
 
 
 def slopes(study: Study, where: str) -> tuple[Array, Array]:
-    """Of all probes by each deviation (components, probes, 3): of the finite method, and to first order."""
+    """Slopes of all probes by each deviation (components, probes, 3): of the finite method, and to first order."""
     steps = steps_of(study.system)
     rows = np.diag(steps)
     there = study.seen(np.concatenate([rows, -rows]), where)
@@ -74,7 +74,7 @@ def assert_same(finite: Array, linear: Array) -> None:
     + [pytest.param(name, 7, marks=pytest.mark.slow) for name in ALL],
 )
 def test_slopes_at_random_poses(name: str, count: int, plays: bool, tmp_path: Path) -> None:
-    """Of all linkages 28 poses by default, 112 more among the slow tests."""
+    """All linkages at 28 poses by default, at 112 more among the slow tests."""
     linkage = ALL[name]()
     if plays:
         linkage = with_plays(linkage)[0]

@@ -1,4 +1,4 @@
-"""What is refused of loops: one line with its place, what was expected and what came; and what trials say instead."""
+"""Refused loops: one line with its place, what was expected and what came; and the words of trials instead."""
 
 from dataclasses import replace
 from pathlib import Path

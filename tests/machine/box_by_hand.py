@@ -47,7 +47,7 @@ class Gear:
 
 @dataclass(frozen=True)
 class Box:
-    """What the scene says, by the names that it uses."""
+    """Numbers of the scene, by the names that it uses."""
 
     said: Mapping[str, Any]
 
@@ -87,25 +87,25 @@ class Box:
 
 
 def centre(columns: Columns, position: str) -> Array:
-    """Of an axis in its zone, how far its middle lies aside (trials, 2)."""
+    """Offset of the middle of an axis in its zone (trials, 2)."""
     ends = [np.stack([columns[f"{position}.{end} {way} [um]"] for way in "xy"], axis=1) for end in ("start", "end")]
     return np.asarray((ends[0] + ends[1]) / 2000)
 
 
 def lean(columns: Columns, position: str, length: float) -> Array:
-    """Of an axis in its zone, its slopes along x and y (trials, 2)."""
+    """Slopes of an axis in its zone along x and y (trials, 2)."""
     ends = [np.stack([columns[f"{position}.{end} {way} [um]"] for way in "xy"], axis=1) for end in ("start", "end")]
     return np.asarray((ends[1] - ends[0]) / (1000 * length))
 
 
 def turned(arm: Array, angle: Array) -> Array:
-    """What a small turn does to the end of an arm (trials, 2)."""
+    """Displacement of the end of an arm by a small turn (trials, 2)."""
     return np.stack([-angle * arm[1], angle * arm[0]], axis=1)
 
 
 @dataclass(frozen=True)
 class Laid:
-    """How the cover lies on the housing: every bore of it against those of the housing, each in its own datums."""
+    """Position of the cover on the housing: each of its bores against those of the housing, each in its own datums."""
 
     shift: Array  # of dowel 1 (trials, 2)
     turn: Array  # of the cover's drawing against that of the housing (trials,)
@@ -128,7 +128,7 @@ def laid(box: Box, columns: Columns) -> Laid:
 
 
 def axes(box: Box, columns: Columns, shaft: str, mesh_z: float) -> tuple[Array, Array]:
-    """Where a shaft lies off at a height, as the bores of the housing have it, and its slopes (trials, 2) each.
+    """Offset of a shaft at a height, by the bores of the housing, and its slopes (trials, 2) each.
 
     Bearings let it lie aside by half of what is drawn of them, in the frame of the shaft.
     """
@@ -149,7 +149,7 @@ def shaft_x(box: Box, shaft: str) -> Array:
 
 
 def clearance(columns: Columns, bearing: str, x: Array) -> Array:
-    """What is drawn of a bearing (trials, 2), in the part's frame."""
+    """Drawn clearance of a bearing (trials, 2), in the part's frame."""
     own = np.stack([columns[f"{bearing} clearance.{way} [um]"] for way in "xy"], axis=1) / 1000
     return np.asarray(own @ np.array([x, [-x[1], x[0]]]))
 
@@ -180,7 +180,7 @@ def apart(box: Box, stage: Stage) -> tuple[float, Array]:
 
 
 def wheel_off(box: Box, columns: Columns, stage: Stage, backlash: Array | float) -> Array:
-    """How far the middle of an eccentric wheel's teeth lies off its axis, along the line of centres and square to it.
+    """Offset of the middle of an eccentric wheel's teeth from its axis, along the line of centres and square to it.
 
     Tooth 0 of the wheel stands at pi + pi/z2 from that line when tooth 0 of the pinion is on it, and half of a backlash
     further, for flanks touch.
@@ -195,7 +195,7 @@ def wheel_off(box: Box, columns: Columns, stage: Stage, backlash: Array | float)
 
 @dataclass(frozen=True)
 class Met:
-    """How two gears lie in a trial: what stretches the line of centres, what leans them, thickness, temperatures."""
+    """Two gears in a trial: stretch of the line of centres, lean, thickness, temperatures."""
 
     along: Array
     aside: Array
@@ -225,7 +225,7 @@ def met(box: Box, columns: Columns, stage: Stage, backlash: Array | float = 0.0)
 
 
 def lost_by_leaning(box: Box, stage: Stage, slopes: Array, pressure: Array) -> Array:
-    """What the ends of the faces take, on both flanks together, at a working pressure angle (trials,)."""
+    """Backlash lost at the ends of the faces, on both flanks together, at a working pressure angle (trials,)."""
     face = min(box.gear(name).face for name in (stage.driver, stage.driven))
     ways = np.abs(slopes) * np.stack([np.sin(pressure), np.cos(pressure)], axis=1)
     return np.asarray(face * ways.max(axis=1))

@@ -78,14 +78,14 @@ measures:{measures}
 
 
 def system_of(text: str, folder: Path, name: str = "scene") -> Any:
-    """What a scene means."""
+    """System of a scene."""
     path = folder / f"{name}.yaml"
     path.write_text(text, "utf-8")
     return simulation_of(load_scene(path), Overrides()).system
 
 
 def gearbox_of(text: str, folder: Path) -> MachineSystem:
-    """What a scene of gears in a housing means."""
+    """System of a scene of gears in a housing."""
     found = system_of(text, folder)
     assert isinstance(found, MachineSystem)
     return found

@@ -77,7 +77,7 @@ COUNT = 20
 
 
 def offsets(rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
-    """Of three pins outwards and along, and of the bearing x and y [mm]."""
+    """Offsets of three pins outwards and along, and of the bearing x and y [mm]."""
     out, along = rng.uniform(-0.01, 0.01, (2, 3, COUNT))
     x, y = rng.uniform(-0.004, 0.004, (2, COUNT))
     return out, along, x, y

@@ -30,7 +30,7 @@ measures:
 
 
 def test_a_link_is_read_in_every_pose(tmp_path: Path) -> None:
-    """What lies along y of the link is along -x of the base once it has turned by a quarter."""
+    """The y direction of the link is -x of the base once it has turned by a quarter."""
     place = tmp_path / "chain.yaml"
     place.write_text(SCENE, "utf-8")
     run = run_scene(load_scene(place), overrides=Overrides(trials=400), out=tmp_path / "run")

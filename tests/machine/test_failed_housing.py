@@ -11,7 +11,7 @@ from tol3d import Overrides, open_run, replay, run_scene
 from tol3d.system.trials import Trials
 
 HEIGHTS = "distribution: {kind: uniform, lower: -130 mm, upper: 130 mm}"
-"""Of one of two side locators 120 mm apart: beyond 120 mm no turn reaches it, in 10 of 130 trials."""
+"""Heights of one of two side locators 120 mm apart: beyond 120 mm no turn reaches it, in 10 of 130 trials."""
 
 
 def text() -> str:

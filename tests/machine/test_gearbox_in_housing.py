@@ -65,7 +65,7 @@ def test_parallel_shafts_and_warm_gears_have_the_involute_s_backlash(stage: Stag
 
 
 def test_mean_sigma_and_correlation_of_both_backlashes_are_those_of_other_draws(run: Run) -> None:
-    """Of 100 000 builds of the same drawing, drawn and put together without the program."""
+    """100 000 builds of the same drawing, drawn and assembled without the program."""
     count = 100_000
     columns = own_draws(BOX, count, 11)
     drawn = {name: 1000 * to_first_order(BOX, columns, stage) for name, stage in STAGES.items()}

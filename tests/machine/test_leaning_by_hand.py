@@ -1,4 +1,4 @@
-"""What leaning shafts take on the mean, by characteristic functions: exact, without draws and without the program.
+"""Mean loss by leaning shafts, by characteristic functions: exact, without draws and without the program.
 
 Both flank sides lose half a face times |a ± b|, where a and b are what the slope of one shaft against the other takes
 in the plane of the axes and across it. Each a ± b is a sum of independent vectors seen along one direction: ends of
@@ -21,7 +21,7 @@ from tol3d.simulate import Overrides, load, simulation_of
 
 Array = NDArray[np.float64]
 Disc = tuple[Array, float]
-"""What it does to the slope (2, 2), and its radius [mm]."""
+"""Effect on the slope (2, 2), and radius [mm] of a disc."""
 
 SCENE = SCENES / "gearbox_in_housing.yaml"
 BOX = Box.read(SCENE)
@@ -75,7 +75,7 @@ def mean_size(discs: Sequence[tuple[float, float]], rings: Sequence[tuple[float,
 
 
 def taken(stage: Stage) -> float:
-    """What leaning takes from the mean of a stage's normal backlash [mm]."""
+    """Mean normal backlash of a stage lost by leaning [mm]."""
     _, way = apart(BOX, stage)
     across = np.array([-way[1], way[0]])
     face = min(BOX.gear(name).face for name in (stage.driver, stage.driven))

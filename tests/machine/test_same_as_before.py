@@ -127,7 +127,7 @@ def test_a_warm_housing_moves_its_bores_as_it_opens_a_centre_distance(method: st
 
 @pytest.mark.parametrize("leans", [False, True])
 def test_one_temperature_of_gears_and_housing_is_one_variable_in_the_closed_form(leans: bool, tmp_path: Path) -> None:
-    """What it does by the bores and by the gears is added before it is squared; leaning shafts change nothing in it."""
+    """Its effects by the bores and by the gears are added before squaring; leaning shafts change nothing in it."""
     law = "distribution: {kind: normal, mean: 20 K, sigma: 8 K}"
     warm = f"\n  warm: {{kind: temperature, of: [housing, pinion, wheel], {law}}}"
     lean = "\n  lean: {kind: position, of: housing.bore 2b, zone: {diameter: 1e-6 um}, law: {kind: uniform}}"

@@ -116,7 +116,7 @@ def searched(
 
 
 def turns_of(system: MachineSystem, turns: Array) -> Array:
-    """Where the driving shaft stands [rad]."""
+    """Angle of the driving shaft [rad]."""
     return np.asarray(system.positions(dict.fromkeys(system.streams, turns))["set"])
 
 

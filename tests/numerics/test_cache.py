@@ -1,4 +1,4 @@
-"""What is kept on disk between runs: trusted only where nobody else may write, whole or made anew."""
+"""Disk cache between runs: trusted only where nobody else may write, whole or made anew."""
 
 import hashlib
 import io
@@ -262,7 +262,7 @@ def is_held(folder: Path) -> bool:
 
 
 def started_together(script: str, count: int, tmp_path: Path) -> list[str]:
-    """What processes print that go on when all of them run."""
+    """Output of processes that go on when all of them run."""
     marks = [str(tmp_path / f"mark {number}") for number in range(count)]
     commands = [[sys.executable, "-c", script, mark, *marks] for mark in marks]
     runs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]

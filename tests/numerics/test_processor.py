@@ -45,7 +45,7 @@ def forget() -> None:
 
 
 def elsewhere(code: str, **environment: str) -> str:
-    """What a Python in another environment prints."""
+    """Output of Python in another environment."""
     done = subprocess.run(
         [sys.executable, "-c", code], env=os.environ | environment, capture_output=True, text=True, check=True
     )

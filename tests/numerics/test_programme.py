@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def ends_of(rows: Array, lower: Array, upper: Array, objective: Array) -> tuple[Array, NDArray[np.int8], Array]:
-    """Of trials (trials, rows): ends, status, what is lacking."""
+    """Ends, status and shortfall of trials (trials, rows)."""
     basis = first_basis(rows)
     count = len(lower)
     ends, status = np.empty((count, 2)), np.empty(count, np.int8)

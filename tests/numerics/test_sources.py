@@ -1,4 +1,4 @@
-"""What kernels are known by in the cache: every source that they are made of, and nothing else."""
+"""Names of kernels in the cache: by every source that they are made of, and nothing else."""
 
 import ast
 import importlib

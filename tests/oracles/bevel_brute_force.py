@@ -64,7 +64,7 @@ class BevelNumbers:
 
     @property
     def base_angle(self) -> float:
-        """Of the cone on which the plane rolls: it leans from the pitch line's meridian by the pressure angle."""
+        """Angle of the cone on which the plane rolls: it leans from the pitch line's meridian by the pressure angle."""
         return math.asin(math.sin(self.pitch_angle) * math.cos(self.pressure_angle))
 
     @cached_property
@@ -82,7 +82,7 @@ class BevelNumbers:
 
     @property
     def tip_angle(self) -> float:
-        """Of the tip cone [rad]."""
+        """Angle of the tip cone [rad]."""
         return self.pitch_angle + math.atan((self.addendum + self.profile_shift) * self.module / self.outer)
 
     def _roll_at(self, polar: float) -> float:
@@ -163,7 +163,7 @@ def line(base_angle: float, roll: np.ndarray | float, start: np.ndarray | float,
 
 
 def dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Of vectors on the last axis."""
+    """Dot product of vectors on the last axis."""
     return (first * second).sum(axis=-1)
 
 

@@ -40,7 +40,7 @@ def facing(z: Sequence[float] | Array, at: Sequence[float] | Array) -> Array:
 
 
 def inverse(poses: Array) -> Array:
-    """Of poses (..., 4, 4)."""
+    """Inverse of poses (..., 4, 4)."""
     found = np.zeros_like(poses)
     turned = np.swapaxes(poses[..., :3, :3], -1, -2)
     found[..., :3, :3] = turned
@@ -87,24 +87,24 @@ class Loops:
     inputs: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def drawn(self, body: str | None) -> Array:
-        """Of a body, or of the world (4, 4)."""
+        """Drawn pose of a body, or of the world (4, 4)."""
         return np.eye(4) if body is None else self.bodies[body]
 
     @cached_property
     def rests(self) -> Mapping[str, Array]:
-        """Of all pairs, the second frame in the first as all is drawn (4, 4)."""
+        """Drawn pose of the second frame in the first (4, 4), for all pairs."""
         return {
             name: inverse(self.drawn(own.on) @ own.base) @ self.drawn(own.of) @ own.own
             for name, own in self.pairs.items()
         }
 
     def rest(self, name: str) -> Array:
-        """Of one of them (4, 4)."""
+        """Drawn pose of the second frame in the first (4, 4), for one of them."""
         return self.rests[name]
 
 
 Poses = Mapping[str, Array]
-"""Of bodies (..., 4, 4)."""
+"""Poses of bodies (..., 4, 4)."""
 
 
 def _rotvec(turn: Array) -> Array:
@@ -112,7 +112,7 @@ def _rotvec(turn: Array) -> Array:
 
 
 def _lacks(drawn: Loops, loops: Loops, name: str, poses: Poses) -> list[Array]:
-    """What a pair lacks, each [mm]."""
+    """Residuals of a pair, each [mm]."""
     own, rest = loops.pairs[name], drawn.rest(name)
     first = own.base if own.on is None else poses[own.on] @ own.base
     last = own.own if own.of is None else poses[own.of] @ own.own
@@ -172,7 +172,7 @@ def _turn(drawn: Loops, loops: Loops, name: str, poses: Poses) -> Array:
 
 
 def value(drawn: Loops, loops: Loops, name: str, poses: Poses) -> Array:
-    """How far an input has gone since all was drawn (...,) [mm or rad within half a turn]."""
+    """Travel of an input since all was drawn (...,) [mm or rad within half a turn]."""
     pair, motion = loops.inputs[name]
     seen, rest = _seen(loops, pair, poses), drawn.rest(pair)
     match motion:

@@ -24,7 +24,7 @@ SECONDS = np.degrees(1.0) * 3.6  # '' mm/um
 
 @dataclass(frozen=True)
 class Drawn:
-    """What units are drawn as [um], complex in the frame of disc or crank; by disc where a list."""
+    """Drawn deviations of units [um], complex in the frame of disc or crank; by disc where a list."""
 
     crank: Array
     radial: Array

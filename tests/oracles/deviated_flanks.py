@@ -32,13 +32,13 @@ def active_rolls(teeth: int, mate: int, module: float, apart: float) -> tuple[fl
 
 
 def parts(roll: Array, active: tuple[float, float]) -> tuple[Array, Array]:
-    """Where rolls lie in the ranges of slopes and of forms, -1/2 to 1/2 from end to end."""
+    """Places of rolls in the ranges of slopes and of forms, -1/2 to 1/2 from end to end."""
     first, last = active
     return (roll - first) / (last - first) - 0.5, (roll - first) / (FORM_SHARE * (last - first)) - 0.5
 
 
 def between(roll: Array, teeth: int, module: float, diameters: tuple[float, float]) -> Array:
-    """Where rolls lie between two diameters, -1/2 to 1/2 from end to end."""
+    """Places of rolls between two diameters, -1/2 to 1/2 from end to end."""
     base = teeth * module * math.cos(math.radians(20))
     first, last = (math.sqrt((own / base) ** 2 - 1) for own in diameters)
     return (roll - first) / (last - first) - 0.5
@@ -117,7 +117,7 @@ class DeviatedPair:
         return [(nearest + k, z) for k in (-2, -1, 0, 1, 2) for z in self.heights]
 
     def _curves(self, tooth: int, flank: int, z: float, driver_turn: float, driven_turn: float) -> tuple[Array, Array]:
-        """Of a tooth of the driver and of the nearest of the driven gear's that it meets, about the driven axis."""
+        """Curves of a tooth of the driver and of the nearest tooth that it meets, about the driven axis."""
         own = self.driver.curve(tooth, flank, z, driver_turn) - np.array([self.apart, 0.0])
         # the driven tooth whose flank of the same hand follows that one: its middle half a pitch on, or back
         middle = (

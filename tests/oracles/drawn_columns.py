@@ -1,4 +1,4 @@
-"""What a trial drew, read off the names of a run's columns."""
+"""Deviations of a trial, read off the names of a run's columns."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SIZES = {"um": 1e-3, "mrad": 1e-3, "arcmin": np.radians(1 / 60), "arcsec": np.radians(1 / 3600)}
-"""Of units that columns have [mm or rad]."""
+"""Size of the units of columns [mm or rad]."""
 
 
 @dataclass(frozen=True)
@@ -38,5 +38,5 @@ class DrawnColumns:
         return np.asarray(x + 1j * y)
 
     def at(self, move: str) -> float:
-        """Where the output of a move stands, nominally [rad]."""
+        """Nominal position of the output of a move [rad]."""
         return float(np.radians(self.columns[f"position:{move} [deg]"][self.trial]))

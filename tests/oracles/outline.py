@@ -14,7 +14,7 @@ POINTS = 20_000  # a curve: a chord's area error is the sagitta's 2/3, together 
 
 
 def flank_point(gear: InvoluteGear, radius: float) -> np.ndarray:
-    """Where the flank lies at a radius: on the involute, or on the radial line below the base circle."""
+    """Flank point at a radius: on the involute, or on the radial line below the base circle."""
     azimuth = float(gear.half_angle(max(radius, gear.base_radius)))
     return radius * np.array([math.cos(azimuth), math.sin(azimuth)])
 

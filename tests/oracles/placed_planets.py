@@ -21,7 +21,7 @@ def off_mesh(mesh: CentralMesh, central: float, planet: float, arm: float) -> fl
 
 
 def placed(own: ToothSet, planets: int) -> bool:
-    """Whether each planet, the first one turned, finds an orientation in which it meshes everywhere."""
+    """True if each planet, the first one turned, finds an orientation in which it meshes everywhere."""
     central = {}
     for mesh in own.meshes:  # planet 0 stands at orientation 0 with its steps' tooth 0 alike
         central[mesh.central] = off_mesh(mesh, 0.0, 0.0, 0.0) * 2 * math.pi / mesh.teeth

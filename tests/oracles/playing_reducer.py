@@ -81,7 +81,7 @@ class PlayingReducer:
         return np.asarray(1e3 * off, dtype=np.complex128)
 
     def gaps(self, z: Array, works: NDArray[np.bool_]) -> Array:
-        """Of working pins of both discs [um]."""
+        """Gaps of working pins of both discs [um]."""
         at, azimuths = z / 1e3, 2 * np.pi * np.arange(PINS) / PINS
         found: list[Array] = []
         for disc in range(2):

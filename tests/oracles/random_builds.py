@@ -16,7 +16,7 @@ from tol3d.gears.flank import Flank
 
 @dataclass(frozen=True)
 class Spread:
-    """How far builds stray, each way; lengths in mm, angles in rad.
+    """Spread of builds, each way; lengths in mm, angles in rad.
 
     Args:
         tilt: of either axis, about any direction.

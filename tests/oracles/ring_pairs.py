@@ -40,7 +40,7 @@ class RingPair:
         return half * self.teeth[0], half * self.teeth[1]
 
     def gap(self, side: int, gear: Array, ring: Array) -> Array:
-        """How far apart the flanks are along their normal where the gear's is a right one (1), or a left one (-1).
+        """Distance of the flanks along their normal where the gear's is a right one (1), or a left one (-1).
 
         The pair of teeth nearest to each other; turns of both count from a tooth in the direction of x.
         """

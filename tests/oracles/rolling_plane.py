@@ -20,7 +20,7 @@ POLAR_XTOL = 1e-10  # rad
 
 
 def drawn_directions(base_angle: float, rolls: np.ndarray, sense: int = 1) -> np.ndarray:
-    """Where the line that began on the cone at azimuth 0 points after the plane has rolled, (n, 3).
+    """Directions of the line that began on the cone at azimuth 0 after the plane has rolled, (n, 3).
 
     Args:
         base_angle: between axis and cone [rad].

@@ -59,7 +59,7 @@ def deviations(of: Read) -> dict[str, Array]:
 
 
 def lead(of: Read, position: float, sense: int) -> float:
-    """How far cranks turn on planets that roll on the standing sun, beyond teeth without backlash [rad].
+    """Lead of cranks on planets that roll on the standing sun, beyond teeth without backlash [rad].
 
     Carriers that go back turn planets forwards. A planet's tooth that pushes the sun's clockwise does so along
     (-sin alpha, -cos alpha) of the frame in which the planet lies on x: what moves the planet against it opens the gap.

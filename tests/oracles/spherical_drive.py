@@ -30,13 +30,13 @@ MISPRINT, MEANT = -0.694552, -0.694522
 
 
 def travels(tilt: float, azimuth: float) -> Array:
-    """Of both nuts (2,) [mm], of a tilt towards an azimuth [rad]."""
+    """Travels of both nuts (2,) [mm], for a tilt towards an azimuth [rad]."""
     s = np.array([np.sin(HALF - azimuth), -np.sin(HALF + azimuth)])
     return np.asarray(RADIUS * np.sin(tilt) * s + ROD - np.sqrt(ROD**2 - (RADIUS * (1 - np.cos(tilt)) * s) ** 2))
 
 
 def rates(tilt: float, azimuth: float) -> Array:
-    """Of both travels [mm/rad]: by the tilt, then by the azimuth (2, 2)."""
+    """Rates of both travels [mm/rad]: by the tilt, then by the azimuth (2, 2)."""
     s = np.array([np.sin(HALF - azimuth), -np.sin(HALF + azimuth)])
     by_azimuth = np.array([-np.cos(HALF - azimuth), -np.cos(HALF + azimuth)])
     off = RADIUS * (1 - np.cos(tilt)) * s

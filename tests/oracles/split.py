@@ -95,7 +95,7 @@ class Reducer:
 
 @dataclass(frozen=True)
 class Shaft:
-    """Where a shaft lies [mm], the azimuth of its frame [rad], and its angle when the root is at an angle."""
+    """Position of a shaft [mm], the azimuth of its frame [rad], and its angle when the root is at an angle."""
 
     place: np.ndarray
     azimuth: float
@@ -114,7 +114,7 @@ class Mechanism:
     links: Links
 
     def reach(self, shaft: str, *, as_meshes: bool = False) -> Reach:
-        """How far a shaft can go, the first shaft standing; its ends pass each other where the load paths bind.
+        """Reach of a shaft, the first shaft standing; its ends pass each other where the load paths bind.
 
         Args:
             shaft: its name.
@@ -168,7 +168,7 @@ class Mechanism:
         return found
 
     def centre(self, gear: Gear, angle: np.ndarray) -> np.ndarray:
-        """Where a gear's own centre lies, its shaft at an angle (n,): (n, 2) [mm]."""
+        """Place of a gear's own centre, its shaft at an angle (n,): (n, 2) [mm]."""
         shaft = self.shafts[gear.shaft]
         axis = turned(gear.in_plane(gear.axis), shaft.azimuth)
         own = gear.sense * angle + gear.phase + gear.clocking

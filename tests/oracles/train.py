@@ -19,7 +19,7 @@ Seat = Callable[[np.ndarray, Flank], np.ndarray]
 
 @dataclass(frozen=True)
 class OnShaft:
-    """How a gear sits: sense -1 where it faces backward, azimuth of its tooth 0 [rad]."""
+    """Seat of a gear: sense -1 where it faces backward, azimuth of its tooth 0 [rad]."""
 
     sense: int = 1
     phase: float = 0.0
@@ -105,7 +105,7 @@ def seen_backward(vectors: np.ndarray) -> np.ndarray:
 
 
 def at_height(lower: np.ndarray, upper: np.ndarray, heights: tuple[float, float], height: float) -> np.ndarray:
-    """Where a straight shaft goes through a height, its points at two heights moved by vectors (n, 2)."""
+    """Point of a straight shaft at a height, its points at two heights moved by vectors (n, 2)."""
     share = (height - heights[0]) / (heights[1] - heights[0])
     return (1 - share) * lower + share * upper
 
@@ -173,7 +173,7 @@ def involute(angle: float) -> float:
 
 
 def arms() -> Mapping[str, float]:
-    """What an um of normal backlash is at the encoder [rad]: over the driven base radius, times what follows."""
+    """Angle at the encoder [rad] per um of normal backlash: over the driven base radius, times what follows."""
     encoder = {"first mesh": 31 / 60 * 48 / 32, "second mesh": 48 / 32, "third mesh": 1.0}
     radii = {"first mesh": 15.5, "second mesh": 30.0, "third mesh": 12.8}
     return {mesh: UM * encoder[mesh] / (radii[mesh] * math.cos(ALPHA)) for mesh in radii}

@@ -48,7 +48,7 @@ class EccentricPair:
 
     @property
     def turns(self) -> int:
-        """Of the driver until the same teeth meet again."""
+        """Turns of the driver until the same teeth meet again."""
         return self.teeth[1] // math.gcd(*self.teeth)
 
     def rest(self, phi1: np.ndarray, side: str) -> np.ndarray:

@@ -28,11 +28,11 @@ def involute(angle: Array) -> Array:
 
 @dataclass(frozen=True)
 class Numbers:
-    """Of a reducer [mm, rad].
+    """Numbers of a reducer [mm, rad].
 
     Args:
         pins, circle, pin_radius, eccentricity: of the ring and the cranks.
-        shift, offset, rotation: what the discs are modified by.
+        shift, offset, rotation: modifications of the discs.
         width: of a disc.
         discs, cranks, window: how many, and the least share of the longest lever with which a pin works.
         cranks_circle: radius on which the cranks lie.
@@ -122,7 +122,7 @@ class WholeReducer:
         return np.full(own.cranks, throws.max() if sense > 0 else throws.min())
 
     def gaps(self, position: float, turn: float, sense: int, disc: int, pins: NDArray[np.int64]) -> Array:
-        """Of pins to a disc [mm], where the output stands a turn beyond its position."""
+        """Gaps of pins to a disc [mm], where the output stands a turn beyond its position."""
         own, carrier = self.own, position + turn
         throw = 2 * np.pi * disc / own.discs
         throws = self.throws_at(position, carrier, sense)
@@ -162,7 +162,7 @@ class WholeReducer:
         return np.asarray(((folded - point) * np.conj(-1j * slope / abs(slope))).real + own.pin_radius + own.offset)
 
     def path(self, u: Array) -> tuple[Complex, Complex, Complex]:
-        """Of pin centres about the disc, its slope and its bend."""
+        """Path of pin centres about the disc, its slope and its bend."""
         own = self.own
         circle, wave = (own.circle + own.shift) * np.exp(1j * u), own.eccentricity * np.exp(1j * own.pins * u)
         return circle - wave, 1j * (circle - own.pins * wave), own.pins**2 * wave - circle
@@ -190,10 +190,10 @@ class WholeReducer:
 
 
 def cut(seen: Complex, tilt: complex, width: float) -> Complex:
-    """Where upright lines pass through planes of a disc (heights, lines), in its own frame; one plane if it lies flat.
+    """Intersections of upright lines with planes of a disc (heights, lines), in its frame; one plane if it lies flat.
 
     Args:
-        seen: where they pass through its middle, were it upright.
+        seen: intersections with its middle, were it upright.
         tilt: the axis it leans about, as long as the angle [rad].
         width: of the disc [mm].
     """

@@ -66,7 +66,7 @@ class WholeSet:
     def _gaps(
         self, central: str, planet: complex, around: float, nominal: Mapping[str, float], turns: Mapping[str, float]
     ) -> tuple[float, float]:
-        """Of a planet whose teeth stand where they would without deviations, to both sides: turns of it [rad]."""
+        """Gaps of a planet whose teeth stand where they would without deviations, to both sides: turns of it [rad]."""
         teeth, own = self.meshes[central]
         ring, teeth = teeth < 0, abs(teeth)
         own_turn = nominal[central] - nominal["carrier"]
@@ -100,7 +100,7 @@ class WholeSet:
         return float(off_left / r2), float(off_right / r2)
 
     def play(self, nominal: Mapping[str, float], output: str) -> float:
-        """How far a shaft turns while the others stand [rad]; NaN where nowhere is room."""
+        """Turn of a shaft while the others stand [rad]; NaN if there is no room anywhere."""
         rooms = [self.room(nominal, {output: float(turn)}) for turn in PLACES]
         best = float(PLACES[int(np.argmax(rooms))])
         if max(rooms) < 0.0:

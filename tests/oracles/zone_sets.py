@@ -86,14 +86,14 @@ class ZoneSet:
 
 
 def _corners(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
-    """Of a rectangle: heights of its corners in the zone, and those of its tilt alone in the orientation zone."""
+    """Corners of a rectangle: heights of them in the zone, and those of its tilt alone in the orientation zone."""
     offset, x, y = points.T
     tilt = np.stack([sx * x + sy * y for sx in (-1, 1) for sy in (-1, 1)])
     return (np.abs(offset + tilt).max(axis=0) <= width / 2) & (np.abs(tilt).max(axis=0) <= orientation / 2)
 
 
 def _rim(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
-    """Of a round face: the highest and the lowest point of its rim."""
+    """Rim of a round face: its highest and its lowest point."""
     offset, x, y = points.T
     tilt = np.sqrt(x**2 + y**2)
     return (np.abs(offset) + tilt <= width / 2) & (tilt <= orientation / 2)

@@ -28,7 +28,7 @@ SCREWS = [
 
 
 def volume(walls: float, floor: float) -> float:
-    """Of the open box."""
+    """Volume of the open box."""
     x, y, z = SIZE
     return x * y * z - (x - 2 * walls) * (y - floor) * (z - 2 * walls)
 

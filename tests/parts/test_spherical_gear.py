@@ -78,7 +78,7 @@ def test_flanks_are_involutes_of_half_a_pitch_on_the_pitch_sphere(tooth: bool) -
 
 
 def ring_volume(middle: float) -> float:
-    """Of a ring of teeth above the root, at an angle from the pole: the section times the way round, slice by slice."""
+    """Volume of a ring of teeth above the root, at an angle from the pole, slice by slice."""
     found, _ = quad(
         lambda r: r**2 * 4 * math.pi * math.sin(middle) * math.sin(whole_half_angle(r)),
         ROOT, TIP, points=[math.sqrt((ROOT + 1.52) ** 2 - 1.52**2), BASE], epsabs=1e-9,
@@ -87,7 +87,7 @@ def ring_volume(middle: float) -> float:
 
 
 def dome(reach: float) -> float:
-    """Of a ball of the root's radius, what lies above the flat bottom."""
+    """Volume of a ball of the root's radius above the flat bottom."""
     height = ROOT - ROOT * math.cos(reach)
     return math.pi * height**2 * (3 * ROOT - height) / 3
 
@@ -123,7 +123,7 @@ def tilt(angle: float) -> Any:
 
 
 def in_teeth(points: Any, thin: float, pole: float) -> Any:
-    """Whether points, in the frame of a gear, lie in it, by the closed form; `pole` is the angle of its first ring."""
+    """True for points in the frame of a gear that lie in it, by the closed form; `pole` is its first ring's angle."""
     radius = np.linalg.norm(points, axis=-1)
     polar = np.arccos(np.clip(points[..., 2] / radius, -1, 1))
     pressure = np.arccos(np.minimum(1.0, BASE / radius))

@@ -90,7 +90,7 @@ def test_a_process_is_judged_by_the_zone_and_not_cut(tmp_path: Path) -> None:
 
 
 def test_what_one_bore_does_to_the_lost_motion_is_its_closed_form(tmp_path: Path) -> None:
-    """Of one planet: 2/rR2 (c_a (1-k)/2 + c_b (1+k)/2 + c_c); r outwards adds tan(a) r to c_a, takes it of c_b and c_c.
+    """For a planet: 2/rR2 (c_a (1-k)/2 + c_b (1+k)/2 + c_c); r outwards adds tan(a) r to c_a, takes it of c_b and c_c.
 
     So the lost motion falls by 2 (1 + k) tan(a)/rR2 a millimetre, its variance is that squared times t²/16; across, a
     bore does nothing.

@@ -81,7 +81,7 @@ def wrapped(angle: Array, near: Array, teeth: int) -> Array:
 
 
 def farther_by_highs(own: PlanetarySet, gaps: Array, end: int) -> Array:
-    """How much further the output goes [rad] where flanks have these gaps; springs stay."""
+    """Further turn of the output [rad] where flanks have these gaps; springs stay."""
     rows, turn = own.rows("sun"), own.objective("sun", "ring 2")
     found = []
     for trial in gaps:

@@ -121,7 +121,7 @@ SETS = {
 
 @pytest.mark.parametrize("own", SETS.values(), ids=SETS.keys())
 def test_what_is_left_is_that_of_highs(own: PlanetarySet) -> None:
-    """Of unequal gaps, pins and clocking."""
+    """Unequal gaps, pins and clocking."""
     rng = np.random.default_rng(4)
     deviated, turns = random_deviations(own, 25, rng), rng.uniform(0, 9, 25)
     found = StackUp(own).free(deviated, turns, "ring 2", "sun")
@@ -177,7 +177,7 @@ def test_means_are_those_of_the_monte_carlo_with_the_same_assumptions(name: str,
 
 
 def test_two_pairs_leave_about_half_of_what_one_spring_does(tmp_path: Path) -> None:
-    """What the stated rule leaves, 0.48'; single trials are held to HiGHS elsewhere.
+    """Remainder by the stated rule, 0.48'; single trials are held to HiGHS elsewhere.
 
     Here the first spring is the stronger one; equal springs that are displaced alike leave 0.66', and HiGHS alone, at
     whatever vertex it ends, 0.55'.

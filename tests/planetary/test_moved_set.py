@@ -36,7 +36,7 @@ def set_shown(own: PlanetarySet, deviated: Deviated, turns: float = 0.0) -> Show
 
 
 def gone_round(first: MovedSet, last: MovedSet, name: str) -> float:
-    """How far a gear has turned in the world [rad], between -pi and pi."""
+    """Turn of a gear in the world [rad], between -pi and pi."""
     one, other = (next(gear for gear in state.gears if gear.name == name).world_from_gear for state in (first, last))
     turn = one[:2, :2].T @ other[:2, :2]
     return math.atan2(turn[1, 0], turn[0, 0])
@@ -108,7 +108,7 @@ def test_at_the_end_of_the_opening_the_set_is_as_it_is_shown() -> None:
 
 
 def test_opened_planets_of_a_pair_touch_opposite_flanks() -> None:
-    """Of gaps alike the ring of the second gear stops one planet of a pair counter-clockwise, the other clockwise."""
+    """With equal gaps the ring of the second gear stops one planet of a pair counter-clockwise, the other clockwise."""
     own = flexible()
     last = opened(set_shown(own, ALIKE), 2)[-1]
     touching = {(gap.planet, gap.flank) for gap in flank_gaps(own, last.gears) if gap.mesh == 2 and gap.value < 1e-6}

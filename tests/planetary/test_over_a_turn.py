@@ -158,7 +158,7 @@ def test_orders_that_mean_nothing_are_refused(change: str, said: str, tmp_path) 
 @pytest.mark.slow
 @pytest.mark.parametrize(("scene", "lost"), [("reducer_3k", 0.0212), ("reducer_3k_flexible", 0.0285)])
 def test_what_360_positions_leave_out_of_a_turn_is_what_the_page_says(scene: str, lost: float) -> None:
-    """Of the mean range of 400 trials, against 5760 positions; 0.003 is some times its own sampling error."""
+    """Mean range of 400 trials, against 5760 positions; 0.003 is some times its own sampling error."""
     system = planetary_system(load_scene(SCENES / f"{scene}.yaml"))
     deviated = system.deviated(
         drawn(simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides(trials=400)), 0, 400)

@@ -228,7 +228,7 @@ def test_the_cost_of_a_trial_is_a_contact_for_each_mesh_of_each_planet_at_each_p
 
 
 def test_a_shifted_gear_of_a_set_has_the_tips_of_the_gear_that_is_made() -> None:
-    """Of a ring m (z/2 - h_a* - x): a positive shift goes towards the tip, which is inwards."""
+    """Tip radius of a ring m (z/2 - h_a* - x): a positive shift goes towards the tip, which is inwards."""
     alpha = math.radians(20.0)
     ring = SetGear("ring", 80, 2.0, alpha, profile_shift=0.3, addendum=0.8, is_ring=True)
     sun = SetGear("sun", 30, 2.0, alpha, profile_shift=0.3)

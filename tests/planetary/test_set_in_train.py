@@ -221,7 +221,7 @@ def test_both_methods_differ_by_what_is_of_second_order() -> None:
 
 
 def test_contributors_of_both_stages_have_their_shares(run: Run) -> None:
-    """Of the wheel's turn its teeth; at ring 2 the spur stage has (1.3 / 54.72 / 1.06)^2 = 0.05 % of the variance."""
+    """The wheel's turn is its teeth's; at ring 2 the spur stage has (1.3 / 54.72 / 1.06)^2 = 0.05 % of the variance."""
     (stage, reducer) = run.summary["trains"]["drive"]["stages"]
     assert [stage["kind"], reducer["kind"]] == ["mesh", "planetary_set"]
     assert [stage["ratio"], reducer["ratio"]] == pytest.approx([-3, RATIO], rel=1e-15)
@@ -371,7 +371,7 @@ def test_a_set_that_goes_up_and_turns_back_drives_a_train(tmp_path: Path) -> Non
 
 @pytest.mark.slow  # makes the solids of all gears
 def test_the_set_turns_with_its_train(tmp_path: Path) -> None:
-    """Of a turn of the motor: 1/3 at the sun, 25/104 of that at the pins, 25/1368 at ring 2; all against the motor."""
+    """Per turn of the motor: 1/3 at the sun, 25/104 of that at the pins, 25/1368 at ring 2; all against the motor."""
     run = ran(tmp_path, TEXT, 4)
     moved = motion_of(PRESENTER.display(run, "mean", magnify=1.0), "turn", 9)
     assert {"sun", "ring 2", "P1 of planet 3"} <= {body.name for body in moved.world.bodies}

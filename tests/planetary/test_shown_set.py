@@ -34,7 +34,7 @@ def shown(run: Run, trial: int | str) -> PlanetaryDisplay:
 
 
 def rooms(central: PlacedGear, planet: PlacedGear) -> Array:
-    """Of every point of the planet's flanks how far it is from the flank of the central gear next to it [mm].
+    """Distance of every point of the planet's flanks from the flank of the central gear next to it [mm].
 
     Both by their own involutes: in the central gear's frame a tooth takes up eta -+ inv alpha_y to both sides.
     """

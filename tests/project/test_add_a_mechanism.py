@@ -38,7 +38,7 @@ def fence(language: str, holding: str) -> str:
 
 @pytest.fixture(scope="module")
 def names(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
-    """What the page's program has when it has run, in a folder with its two files."""
+    """Names that the page's program has when it has run, in a folder with its two files."""
     folder = tmp_path_factory.mktemp("page")
     (folder / "pin_gauge.py").write_text(fence("python", "PIN_GAUGES = Mechanism("), "utf-8")
     (folder / "pin_gauge.yaml").write_text(fence("yaml", "kind: pin_gauge"), "utf-8")
@@ -233,7 +233,7 @@ def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: 
 
 
 def test_a_run_without_a_presenter_has_no_further_pictures_and_no_builds_to_show(run: Run, tmp_path: Path) -> None:
-    """What is its own is named by its mechanism, and no other presenter takes its place."""
+    """Its own items are named by its mechanism, and no other presenter takes its place."""
     assert picture.system_files(run.found) == {}
     with pytest.raises(InputError, match="nothing to show in 3D: the mechanism 'pin gauges' has no presenter; its"):
         tol3d.export_trial(run, 0, out=tmp_path)

@@ -144,7 +144,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"{zone} +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER} │ +{NUMBER}" for zone in ("rectangle", "axis, refined")
     ),
 }
-"""What each prints then: a split train has four meshes, so 400 contacts are 100 trials."""
+"""Output of each benchmark: a split train has four meshes, so 400 contacts are 100 trials."""
 
 
 def benchmarks() -> list[str]:

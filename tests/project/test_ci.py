@@ -1,4 +1,4 @@
-"""What CI runs: README's commands as they stand there, its system libraries, the oldest versions that are promised."""
+"""Contents of CI: README's commands as they stand, its system libraries, the oldest versions that are promised."""
 
 import os
 import re
@@ -38,7 +38,7 @@ def output(*arguments: str) -> list[str]:
 
 @pytest.fixture(scope="module")
 def calls(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
-    """What .ci/run calls, and in which folder, with stand-ins for Python and for what a virtual environment holds."""
+    """Calls of .ci/run, and their folders, with stand-ins for Python and for the contents of a virtual environment."""
     if shutil.which("git") is None or shutil.which("bash") is None:
         pytest.skip("no git or bash here")
     folder = tmp_path_factory.mktemp("ci")

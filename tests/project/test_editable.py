@@ -15,7 +15,7 @@ SCRIPT = "import tol3d; print(tol3d.__file__); import tol3d.errors; import tol3d
 
 
 def shown(code: str, beside: Path) -> str:
-    """What Python prints for a script in a folder, with the finder that an editable install brings along."""
+    """Output of Python for a script in a folder, with the finder of an editable install."""
     script = beside / "script.py"
     script.write_text(f"import runpy; runpy.run_path({str(FINDER)!r})\n{code}\n", "utf-8")
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
@@ -39,7 +39,7 @@ def test_other_packages_without_code_stay_as_they_are(tmp_path: Path) -> None:
 
 
 def tree_at(folder: Path) -> Path:
-    """What a build needs of this tree, which need be no clone."""
+    """Files of this tree that a build needs; the tree need be no clone."""
     for name in ("tol3d", "parts", "scenes", ".build"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md", "LICENSE"):

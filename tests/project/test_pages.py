@@ -46,7 +46,7 @@ def prose(page: str) -> str:
 
 
 def anchors(page: Path) -> set[str]:
-    """Of its headings, as GitHub makes them."""
+    """Anchors of its headings, as GitHub makes them."""
     headings = re.findall(r"^#+ (.*)$", page.read_text("utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
@@ -118,7 +118,7 @@ def test_every_module_and_name_of_the_package_is_there(page: str) -> None:
 
 
 def way_of_the_data() -> list[tuple[str, str]]:
-    """Of each stage in the docstring of simulate.py: where it is, and the name to look for there."""
+    """Place of each stage in the docstring of simulate.py, and the name to look for there."""
     said = resolve_name("tol3d.simulate").__doc__
     tables = "\n".join(part for part in said.split("\n\n") if part.startswith("    "))
     path = r"(?:\w+/)+[\w.]*"
@@ -220,7 +220,7 @@ def section(page: str, heading: str) -> str:
 
 
 def test_the_readme_s_figures_are_those_of_the_pages() -> None:
-    """How accurate, how fast: every number with its unit stands on the page that a test holds."""
+    """Accuracy and speed: every number with its unit stands on the page that a test holds."""
     said = section("README.md", "How accurate, how fast")
     pages = text("docs/validation.md") + text("docs/benchmarks.md")
     numbers = re.findall(r"\d+(?:\.\d+)?(?:e-?\d+)?(?= (?:µm|million|steps))", said)

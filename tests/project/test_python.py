@@ -161,7 +161,7 @@ def test_a_jam_is_the_worst_and_can_be_looked_at(tmp_path: Path) -> None:
 
 
 def distance(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
-    """Of two triangle meshes [mm], by FCL in double precision."""
+    """Distance of two triangle meshes [mm], by FCL in double precision."""
 
     def shape(mesh: trimesh.Trimesh) -> fcl.CollisionObject:
         model = fcl.BVHModel()

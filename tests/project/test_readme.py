@@ -1,4 +1,4 @@
-"""What the README shows is what runs."""
+"""The README shows what runs."""
 
 import os
 import re
@@ -50,9 +50,9 @@ WIDTH = 120  # characters of the README's block
 
 
 def differs(shown: str, printed: str) -> bool:
-    """Whether two lines differ in a word, or in a number by more than one of its last digit.
+    """True if two lines differ in a word, or in a number by more than one of its last digit.
 
-    That much rounding may do on another machine, whose geometric columns have other last bits.
+    Rounding may do that much on another machine, whose geometric columns have other last bits.
     """
     if NUMBER.sub("#", shown) != NUMBER.sub("#", printed):
         return True
@@ -65,7 +65,7 @@ def differs(shown: str, printed: str) -> bool:
 
 @pytest.fixture(scope="module")
 def first_command(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """What README's first command prints, line by line, at the width of its block."""
+    """Output of README's first command, line by line, at the width of its block."""
     command = re.search(r"\.venv/bin/tol3d (run scenes/\S+)\n", README)
     assert command is not None
     arguments = [*command[1].split(), "--out", str(tmp_path_factory.mktemp("runs") / "run"), "--no-picture"]

@@ -1,4 +1,4 @@
-"""What a user installs: a wheel, in an empty environment's place, runs a scene by its name."""
+"""Installation by a user: a wheel, in an empty environment's place, runs a scene by its name."""
 
 import subprocess
 import sys

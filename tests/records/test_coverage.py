@@ -110,7 +110,7 @@ def coverage(own: Class, sets: int) -> Counter[str]:
 
 
 def fewest(sets: int) -> int:
-    """Of so many sets, at 95 %: less than that comes once in 300 figures. 88 of 100."""
+    """Least number of so many sets, at 95 %: fewer come once in 300 figures. 88 of 100."""
     return int(stats.binom.ppf(1 / 300, sets, 0.95))
 
 

@@ -1,4 +1,4 @@
-"""What is identified of synthetic measurements, whose truth is known."""
+"""Identification of synthetic measurements, whose truth is known."""
 
 import math
 from collections.abc import Mapping
@@ -165,7 +165,7 @@ def test_encoders_set_to_zero_between_the_sides_are_refused() -> None:
 
 
 def test_encoders_that_were_set_to_zero_and_then_read_with_noise_are_refused_too() -> None:
-    """Where the backlash is least at the start nothing else shows it: what is left of it is above zero everywhere."""
+    """With the least backlash at the start nothing else shows it: what is left of it is above zero everywhere."""
     rig = Rig(samples=180, zeroed=True, start=math.radians(4278.55))
     read: dict[Side, tuple[Pass, ...]] = {}
     offsets: tuple[tuple[Side, float], ...] = (("drive", 0.0), ("back", 0.4 * ARCSEC))
@@ -314,7 +314,7 @@ def test_a_hidden_shift_moves_the_backlash_by_the_chord_of_its_turn() -> None:
 
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_gears_of_the_next_ratio_are_other_gears(sign: int) -> None:
-    """Of pairs up to two teeth off the nearest of another ratio is refused, and a third of the way to it is not."""
+    """The nearest pair of another ratio up to two teeth off is refused, and a third of the way to it is not."""
     ratios = {(27 + k) / (48 + n) for k in range(-2, 3) for n in range(-2, 3)} - {27 / 48}
     nearest = min(abs(ratio - 27 / 48) for ratio in ratios)
     own = passes(REFERENCE, Rig(samples=90, turns=4), "drive")[0]

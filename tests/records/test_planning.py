@@ -1,4 +1,4 @@
-"""How well a rig would identify, against identifying many of its measurements; and the commands around it."""
+"""Expected accuracy of a rig, against identifying many of its measurements; and the commands around it."""
 
 import csv
 import math

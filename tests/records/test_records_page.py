@@ -23,7 +23,7 @@ def fences(kind: str) -> list[str]:
 
 
 def commands(first: int = 1, last: int = 3) -> list[list[str]]:
-    """Of some of the page's fences, without tol3d: of the example and the plan."""
+    """Commands of some of the page's fences, without tol3d: of the example and the plan."""
     lines = "\n".join(fences("sh")[first:last]).replace("\\\n", " ").splitlines()
     return [shlex.split(line)[1:] for line in lines if line.strip()]
 
@@ -33,7 +33,7 @@ def plain(said: str) -> str:
 
 
 def played(tol3d: Command, folder: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """What the commands print, but for the run."""
+    """Output of the commands, but for the run."""
     monkeypatch.chdir(folder)
     monkeypatch.setattr(out_console, "_width", WIDTH)
     monkeypatch.setattr(out_console, "_height", 100)

@@ -58,7 +58,7 @@ def boxes() -> MovedBoxes:
 
 
 def middle_of(picture: Image.Image, colour: str) -> tuple[float, float]:
-    """Of the pixels of about a colour, without the legend's: column, row."""
+    """Middle of the pixels of about a colour, without the legend's: column, row."""
     rgb = np.asarray(picture.convert("RGB"), dtype=int)[HIGH // 6 : 9 * HIGH // 10]
     found = np.abs(rgb - np.array([*bytes.fromhex(colour[1:])])).max(axis=2) < 6
     rows, columns = np.nonzero(found)

@@ -92,7 +92,7 @@ def stage(
 
 
 def shares() -> list[float]:
-    """Of the sum's variance [%], the stages being independent."""
+    """Shares of the sum's variance [%], the stages being independent."""
     variances = [((own["high_3sigma"] - own["low_3sigma"]) * f) ** 2 for own, f in zip(OWN, FACTORS, strict=True)]
     return [100 * variance / sum(variances) for variance in variances]
 

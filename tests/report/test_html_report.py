@@ -36,7 +36,7 @@ from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import Execution, Overrides, simulation_again
 
 PACKED = "H4sI"
-"""What is packed by gzip begins so, in base64."""
+"""First characters of base64 text packed by gzip."""
 BARS = '{"bars"'
 """Data of a histogram begin so."""
 HOSTILE = ("<script>alert(1)</script>", "\"'>", "</script>", "a" * 2000, "&lt;", "javascript:alert(1)")

@@ -90,7 +90,7 @@ def test_numbers_of_the_table_have_all_digits_in_csv(run: Run) -> None:
 
 
 def test_what_is_noise_is_not_printed(run: Run) -> None:
-    """Of 100 trials |r| up to tanh(1.96 / sqrt(97)) = 0.1965 is noise, at most a screenful of the rest is shown."""
+    """With 100 trials |r| up to tanh(1.96 / sqrt(97)) = 0.1965 is noise, at most a screenful of the rest is shown."""
     joint = run.found.joint
     assert joint is not None
     assert joint.correlations is not None

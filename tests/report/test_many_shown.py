@@ -1,4 +1,4 @@
-"""What is shown of many measures and contributors: the worst and the largest, all others counted, and whole in files.
+"""Presentation of many measures and contributors: the worst and the largest, all others counted, and whole in files.
 
 Eighteen tolerances with sigmas of 1 to 18 um add up in each of 24 gaps, whose limits are further and further off.
 """

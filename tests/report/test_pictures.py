@@ -1,4 +1,4 @@
-"""What the pictures of a run show: held by their artists and the data in them, never by their pixels."""
+"""Pictures of a run: tested by their artists and the data in them, never by their pixels."""
 
 import math
 import os
@@ -42,7 +42,7 @@ BACKLASH: dict[str, Any] = {"kind": "normal_backlash", "of": "gear pair", "gear"
 
 
 def sample_of(values: np.ndarray) -> dict[str, Any]:
-    """What summary.json holds of a method's values, as far as pictures read it."""
+    """Contents of summary.json for a method's values, as far as pictures read it."""
     mean, sigma = float(values.mean()), float(values.std(ddof=1))
     quantiles = dict(zip(("p0.135", "p50", "p99.865"), np.quantile(values, [0.00135, 0.5, 0.99865]), strict=True))
     ends = {"low_3sigma": mean - 3 * sigma, "high_3sigma": mean + 3 * sigma}

@@ -1,4 +1,4 @@
-"""What is printed goes to any terminal, file or pipe, whatever signs its encoding has."""
+"""Printed text goes to any terminal, file or pipe, whatever its encoding."""
 
 import io
 import os

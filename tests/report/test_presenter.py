@@ -107,7 +107,7 @@ def test_a_build_without_bodies_is_refused_and_nothing_is_written(
 
 
 def test_measures_without_keys_of_their_own_are_shown_by_their_mechanisms_presenter() -> None:
-    """Of two mechanisms together, each by its own."""
+    """Two mechanisms together, each by its own presenter."""
     both = SummaryKinds(plain=(("first", BOXES), ("second", "")))
     both = pickle.loads(pickle.dumps(both | SummaryKinds(plain=(("third", BOXES),))))
     found = {

@@ -1,4 +1,4 @@
-"""What is printed, as it is printed: every label stands beside the number that it names.
+"""Printed tables, as printed: every label stands beside the number that it names.
 
 Numbers come from the columns of the trials by NumPy, or from closed forms written out here, never from summary.json.
 """

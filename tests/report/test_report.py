@@ -315,7 +315,7 @@ def test_check_names_the_measures_whose_shares_no_closed_form_tells(run: Run, tm
 
 
 def test_check_says_of_which_measures_the_shares_are_of_one_position() -> None:
-    """Of the least backlash of two_sided_te 50 % are the centre distance's, at a random position 4.4 %."""
+    """The centre distance has 50 % of the least backlash of two_sided_te, at a random position 4.4 %."""
     text = one_line(check_report(simulation_of(load_scene(SCENES / "two_sided_te.yaml"))))
     assert " shares of least backlash, largest backlash: of the value at a random position; run gives those of" in text
     plain = one_line(check_report(simulation_of(load_scene(SCENES / "spur_pair.yaml"))))

@@ -60,7 +60,7 @@ def test_a_verdict_is_told_where_the_whole_interval_is_on_one_side(below: int, t
 
 
 def test_verdicts_are_wrong_for_one_study_in_twenty_at_most() -> None:
-    """Of measures that have just as much out as is accepted, by the binomial law of 5000 trials: no sampling."""
+    """Measures with just as much out as is accepted, by the binomial law of 5000 trials: no sampling."""
     counts = np.arange(40)
     wrong = [JudgedMeasure.of(typed_measure(stated(int(k), 5000))).verdict != "too few trials" for k in counts]
     assert stats.binom(5000, 0.0027).pmf(counts) @ wrong <= 0.05
@@ -193,7 +193,7 @@ def test_the_exit_code_follows_the_accepted_share_where_one_is_said(tol3d: Comma
 
 
 def test_no_count_and_no_range_is_said_to_end_below_0() -> None:
-    """Of so few trials the quantiles alone would not tell; a length of the same sample may lie on either side of 0."""
+    """Quantiles of so few trials would not tell; a length of the same sample may lie on either side of 0."""
     sample = stated(0, 20)["geometric"] | {
         "count": 20,
         "mean": 1.5,

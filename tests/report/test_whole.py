@@ -1,4 +1,4 @@
-"""Where the names of bodies stand in a picture, and what they point at."""
+"""Places of the names of bodies in a picture, and what they point at."""
 
 import itertools
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What a run keeps: the very bytes that ran, inside its own folder, so that any trial can be made again."""
+"""Contents of a run: the very bytes that ran, inside its own folder, so that any trial can be made again."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What is kept of a run counts only where it is this run's own and unchanged."""
+"""Kept parts of a run count only if they are this run's own and unchanged."""
 
 from pathlib import Path
 

@@ -73,7 +73,7 @@ def ended(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def kept_blocks(out: Path) -> int:
-    """How many blocks an interrupted run has kept: as files, or else in its statistics."""
+    """Number of blocks that an interrupted run has kept: as files, or else in its statistics."""
     partial = out.with_name(out.name + ".partial")
     files = len(list((partial / "trials").glob("*.parquet")))
     counted = Checkpoint(partial / "checkpoint", Tally).read()
@@ -351,7 +351,7 @@ def test_a_full_disk_is_told_and_loses_nothing(tiny_disk: Path, tmp_path: Path) 
 
 
 def refusal(call: Callable[[], object]) -> str | None:
-    """What a call is refused with; None if it is not."""
+    """Message with which a call is refused; None if it is not."""
     try:
         call()
     except RunError as error:

@@ -287,7 +287,7 @@ def test_a_folder_that_is_called_like_what_a_kill_leaves_is_left_alone(tmp_path:
 
 
 class Killed(BaseException):
-    """What no handler takes for an error."""
+    """Exception that no handler takes for an error."""
 
 
 @pytest.mark.slow
@@ -331,7 +331,7 @@ def test_killed_at_any_step_of_a_replacement_the_old_or_the_new_run_is_there(
 
 
 def seed_of(folder: Path) -> int | None:
-    """Of a whole run."""
+    """Seed of a whole run."""
     try:
         run = open_run(folder)
         run.columns()
@@ -341,7 +341,7 @@ def seed_of(folder: Path) -> int | None:
 
 
 def goes_on(out: Path) -> bool:
-    """Whether the partial folder holds every trial of the new run."""
+    """True if the partial folder holds every trial of the new run."""
     mark = out.with_name("run.partial") / "fingerprint.json"
     return mark.is_file() and json.loads(mark.read_bytes()).get("study", {}).get("seed") == 5
 

@@ -280,7 +280,7 @@ def test_damaged_runs_are_refused_by_name(spur_run: Run, tmp_path: Path) -> None
 
 
 def test_a_scene_with_other_tolerances_is_simulated_with_them() -> None:
-    """What a run keeps of a scene is what it says, not what its file said before."""
+    """A run keeps the present content of a scene, not what its file said before."""
     scene = load_scene(SCENES / "spur_pair.yaml")
     wider = {**scene.tolerances, "centre distance": scene.tolerances["wheel tooth thickness"]}
     before, after = (

@@ -182,7 +182,7 @@ def replaced(summary: dict[str, Any], path: KeyPath, value: Any) -> bytes:
 
 
 def told_of(run: Run) -> str:
-    """What the tables say of a run, and which of its trials is the worst."""
+    """Tables of a run in text, and the worst of its trials."""
     page = StringIO()
     console = SafeConsole(file=page, width=120, highlight=False, markup=False)
     console.print(run_report(run.found))

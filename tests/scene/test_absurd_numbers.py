@@ -40,7 +40,7 @@ def leaves(value: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
 
 
 def absurd(value: Any) -> list[Any]:
-    """What may stand in a number's place."""
+    """Values that may stand in a number's place."""
     if isinstance(value, str) and (match := NUMBER_UNIT.fullmatch(value)):
         return [f"{number} {match[1]}" for number in NUMBERS]
     if isinstance(value, bool) or not isinstance(value, int | float):

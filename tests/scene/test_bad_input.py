@@ -33,7 +33,7 @@ JARGON = re.compile(
 
 
 def problems(path: Path) -> tuple[str, ...]:
-    """What is said of a scene, checked for what holds of every message."""
+    """Messages on a scene, checked for what holds of every message."""
     with pytest.raises(SceneError) as caught:
         load_scene(path)
     said = caught.value.problems

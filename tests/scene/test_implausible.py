@@ -15,7 +15,7 @@ from tol3d.scene import Scene
 from tol3d.system.mechanism import mechanism_of
 
 Warned = Callable[..., Sequence[str]]
-"""What is warned of a bundled scene in which some texts are replaced by others."""
+"""Warnings on a bundled scene in which some texts are replaced by others."""
 
 TAN, COS = math.tan(math.radians(20)), math.cos(math.radians(20))
 

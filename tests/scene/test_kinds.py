@@ -62,7 +62,7 @@ def written(folder: Path, text: str = TEXT) -> Path:
 
 
 def said_of(folder: Path, grammar: Grammar, *change: str) -> str:
-    """What is said of the scene with one thing changed."""
+    """Message on the scene with one thing changed."""
     assert TEXT.count(change[0]) == 1
     with pytest.raises(SceneError) as caught:
         read_scene(written(folder, TEXT.replace(change[0], change[1])), grammar)

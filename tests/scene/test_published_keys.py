@@ -1,4 +1,4 @@
-"""What may be published against what a summary has: by both JSON Schemas, every number of the one is in the other."""
+"""Published keys against those of a summary: by both JSON Schemas, every number of the one is in the other."""
 
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase

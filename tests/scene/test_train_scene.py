@@ -42,7 +42,7 @@ def changed(*changes: tuple[str, str]) -> str:
 
 
 def said_of(folder: Path, text: str) -> list[str]:
-    """What is said of a scene, without file and line."""
+    """Messages on a scene, without file and line."""
     with pytest.raises(SceneError) as caught:
         load(folder, text)
     return [re.sub(r"^.*?:\d+: ", "", problem) for problem in caught.value.problems]

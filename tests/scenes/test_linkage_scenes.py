@@ -45,7 +45,7 @@ def test_a_linkage_meets_its_expected_numbers(scene: str, run_of: Callable[[str]
 
 
 def sigma_of_slider(angle: float) -> float:
-    """Of the slider's place [um], by the derivatives of x = -e sin(angle) + sqrt(l^2 - y^2 - h^2), y = e cos(angle)."""
+    """Sigma of the slider's place [um], by derivatives of x = -e sin angle + sqrt(l^2 - y^2 - h^2), y = e cos angle."""
     throw, rod, offset = 40.0, 130.0, 30.0
     y = throw * math.cos(angle)
     ahead = math.sqrt(rod**2 - y**2 - offset**2)

@@ -219,7 +219,7 @@ MOMENTS: dict[tuple[str, str], Callable[[Stack], Moments]] = {
 
 
 def parabola_error(step: float) -> float:
-    """How far the parabola of samples `step` [rad] of phase apart misses a sine's peak at most, of its amplitude.
+    """Largest error of the parabola of samples `step` [rad] of phase apart at a sine's peak, of its amplitude.
 
     Halfway between two samples, d = step/2: 1 - cos d - sin^2(d) (1 + cos step)/(4 cos d).
     """

@@ -108,7 +108,7 @@ def closing(leaning: np.ndarray, width: float) -> float:
 
 
 def table_mean_builds() -> dict[str, float]:
-    """Of the measures that the leaning shaft is in."""
+    """Mean builds of the measures that the leaning shaft is in."""
     _, first, _ = table_first()
     per_um = {name: ARCMIN * 1e-3 / (radius * COS) for name, radius in (("1", 15.5), ("2", 30.0), ("3", 12.8))}
     second, third = table_leaning(None)
@@ -126,7 +126,7 @@ def table_mean_builds() -> dict[str, float]:
 
 
 def table_sigmas() -> dict[str, float]:
-    """Of two of them: what a shaft that stands upright has, and its bearings.
+    """Sigmas of two of them: with an upright shaft, and with its bearings.
 
     Both meshes go straight with both clearances, uniform over 4 to 12 um: two points of Gauss and Legendre each are
     exact.

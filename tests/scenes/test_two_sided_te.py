@@ -39,7 +39,7 @@ def pair_of(columns: Mapping[str, np.ndarray], trial: int) -> EccentricPair:
 
 
 def extremes(pair: EccentricPair, *, exact: bool = True) -> dict[str, float]:
-    """What the scene measures of a pair [arcmin]."""
+    """Measures of a pair in the scene [arcmin]."""
     errors = pair.transmission_error if exact else pair.first_order_error
     play = (pair.backlash if exact else pair.first_order_backlash)(FINE) * ARCMIN
     found = {f"{side} TE": float(np.ptp(errors(FINE, side))) * ARCMIN for side in ("drive", "back")}

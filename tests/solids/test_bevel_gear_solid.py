@@ -116,7 +116,7 @@ def teeth_volume(gear: BevelGear) -> float:
 
 
 def expected_faces(gear: BevelGear) -> set[str]:
-    """What the gear consists of, told from its cones alone."""
+    """Faces of the gear, from its cones alone."""
     _, root, base = cone_angles(gear)
     kinds = ["flank"] + (["radial"] if root < base else [])
     names = {f"tooth {k} {side} {kind}" for k in range(gear.teeth) for side in ("right", "left") for kind in kinds}

@@ -27,7 +27,7 @@ def cube() -> KeptShape:
 
 
 def made(program: bytes, **dimensions: float) -> KeptShape:
-    """What a program makes in this process, which is quicker."""
+    """Solid that a program makes in this process, which is quicker."""
     shape = KeptShape.of(*own_program.run_program(FileContent(Path("cube.py"), program), "build", dimensions))
     made_here.add(shape.sha256)
     return shape

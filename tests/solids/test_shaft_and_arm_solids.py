@@ -46,7 +46,7 @@ def hub_volume(diameter: float) -> float:
 
 
 def bar_in_hub(diameter: float) -> float:
-    """What a bar square to the hub, from the hub's axis outwards, has in common with it: chords of both sections."""
+    """Volume common to the hub and a bar square to it, from the hub's axis outwards: chords of both sections."""
     bar, hub = diameter / 2, HUB_SHARE * diameter / 2
     return quad(lambda y: 2 * math.sqrt(bar**2 - y**2) * math.sqrt(hub**2 - y**2), -bar, bar, epsabs=1e-10)[0]
 
@@ -56,7 +56,7 @@ def ball_volume(diameter: float) -> float:
 
 
 def bar_in_ball(diameter: float) -> float:
-    """What a bar that begins at the centre of a ball has in common with it: a cylinder and a cap."""
+    """Volume common to a ball and a bar that begins at its centre: a cylinder and a cap."""
     bar, ball = diameter / 2, BALL_SHARE * diameter / 2
     reach = math.sqrt(ball**2 - bar**2)
     cap = math.pi * (ball - reach) ** 2 * (2 * ball + reach) / 3
@@ -64,7 +64,7 @@ def bar_in_ball(diameter: float) -> float:
 
 
 def elbow_overlap(diameter: float) -> float:
-    """What two bars that meet square have in common outside the ball: sections are squares less a disc."""
+    """Volume common to two bars that meet square outside the ball: sections are squares less a disc."""
     bar, ball = diameter / 2, BALL_SHARE * diameter / 2
 
     def section(z: float) -> float:

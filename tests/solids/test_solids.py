@@ -76,7 +76,7 @@ def rack_contact(
 
 
 def rack_place(gear: SpurGear, radius: np.ndarray, thinner: float = 0.0) -> np.ndarray:
-    """How far the rack has moved when it touches at those radii: R^2 = r^2 + 2 r d sin(alpha) + d^2."""
+    """Travel of the rack when it touches at those radii: R^2 = r^2 + 2 r d sin(alpha) + d^2."""
     r, alpha = gear.module * gear.teeth / 2, gear.pressure_angle
     thickness = gear.module * (math.pi / 2 + 2 * gear.profile_shift * math.tan(alpha)) - thinner
     thickness += gear.tooth_thickness_deviation

@@ -84,7 +84,7 @@ def polygon_area(gear: SpurGear, points_each: int) -> float:
 
 
 def expected_faces(gear: SpurGear) -> set[str]:
-    """What the section consists of, told from its radii alone."""
+    """Faces of the section, from its radii alone."""
     reach = math.hypot(gear.base_radius, gear.fillet_radius)  # centre of a fillet that touches at the base circle
     kinds = ["flank", "fillet"] + (["radial"] if gear.root_radius + gear.fillet_radius < reach else [])
     names = {f"tooth {k} {side} {kind}" for k in range(gear.teeth) for side in ("right", "left") for kind in kinds}

@@ -258,7 +258,7 @@ def test_without_a_limit_nothing_is_outside_but_what_failed() -> None:
 
 
 def test_trials_that_lack_what_is_measured_are_below_a_lower_limit_and_out_of_any() -> None:
-    """Of five trials one is within 2 and 8, one below, one above, one is jammed and one was not measured."""
+    """One of five trials is within 2 and 8, one below, one above, one is jammed and one was not measured."""
     values, lacking = np.array([5.0, 1.0, 9.0, math.nan, math.nan]), np.array([False, False, False, True, False])
     assert LimitCounts.of(values, 2.0, 8.0, lacking) == LimitCounts(good=3, failed=2, below=2, above=1, out=4)
     assert LimitCounts.of(values, None, 8.0, lacking) == LimitCounts(good=3, failed=2, below=0, above=1, out=3)

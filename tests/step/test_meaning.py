@@ -1,4 +1,4 @@
-"""What the 130 tolerances of six NIST models mean in a scene, against a table made by hand from the frames."""
+"""Meaning of the 130 tolerances of six NIST models in a scene, against a table made by hand from the frames."""
 
 import csv
 from collections import Counter

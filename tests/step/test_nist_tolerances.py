@@ -21,7 +21,7 @@ MODELS = tuple(FILES)
 
 
 def targets_of(model: str, letter: str) -> Any:
-    """Of a datum of that letter, which there is."""
+    """Targets of a datum of that letter, which there is."""
     datum = step_text(model).datum(letter)
     assert datum is not None
     return datum.targets
@@ -38,7 +38,7 @@ def crude_number(model: str, identifier: int) -> str:
 
 
 def crude_factor(model: str, identifier: int) -> float:
-    """What one of a measure's unit is in mm."""
+    """One of a measure's unit in mm."""
     body = bodies(model)[references(bodies(model)[identifier])[0]]
     if "'INCH'" in body.upper():
         return 25.4

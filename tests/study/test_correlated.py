@@ -206,7 +206,7 @@ def test_included_files_bring_their_correlations(tmp_path: Path) -> None:
 
 
 def test_what_acts_otherwise_than_by_a_slope_has_no_closed_form() -> None:
-    """Of the backlash of a spur pair tooth thicknesses are slopes; a length with a direction cannot be correlated."""
+    """Tooth thicknesses are slopes of the backlash of a spur pair; a length with a direction cannot be correlated."""
     made = simulation_of(load("spur_pair"))
     measure = made.system.measures[0]
     assert closed_form_of(made, measure) == made.system.closed_form(measure)

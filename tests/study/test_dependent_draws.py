@@ -87,7 +87,7 @@ def test_a_kept_run_is_whole_without_the_scene(run: Run) -> None:
 
 @pytest.mark.parametrize("sampler", ["monte_carlo", "sobol", "latin_hypercube"])
 def test_uniforms_are_keyed_by_name_and_in_the_scene_s_order(sampler: str) -> None:
-    """What is read changes no stream: the length is drawn as alone, the dimensions of nets are in the scene's order."""
+    """Reading changes no stream: the length is drawn as alone, the dimensions of nets are in the scene's order."""
     simulation = simulation_of(load(SCENE), Overrides(sampler=sampler, trials=4096))
     names = [name for name, _ in streams_of(simulation.system)]
     assert names == ["mark", "tip", "length"]

@@ -37,7 +37,7 @@ METHODS: Mapping[str, Any] = {
 
 
 def explained(scene: str, trials: int) -> Mapping[str, Explanation]:
-    """What explains the differences of a scene's first trials, without its files."""
+    """Explanations of the differences of a scene's first trials, without its files."""
     simulation = simulation_of(load_scene(SCENES / f"{scene}.yaml"), Overrides(trials=trials))
     system = simulation.system
     method = system.method("exact", system.materials("exact"))

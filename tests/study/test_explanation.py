@@ -61,7 +61,7 @@ def columns_of(model: Model, trials: int) -> Columns:
 
 
 def explained(model: Model, trials: int = 2000) -> Mapping[str, Explanation]:
-    """What explains the differences of a study, without its files."""
+    """Explanations of the differences of a study, without its files."""
     columns = columns_of(model, trials)
     pilot = {name: column[:PILOT_TRIALS] for name, column in columns.items()}
     simulation = simulated(model)
@@ -92,7 +92,7 @@ def scaled(name: str, factor: float) -> Callable[..., Any]:
 
 
 def sabotaged(patch: pytest.MonkeyPatch, scene: str, name: str, factor: float) -> Mapping[str, Explanation]:
-    """What is told of a scene whose stack-up has another coefficient of one contributor."""
+    """Explanations for a scene whose stack-up has another coefficient of one contributor."""
     with altered(patch, Stack, "normal_backlash", scaled(name, factor)):
         return explained(model_of(scene))
 
@@ -166,7 +166,7 @@ def test_an_error_of_1_percent_is_below_the_2_that_may_be_and_told_all_the_same(
 def test_one_sided_losses_and_temperatures_are_held_to_their_coefficients(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of two tilts that cross only the larger counts: what one of them takes too much, the other takes less often."""
+    """Only the larger of two tilts that cross counts: what one of them takes too much, the other takes less often."""
     found = sabotaged(monkeypatch, "every_field", name, 1.05)["normal backlash"]
     blamed = {part.contributor for part in found.linear if not part.by}
     assert name in blamed

@@ -1,4 +1,4 @@
-"""What each deviation does to a measure, before any trial: against closed forms of a sum and of a parabola."""
+"""Effect of each deviation on a measure, before any trial: against closed forms of a sum and of a parabola."""
 
 import math
 from dataclasses import dataclass
@@ -57,7 +57,7 @@ def found_by(engine: str = "exact") -> dict[str, FirstOrder]:
 
 
 def test_slopes_are_those_of_the_sum_and_of_a_parabola_at_its_mean() -> None:
-    """Of 3 x + 40 x² at 20 um: 3 + 2 * 40 / mm * 0.020 mm = 4.6; others as they are, or their size.
+    """Slope of 3 x + 40 x² at 20 um: 3 + 2 * 40 / mm * 0.020 mm = 4.6; others as they are, or their size.
 
     Eastwards only the first component counts; a constant is moved by a um to see what it would do. Each of the pins has
     a slope of its own, of which the greatest is shown, with its sign.

@@ -109,7 +109,7 @@ def test_a_build_that_does_not_seat_leaves_the_shares_open(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("mean_seats", [False, True])
 def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> None:
-    """Where builds do not seat, neither the steepest direction nor slopes are numbers, and no share is known."""
+    """If builds do not seat, neither the steepest direction nor slopes are numbers, and no share is known."""
     system = simulation_of(made({**THIN, **PAPERLIKE}), Overrides(trials=4)).system
     (measure,) = system.measures
     mean = mean_deviations(system, measure.positions)

@@ -1,4 +1,4 @@
-"""What measures do together in a study: yield within all limits, and correlations, with failed trials among them."""
+"""Joint results of measures in a study: yield within all limits, and correlations, with failed trials among them."""
 
 import csv
 import math

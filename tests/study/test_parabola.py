@@ -52,9 +52,9 @@ ROOM, LOST_BEYOND = 75.0, 125.0
 EXACT = parabola(A, B, X) + parabola(1.0, Q, RIPPLES) + uniform((1 + LOST_LEVER) * OFFSET)
 THEORY = Cumulants(0.0, A**2 * X**2 + RIPPLES**2) + uniform(OFFSET)
 AT_RANDOM = Cumulants(0.0, WAVE**2 / 2, 0.0, (3 * 3 / 8 - 3 / 4) * WAVE**4)
-"""Of w sin u: its fourth moment is 3 s^4 3/8."""
+"""Cumulants of w sin u: its fourth moment is 3 s^4 3/8."""
 HALF_NORMAL = Cumulants(WAVE * math.sqrt(2 / math.pi), WAVE**2 * (1 - 2 / math.pi))
-"""Of |w|, what the highest of a turn adds."""
+"""Cumulants of |w|, which the highest of a turn adds."""
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -201,7 +201,7 @@ def test_terms_of_a_breakdown_are_pooled_and_shown(run: Run) -> None:
 
 
 def chances() -> tuple[float, float]:
-    """Of what is lost, and of what is too long and not lost: the sum of x, ripple and offset over |x| < 125 um."""
+    """Probabilities of loss, and of being too long and not lost: the sum of x, ripple and offset over |x| < 125 um."""
     lost = 2 * stats.norm.sf(LOST_BEYOND / X)
     half = (1 + LOST_LEVER) * OFFSET
 

@@ -30,7 +30,7 @@ LOW, MIDDLE, HIGH = 0.00135, 0.5, 0.99865
 def summary(
     values: np.ndarray, lower: float | None = None, upper: float | None = None, asked: PpkBy | None = None
 ) -> SampleSummary:
-    """Of values [um] and limits [um], nan of builds that failed."""
+    """Summary of values [um] and limits [um], nan of builds that failed."""
     limits = [None if limit is None else limit * MM for limit in (lower, upper)]
     measure = PlainMeasure("gap", "gap", lower_limit=limits[0], upper_limit=limits[1])
     return sample_summary(measure, Sample.of(measure, Outcome(values), Grid.empty(-40.0, 1e-3, 80_000), {}), asked)
@@ -126,7 +126,7 @@ def test_verdict_and_ppk_do_not_contradict_each_other(law: Any) -> None:
 
 
 def test_a_normal_law_that_the_trials_refute_gives_no_ppk() -> None:
-    """Of a triangular law none lies beyond its ends; a normal one of its sigma would have 1.4 % there."""
+    """Nothing of a triangular law lies beyond its ends; a normal one of its sigma would have 1.4 % there."""
     own = summary(stats.triang(0.5, -1.0, 2.0).rvs(1400, random_state=1), -1.0, 1.0)
     assert own.ppk_by == "quantiles"
     assert own.ppk_reason is not None
@@ -135,7 +135,7 @@ def test_a_normal_law_that_the_trials_refute_gives_no_ppk() -> None:
 
 
 def test_quantiles_of_too_few_trials_give_no_ppk_and_say_so() -> None:
-    """Of 740 trials less than one lies beyond an outer quantile."""
+    """Less than one of 740 trials lies beyond an outer quantile."""
     values = stats.expon().rvs(FEWEST, random_state=1)
     few, enough = summary(values[1:], None, 9.0), summary(values, None, 9.0)
     assert (few.ppk, few.ppk_by) == (None, "quantiles")

@@ -1,4 +1,4 @@
-"""What the paper printed stands beside ours in words that its own numbers bear out."""
+"""The paper's printed figures stand beside ours in words that its own numbers bear out."""
 
 import json
 import math

@@ -64,7 +64,7 @@ def swings_of(model: Model, train: Train) -> Iterator[tuple[Measure, LostMotion]
 
 
 def usual_swing(model: Model, train: Train) -> tuple[Measure, LostMotion] | None:
-    """So far to both sides of where the load changes side next to 0; None without gravity or a tip on the output."""
+    """Swing to both sides of the load change next to 0; None without gravity or a tip on the output."""
     kinds = [measure.kind for measure in model.measures if isinstance(measure.kind, LostMotion)]
     own = [kind for kind in kinds if (kind.train, kind.shaft) == (train.name, train.output)]
     plain = next((kind for kind in own if kind.tip), None)
@@ -109,7 +109,7 @@ def swing_of(
 
 
 def _curves(kind: LostMotion, method: str, lost: Array, own: Array, batch: float) -> Mapping[State, Array]:
-    """Tip errors [mm] of lost motions (robots, positions) [arcmin], less what the motor goes on by."""
+    """Tip errors [mm] of lost motions (robots, positions) [arcmin], less the motor's correction."""
     return {
         "before": tip_error(kind, method, lost),
         "batch": tip_error(kind, method, lost - batch),
@@ -118,14 +118,14 @@ def _curves(kind: LostMotion, method: str, lost: Array, own: Array, batch: float
 
 
 def tip_error(kind: LostMotion, method: str, angle: Array) -> Array:
-    """The tip's error [mm] by what is left of the lost motion [arcmin], as each method sees a tip move."""
+    """The tip's error [mm] by the remaining lost motion [arcmin], as each method sees a tip move."""
     return first_order(kind, angle / ARCMIN) if method == "analytic" else moved(kind, angle / ARCMIN)
 
 
 def _flanks(
     model: Model, train: Train, kind: LostMotion, shown: tuple[float, ...]
 ) -> Iterator[tuple[str, tuple[Flank, Flank]]]:
-    """Those that the load leaves to work where the swing begins, and on its other side."""
+    """Working flanks under the load where the swing begins, and on its other side."""
     loaded = next(angle for angle in shown if gravity_torque(train, model.layout, model.arms, angle))
     for stage in kind.singles:
         if stage.backlash is not None:

@@ -1,4 +1,4 @@
-"""The motor's correction when the load changes side: how large it is, and what it leaves of the lost motion.
+"""The motor's correction when the load changes side: its size, and the remaining lost motion.
 
 A train whose load changes side goes over to the other flanks, and its output turns by the lost motion. The motor makes
 good for it by a turn that is known beforehand: that of the batch's mean builds, or of this robot's own mean. A reducer
@@ -45,12 +45,12 @@ POSITIONS: Final = 16
 
 @dataclass(frozen=True)
 class CompensationQuestion:
-    """What is wanted.
+    """Options of a compensation analysis.
 
     Args:
-        train: whose; None is the scene's first.
-        positions: at how many a robot's own mean is taken.
-        robots: how many are drawn; None is as many as the study has trials, MOST_ROBOTS at most.
+        train: name of the train; None is the scene's first.
+        positions: number of positions over which a robot's own mean is taken.
+        robots: number drawn; None is the study's number of trials, MOST_ROBOTS at most.
     """
 
     train: str | None = None
@@ -60,7 +60,7 @@ class CompensationQuestion:
 
 @dataclass(frozen=True, eq=False)
 class Remaining:
-    """What a method leaves at a random position: each robot's error with its sign, (robots,) by state.
+    """Signed error of each robot at a random position that a method leaves, (robots,) by state.
 
     Args:
         angles: of the shaft that is read [arcmin].
@@ -71,7 +71,7 @@ class Remaining:
     tips: Mapping[State, Array]
 
     def in_unit(self, unit: Unit) -> Mapping[State, Array]:
-        """Those of the unit: tips are in mm, turns in minutes of arc."""
+        """Errors of the unit: tips are in mm, turns in minutes of arc."""
         return self.tips if unit == "mm" else self.angles
 
 
@@ -84,14 +84,14 @@ class Compensation:
         simulation: the scene's.
         train: whose motor is corrected.
         measure: the lost motion that is compensated, at a random position.
-        tip: what it moves; None without an arm.
+        tip: point that it moves; None without an arm.
         compensated, left_out: the stages whose mean is known, and those of which only the maximum is.
-        positions: at how many a robot's own mean was taken.
+        positions: number of positions over which a robot's own mean was taken.
         corrections: by column; methods, the closed form and who published.
         remaining: by method.
         form_sigmas: of the error at the shaft by the closed form [arcmin], by state; empty where there is none.
         swing: the tip over the swing; None where the scene measures none.
-        robots, failed: how many were drawn, and how many of these could not be seated.
+        robots, failed: number drawn, and number of these that could not be assembled.
     """
 
     name: str
@@ -126,17 +126,17 @@ class Compensation:
 
     @property
     def units(self) -> tuple[Unit, ...]:
-        """What is known of the error: of the tip where there is an arm, and of the turn."""
+        """Units in which the error is known: of the tip if there is an arm, and of the turn."""
         return ("mm", "arcmin") if self.tip else ("arcmin",)
 
     @property
     def lever(self) -> float | None:
-        """Of the tip [mm]."""
+        """Lever arm of the tip [mm]."""
         return self.tip.tip.lever if self.tip and self.tip.tip else None
 
     @property
     def published_tips(self) -> Mapping[str, Mapping[str, float]]:
-        """What others published of the tip's displacement without compensation [mm]."""
+        """Published displacements of the tip without compensation [mm]."""
         own = self.tip and self.tip.tip
         alike = [
             measure.name
@@ -151,12 +151,12 @@ class Compensation:
 def compensation(
     scene: Scene, question: CompensationQuestion = CompensationQuestion(), overrides: Overrides = AS_WRITTEN
 ) -> Compensation:
-    """How far the motor goes on when the load changes side, and what is left then.
+    """Correction of the motor when the load changes side, and the remaining error.
 
     Args:
         scene: as `load` gives it.
-        question: what is wanted.
-        overrides: what is said otherwise than in the scene's study.
+        question: options of the analysis.
+        overrides: values that replace those of the scene's study.
 
     Raises:
         InputError: no such train, or no link in it.
@@ -268,7 +268,7 @@ def _remaining(robots: Robots, method: str, tip: LostMotion | None, batch: float
 
 
 def _form_sigmas(model: Model, measure: Measure, positions: int) -> Mapping[State, float]:
-    """Sigma of what is left by the closed form [arcmin].
+    """Sigma of the remaining error by the closed form [arcmin].
 
     A robot's own mean takes away all that stays as it is within a robot. What turns with a gear is left, and the own
     mean's error with it, for P positions do not average it out.
@@ -282,7 +282,7 @@ def _form_sigmas(model: Model, measure: Measure, positions: int) -> Mapping[Stat
 
 
 def _turning(model: Model, form: ClosedForm) -> Iterator[tuple[Share, float]]:
-    """The shares of what turns with a gear, and its turns in the long period."""
+    """The shares of errors that turn with a gear, and its turns in the long period."""
     shares = {share.name: share for share in form.shares}
     layout = model.layout
     for contributor in model.contributors:

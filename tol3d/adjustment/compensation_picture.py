@@ -1,4 +1,4 @@
-"""The picture of a motor's compensation: what is left at a random position, and the tip over the swing."""
+"""The picture of a motor's compensation: the remaining error at a random position, and the tip over the swing."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -105,7 +105,7 @@ def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
 
 
 def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[DrawnSample]:
-    """What is left in each state; nothing where no robot could be seated."""
+    """Remaining error in each state; nothing if no robot could be assembled."""
     values = own.remaining[own.method].in_unit(unit)
     for state in STATES:
         if len(values[state]):
@@ -137,7 +137,7 @@ def _highs(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
 
 
 def _published(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
-    """What others say of the tip without compensation, with their marks."""
+    """Published displacements of the tip without compensation, with their marks."""
     return [
         (f"{legible(column, 24)}, {word}", values[key], MARKERS[key])
         for column, values in own.published_tips.items()

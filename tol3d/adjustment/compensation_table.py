@@ -1,4 +1,4 @@
-"""The motor's correction as tables: how large it is, what it leaves, sums of the stages' highs, which flanks work."""
+"""The motor's correction as tables: its size, the remaining error, sums of the stages' highs, working flanks."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -84,7 +84,7 @@ TAKEN: Final[Mapping[str, tuple[Callable[[Spread], float], Callable[[Spread], fl
     "largest": (lambda spread: spread.moments.maximum, lambda spread: None),
     "largest, without its sign": (lambda spread: spread.largest_error, lambda spread: None),
 }
-"""What is shown of a sample, and its standard error."""
+"""Statistic shown of a sample, and its standard error."""
 
 LEFT_NOTES: Final = (
     "positive where the motor has turned too little; ±: one standard error, of robots that are drawn anew",
@@ -253,7 +253,7 @@ def _highs_notes(found: Sequence[Compensation]) -> Iterator[str]:
 
 
 def swing_table(found: Sequence[Compensation]) -> Table:
-    """Where the load changes side, the flanks that work before and behind, and how far the tip jumps there."""
+    """Positions where the load changes side, the working flanks before and after, and the tip's jump there."""
     rows = [Row("at the output's angle", [_jumps(own.swing) for own in found if own.swing])]
     for link in dict.fromkeys(link for own in found if own.swing for link in own.swing.flanks):
         flanks = [own.swing.flanks.get(link) for own in found if own.swing]
@@ -265,7 +265,7 @@ def swing_table(found: Sequence[Compensation]) -> Table:
 
 
 def _which_change(found: Sequence[Compensation]) -> str:
-    """At which change of side the flanks are listed, where a swing has several."""
+    """Change of side at which the flanks are listed, if a swing has several."""
     counts = {len(own.swing.jumps) for own in found if own.swing}
     if max(counts) == 1:
         return ""

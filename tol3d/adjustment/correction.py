@@ -26,14 +26,14 @@ CLOSED_FORM: Final = "closed form"
 
 @dataclass(frozen=True)
 class Correction:
-    """The motor's correction by one column: a method, the closed form or who published it; None is what it lacks.
+    """The motor's correction by one column: a method, the closed form or a publication; None for missing values.
 
     Args:
         means: each compensated link's own lost motion, at its driven shaft [arcmin].
         motor: turn of the motor that makes good for them together [arcmin].
         before: sum of all stages' highs at the shaft that is read [arcmin].
-        left: sum of what their highs exceed their means by, and of the highs of what is not compensated [arcmin].
-        left_of: by how much each compensated link's own high exceeds its mean, at its driven shaft [arcmin].
+        left: sum of the excess of their highs over their means, and of the uncompensated highs [arcmin].
+        left_of: excess of each compensated link's own high over its mean, at its driven shaft [arcmin].
     """
 
     means: Mapping[str, float | None]
@@ -46,7 +46,7 @@ class Correction:
 def corrections_of(
     simulation: Simulation, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
-    """By the closed form, by each method, and by everybody who published every mesh of the train."""
+    """Corrections by the closed form, by each method, and by every publication of all meshes of the train."""
     model = gear_model(simulation.system)
     of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
     known_of = replace(model, measures=(measure, *of_meshes))
@@ -112,5 +112,5 @@ def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:
 
 
 def at_shaft(compensated: Sequence[AnyStage], correction: Correction) -> float:
-    """What the motor's correction turns the shaft that is read by [arcmin]."""
+    """Turn of the output shaft due to the motor's correction [arcmin]."""
     return _total([(stage.factor, correction.means[stage.link]) for stage in compensated]) or 0.0

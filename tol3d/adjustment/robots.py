@@ -2,7 +2,7 @@
 
 A robot's own mean is taken at one position at random in each P-th of the long period, and its error is read at one more
 position, that of the study's trial: uncompensated, robot i is trial i of the run. Positions that were evenly spread
-would hide what turns P times in the long period; these are never worse than independent ones.
+would hide errors that turn P times in the long period; these are never worse than independent ones.
 """
 
 import math
@@ -52,11 +52,11 @@ class Robots:
 
     @property
     def count(self) -> int:
-        """How many were drawn."""
+        """Number of robots drawn."""
         return len(self.seated)
 
     def errors(self, method: str, batch: float) -> Mapping[State, Array]:
-        """What is left of each robot that could be seated, (robots,) [arcmin], where `batch` is the batch's mean."""
+        """Remaining error of each robot that could be assembled, (robots,) [arcmin]; `batch` is the batch's mean."""
         lost, own = self.lost[method][self.seated], self.own[method][self.seated]
         return {"before": lost, "batch": lost - batch, "robot": lost - own}
 
@@ -64,10 +64,10 @@ class Robots:
 def simulated_robots(
     simulation: Simulation, method: Method | None, measure: Measure, compensated: Sequence[AnyStage], positions: int
 ) -> Robots:
-    """As many robots as the study has trials.
+    """Robots, as many as the study has trials.
 
     Args:
-        simulation: that measures the lost motion and nothing else.
+        simulation: one that measures the lost motion and nothing else.
         method: of its 3D simulation; None for an analytic study.
         measure: the lost motion, at a random position.
         compensated: the stages that count for a robot's own mean.

@@ -1,6 +1,6 @@
 """The thickness of shims for a wanted minimum of backlash: by the formula, and by the geometry.
 
-The minimum at a thickness is what a study of the scene with shims of that thickness says, on the geometric method. All
+The minimum at a thickness is that of a study of the scene with shims of that thickness, on the geometric method. All
 studies share their draws (a draw depends on seed, contributor and trial only), so the minimum falls smoothly with the
 thickness, and a secant finds where it is the one that is wanted.
 """
@@ -43,15 +43,15 @@ GRINDING: Final = Step(0.001)  # mm; the paper's shims of 0.048 mm are of that s
 
 @dataclass(frozen=True)
 class ShimQuestion:
-    """What is wanted.
+    """Options of a choice of shims.
 
     Args:
         target: the minimum of normal backlash [mm].
-        measure: whose; None is the only one of a bevel mesh.
-        shims: whose thickness is looked for, see `shims_of`.
-        minimum: which number is called the minimum.
-        stock: thicknesses that can be had.
-        rounding: "down" never falls below the target; "nearest" takes the thickness that is nearest.
+        measure: its name; None is the only one of a bevel mesh.
+        shims: those whose thickness is chosen, see `shims_of`.
+        minimum: statistic that is called the minimum.
+        stock: available thicknesses.
+        rounding: "down" never falls below the target; "nearest" takes the nearest thickness.
     """
 
     target: float
@@ -68,7 +68,7 @@ class ShimPlan:
 
     Args:
         scene: with shims of the chosen thickness.
-        question: what was asked.
+        question: options of the choice.
         measure: whose minimum it is.
         shims: whose thickness it is, as they were.
         before: the scene as it stands.
@@ -89,7 +89,7 @@ class ShimPlan:
 
     @property
     def tolerances(self) -> Mapping[str, ToleranceSpec]:
-        """Of the shims, with the chosen thickness."""
+        """Tolerances of the shims at the chosen thickness."""
         return {shim.name: self.scene.distributed[shim.name] for shim in self.shims}
 
 
@@ -100,9 +100,9 @@ def shim_plan(
 
     Args:
         scene: as `load` gives it.
-        question: what is wanted.
-        overrides: what is said otherwise than in the scene's study.
-        tell: callback that gets what goes on, in words.
+        question: options of the choice.
+        overrides: values that replace those of the scene's study.
+        tell: callback that gets the current activity, in words.
 
     Raises:
         InputError: no such measure or shims, or no thickness that gives that minimum.
@@ -131,7 +131,7 @@ def shim_plan(
 
 
 def formula_thickness(excess: float, shims: Sequence[Shim]) -> float:
-    """Thickness of every shim [mm] that takes what a backlash has too much [mm], by the stack-up.
+    """Thickness of every shim [mm] that takes up the excess of a backlash [mm], by the stack-up.
 
     excess / sum of 2 sin(alpha_w) sin(delta), from the mean thicknesses that the shims have on.
     """

@@ -1,4 +1,4 @@
-"""Which measure and which shims: what a scene has of them, and the scene with another thickness."""
+"""Measure and shims of a choice: those of a scene, and the scene with another thickness."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -70,7 +70,7 @@ class Shim:
 
 
 def _longer(quantity: Quantity, length: float) -> Quantity:
-    """A length that is longer by so much [mm], in its own unit."""
+    """A length plus an increment [mm], in its own unit."""
     return Quantity(round(tidy(quantity.internal + length) / FACTORS["length"][quantity.unit], 9), quantity.unit)
 
 
@@ -95,7 +95,7 @@ def measure_of(scene: Scene, name: str | None) -> str:
 
 
 def _unfit(scene: Scene, spec: MeasureEntry) -> str:
-    """Why shims cannot be chosen for a measure, or nothing."""
+    """Reason why shims cannot be chosen for a measure, or nothing."""
     if not isinstance(spec, NormalBacklashSpec):
         return f"of the kind {spec.kind}"
     if not isinstance(scene.moves.get(spec.of), BevelMeshSpec):
@@ -187,14 +187,14 @@ MINIMUM_XTOL: Final = 5e-6  # mm of backlash; half of the 0.01 um that is promis
 
 @dataclass(frozen=True)
 class Shimmed:
-    """What a study found of a scene with its shims.
+    """Results of a study with some shims.
 
     Args:
         thickness: of each shim [mm]; None for the scene as it stands.
-        called: which number is called the minimum.
+        called: statistic that is called the minimum.
         measure: as summary.json shows it [um, arcmin].
-        found: what the 3D simulation found of it.
-        trials: how many builds there were.
+        found: its results by 3D simulation.
+        trials: number of builds.
     """
 
     thickness: float | None
@@ -219,7 +219,7 @@ class Shimmed:
 
     @property
     def resolution(self) -> float:
-        """How well the minimum can be met [mm]: a quantile is known to a bin of the study's histogram."""
+        """Accuracy to which the minimum can be met [mm]: a quantile is resolved to a bin of the study's histogram."""
         bin_width = self.found.quantile_error / UM if self.called == "p0.135" else 0.0
         return max(MINIMUM_XTOL, bin_width)
 

@@ -1,4 +1,4 @@
-"""The thickness of shims as tables: what there is, what the formula says, what the geometry says, what to take."""
+"""The thickness of shims as tables: those there are, by the formula, by the geometry, those to take."""
 
 from collections.abc import Iterator, Mapping
 from typing import Final
@@ -24,7 +24,7 @@ SIDES: Final[Mapping[str, str]] = {
 
 
 def shim_report(plan: ShimPlan) -> Page:
-    """Where the shims go, how thick they are, what they do to the backlash."""
+    """Report on the shims: their places, their thickness and their effect on the backlash."""
     blocks: list[PageItem] = [_title(plan), _words(plan), BLANK]
     blocks += [line(f"  {shim.name}: {_place(shim)}") for shim in plan.shims]
     blocks += [BLANK, _table(plan), *map(note, _notes(plan))]
@@ -68,7 +68,7 @@ def _other_words(chosen: Shimmed, other: Shimmed) -> str:
 
 
 def _thickness(own: Shimmed, plan: ShimPlan) -> str:
-    """Of each shim; nothing for shims that are not there yet, or that are of several thicknesses."""
+    """Thickness of each shim; nothing for shims that are not yet there or that differ in thickness."""
     before = {shim.mean for shim in plan.shims if not shim.is_new}
     thickness = before.pop() if own.thickness is None and len(before) == 1 else own.thickness
     return NOTHING if thickness is None else value_text(UM * thickness, "um")

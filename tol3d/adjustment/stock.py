@@ -1,4 +1,4 @@
-"""What thicknesses can be had: a step, or pieces that are stacked."""
+"""Available thicknesses: a step, or pieces that are stacked."""
 
 import math
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Stock(Protocol):
         ...
 
     def words(self, thickness: float) -> str:
-        """What one of them is made of."""
+        """Pieces that make up one thickness, in words."""
         ...
 
 
@@ -120,10 +120,10 @@ def stock_of(text: str) -> Stock:
 
 
 def length_of(option: str, text: str) -> float:
-    """A length [mm] that an option says with its unit.
+    """A length [mm] that an option states with its unit.
 
     Raises:
-        InputError: it says something else.
+        InputError: it is something else.
     """
     try:
         quantity = Quantity.parse(text)

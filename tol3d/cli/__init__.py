@@ -170,7 +170,7 @@ def _print_fault(words: str, whom: str, error: BaseException) -> None:
 
 
 def _out_of_memory(error: Exception) -> str:
-    """What is said where the system gives no more memory; nothing of other errors."""
+    """Message where the system gives no more memory; empty for other errors."""
     import errno
 
     failed = isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM)
@@ -185,7 +185,7 @@ def _out_of_memory(error: Exception) -> str:
 
 
 def _refused_write(error: Exception) -> str:
-    """What is said of a write that the disk refused; nothing of other errors."""
+    """Message on a write that the disk refused; empty for other errors."""
     from pathlib import Path
 
     from tol3d.errors import refused_by_disk, unwritable

@@ -11,7 +11,7 @@ from tol3d.cli.console import err_console, out_console, tell
 
 
 class MinimumName(StrEnum):
-    """What may be called the minimum of a backlash."""
+    """Statistics that may be called the minimum of a backlash."""
 
     LOW_3SIGMA = "low_3sigma"
     QUANTILE = "p0.135"
@@ -87,7 +87,7 @@ def compensate(
     trust_parts: TrustParts = False,
     run_builders: RunBuilders = False,
 ) -> None:
-    """Find the motor's correction for a load that changes side, and what it leaves of the lost motion."""
+    """Find the motor's correction for a load that changes side, and the remaining lost motion."""
     from tol3d.adjustment.compensation import CompensationQuestion, compensation
     from tol3d.adjustment.compensation_picture import draw_compensation
     from tol3d.adjustment.compensation_table import compensation_report

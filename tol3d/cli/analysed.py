@@ -1,4 +1,4 @@
-"""How commands tell what an analysis found: the table, the files that were asked for, and where a run keeps it."""
+"""Output of an analysis by a command: the table, the requested files, and their folder in a run."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,11 +25,11 @@ PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw t
 
 @contextmanager
 def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
-    """While an analysis goes on: what goes on is shown, a mechanism's faults are its own, an interrupted one goes on.
+    """While an analysis goes on: show its activity, keep a mechanism's faults its own, let Ctrl-C keep it.
 
     Args:
         subject: the scene or the run.
-        activity: what it begins with, in words.
+        activity: the first one, in words.
     """
     from tol3d.system.faults import faults_of
 
@@ -44,13 +44,13 @@ def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
 
 
 def tell_found(subject: "Subject", section: str, found: "Section", report: "RenderableType") -> None:
-    """Print what was found, and keep it in the run if it was asked of one.
+    """Print the findings, and keep them in the run if it was asked of one.
 
     Args:
         subject: the scene or the run.
         section: its name in a run.
-        found: what is kept.
-        report: what is printed.
+        found: findings to keep.
+        report: tables to print.
     """
     out_console.print(report)
     if (kept := subject.keep(section, found)) is not None:
@@ -80,8 +80,8 @@ def draw_picture(path: Path | None, draw: str, *found: object) -> None:
 
     Args:
         path: the file.
-        draw: import path of what draws `found` there.
-        found: what is drawn.
+        draw: import path of the function that draws `found` there.
+        found: findings to draw.
     """
     if path is None:
         return

@@ -59,7 +59,7 @@ def trials_or_auto(text: str) -> int | str:
 
 
 def whole(least: int, other: str = "", most: int | None = None) -> Callable[[str | int], int]:
-    """What reads a whole number from `least` on, such as 20000 or 2e4; to `most`, if that is given.
+    """Parser of a whole number from `least` on, such as 20000 or 2e4; up to `most`, if given.
 
     >>> whole(1)("1e6")
     1000000

@@ -118,7 +118,7 @@ def sweep(
 
 @contextmanager
 def _stopping(folder: Path, count: int) -> "Iterator[Callable[[int, int, str], None]]":
-    """Within it a bar shows how far a sweep is; Ctrl-C says what is kept."""
+    """Show the progress of a sweep as a bar; on Ctrl-C, report what is kept."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())

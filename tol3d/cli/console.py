@@ -1,6 +1,6 @@
-"""What the command line prints on, and the exit codes it ends with.
+"""Output of the command line, and its exit codes.
 
-Any text goes to any terminal, file or pipe: signs that its encoding lacks are written plainly (σ as "sigma" on a
+Any text goes to any terminal, file or pipe: characters that its encoding lacks are spelt out (σ as "sigma" on a
 Western Windows), and control characters, which may come from a scene or a run of a stranger, are shown, not sent.
 """
 
@@ -66,7 +66,7 @@ def _plain(sign: str) -> str:
 
 
 def write_plainly() -> None:
-    """Let standard output and error write what their encodings lack plainly, whatever they are."""
+    """Let standard output and error spell out what their encodings lack, whatever they are."""
     codecs.register_error(PLAINLY, _plainly)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -93,7 +93,7 @@ def _shown(sign: str) -> str:
 
 
 def seconds() -> float:
-    """How long the command has taken so far [s]."""
+    """Seconds since the command started."""
     return time.perf_counter() - BEGAN
 
 
@@ -111,7 +111,7 @@ err_console: Final = SafeConsole(stderr=True, highlight=False, soft_wrap=True, m
 
 
 def warn(text: str) -> None:
-    """A yellow line for what may spoil a result."""
+    """A yellow warning line."""
     err_console.print(f"warning: {text}", style="yellow")
 
 

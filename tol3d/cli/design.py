@@ -18,7 +18,7 @@ class FamilyName(StrEnum):
 
 
 class GoalName(StrEnum):
-    """What profile shifts are chosen for."""
+    """Goals of a choice of profile shifts."""
 
     SMALLEST = "smallest"
     FORWARD = "forward"

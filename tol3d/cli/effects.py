@@ -1,4 +1,4 @@
-"""The command that tells what each contributor does to each measure."""
+"""The command on the effect of each contributor on each measure."""
 
 from enum import StrEnum
 from typing import Annotated, Any
@@ -18,7 +18,7 @@ from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 
 
 class PositionWord(StrEnum):
-    """What positions are to indices."""
+    """Treatment of positions in sensitivity indices."""
 
     AVERAGED = "averaged"
     AS_INPUT = "as-input"

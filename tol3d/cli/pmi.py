@@ -1,4 +1,4 @@
-"""The command on what a STEP file says of tolerances."""
+"""The command on the tolerances of a STEP file."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""Commands on measured data: what a rig read, what a synthetic one would read, and how well it would identify."""
+"""Commands on measured data: identification, synthetic rigs, and the expected accuracy of a rig."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -22,7 +22,7 @@ MeshOption = Annotated[str | None, typer.Option(metavar="NAME", help="Which mesh
 
 
 class RigEngine(StrEnum):
-    """By what a rig knows where flanks touch."""
+    """Engines by which a rig finds where flanks touch."""
 
     CLOSED_FORM = "closed_form"
     EXACT = "exact"
@@ -220,7 +220,7 @@ def plan_rig(
 
 
 class _Stated(NamedTuple):
-    """What options say of the pair instead of the scene."""
+    """Options that state the pair instead of the scene."""
 
     e1: str | None
     theta1: str | None
@@ -232,7 +232,7 @@ class _Stated(NamedTuple):
 def _unit(
     simulation: "Simulation", mesh: str | None, trial: int | None, engine: RigEngine, options: _Stated
 ) -> "Specimen | Unit":
-    """What is measured: by closed form as options say, or by the exact engine as the scene says."""
+    """The unit measured: by closed form as the options state, or by the exact engine as the scene states."""
     from tol3d.errors import InputError
     from tol3d.records.scene_mesh import SceneMesh
 
@@ -249,7 +249,7 @@ def _unit(
 
 
 def _specimen(simulation: "Simulation", mesh: str | None, trial: int | None, options: _Stated) -> "Specimen":
-    """A trial or the mean build by closed form, with what options say otherwise."""
+    """A trial or the mean build by closed form, with the values of options."""
     from tol3d.records.pair import Specimen
     from tol3d.records.quantity import stated
     from tol3d.records.scene_mesh import SceneMesh

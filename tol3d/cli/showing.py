@@ -293,7 +293,7 @@ def _refuse_mixed(
 
 
 def _which(run: "Run", trial: int | None, *, worst: bool, nominal: bool, mean: bool) -> "int | str":
-    """The one build that was asked for; the worst when nothing was said. Tells which trial that is."""
+    """The one build that was asked for; the worst by default. Tells which trial that is."""
     from tol3d.errors import InputError
     from tol3d.report.heading import worst_words
     from tol3d.runs.worst import worst_trial

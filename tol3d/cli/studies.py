@@ -137,7 +137,7 @@ def _refuse(contradiction: bool, words: str) -> None:
 
 @contextmanager
 def _watched(simulation: "Simulation", folder: Path, draw: "Finisher") -> Iterator["Watch"]:
-    """Within it a bar shows how far a run is; Ctrl-C ends it in order and says how it goes on."""
+    """Show the progress of a run as a bar; Ctrl-C ends it in order and tells how to resume it."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
     from tol3d.simulate import Watch
@@ -177,7 +177,7 @@ def _pictures_text(run: "Run") -> str:
 
 
 def pictured(run: "Run", wanted: str | None) -> str:
-    """Which measures are in the picture of a run of many, and how the others are drawn; "" where all of them are."""
+    """Measures in the picture of a run of many, and the form of the others, in words; "" if all are in it."""
     from tol3d.report.heading import WORST_FIRST, shown_measures
     from tol3d.report.picture import MOST_TOGETHER
 
@@ -189,7 +189,7 @@ def pictured(run: "Run", wanted: str | None) -> str:
 
 
 def _how_to_resume(folder: Path) -> str:
-    """What is kept of an interrupted run, and the command that goes on with it."""
+    """Kept part of an interrupted run, and the command that resumes it."""
     import shlex
 
     from tol3d.runs.occupant import partial_of
@@ -203,7 +203,7 @@ def _how_to_resume(folder: Path) -> str:
 
 @contextmanager
 def _drawing(wanted: str | None) -> "Iterator[Callable[[Path, Mapping[str, Any]], None]]":
-    """What draws the pictures of a run, worst or all, None for none; one that fails costs a warning, not the run."""
+    """Drawer of the pictures of a run, worst or all, None for none; a failure costs a warning, not the run."""
     if wanted is None:
         yield lambda place, summary: None
         return
@@ -221,7 +221,7 @@ def _drawing(wanted: str | None) -> "Iterator[Callable[[Path, Mapping[str, Any]]
 
 
 def long_study(simulation: "Simulation") -> str:
-    """What is said before a study that takes a minute of one core or more; nothing of a shorter one."""
+    """Notice before a study that takes a minute of one core or more; empty for a shorter one."""
     from tol3d.study.blocks import contacts_of
 
     positions = contacts_of(simulation)
@@ -235,7 +235,7 @@ def long_study(simulation: "Simulation") -> str:
 
 @contextmanager
 def _stopped_in_order() -> Iterator[None]:
-    """Within it Ctrl-C stops in order, and after a while in any case; behind it, it is what it was before.
+    """Let Ctrl-C stop in order, and after a while in any case; restored afterwards.
 
     What is on disk is whole at every moment.
     """

@@ -1,4 +1,4 @@
-"""From a scene to an RV reducer, its deviations and what is read of it, or why it cannot be built."""
+"""An RV reducer from a scene, with its deviations and measures, or the reason why it cannot be built."""
 
 import math
 from typing import Any
@@ -184,10 +184,10 @@ def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:
 
 
 def rv_system(scene: Scene) -> RVSystem:
-    """What a scene of an RV reducer means.
+    """System of an RV reducer, from its scene.
 
     Raises:
-        SceneError: kinds that do not act on it, or a reducer that nobody can build, with its numbers.
+        SceneError: kinds that do not act on it, or a reducer that cannot be built, with its numbers.
     """
     own = rv_set(scene)
     acts = {name: acts_of(scene, own, name, spec) for name, spec in scene.tolerances.items()}

@@ -101,9 +101,9 @@ class RVLink(OutputLink):
         return {BEND: np.abs(bent - straight)}
 
     def deviated(self, seen: LinkTrials, turns: Array) -> RVDeviated:
-        """What its parts deviate by where the output has made so many turns (trials,).
+        """Deviations of the reducer's parts at turns of the output (trials,).
 
-        A carrier that lies aside is a ring and a sun that lie aside the other way: all of it moved changes nothing.
+        An offset carrier equals a ring and a sun offset the other way: moving the whole reducer changes nothing.
         """
         found = RVDeviated.nothing(self.own, len(seen))
         for contributor in seen.contributors:
@@ -121,7 +121,7 @@ class RVLink(OutputLink):
 
     @property
     def _against_carrier(self) -> tuple[tuple[Acts, str, float], ...]:
-        """Pin ring, and sun: how each acts that lies aside, and its turns a turn of the output."""
+        """Pin ring, and sun: effect of an offset of each, and its turns per turn of the output."""
         ring = (Acts("pin ring"), self.own.ring, 0.0)
         first = self.own.first
         return (ring,) if first is None else (ring, (Acts("sun offset"), first.sun, float(self.own.ratio)))
@@ -173,7 +173,7 @@ class RVLink(OutputLink):
         return {part: np.concatenate(each) for part, each in found.items()}
 
     def offset_by(self, contributor: str, part: str) -> "RVLink | None":
-        """See StatedLink: of the sun, and of the carrier, which its main bearing would displace likewise."""
+        """See StatedLink: of the sun, and of the carrier, which its main bearing would displace as well."""
         effects: dict[str, Effect] = {self.own.carrier: "carrier offset"}
         if self.own.first is not None:
             effects[self.own.first.sun] = "sun offset"
@@ -211,7 +211,7 @@ def reducers_as_links(scene: Scene) -> Brought:
     """The RV reducers of a scene as links of a train.
 
     Raises:
-        SceneError: what nobody can build, or what such a train cannot have, with its place.
+        SceneError: it cannot be built, or such a train cannot have it; with its place.
     """
     specs = {str(name): spec for name, spec in scene.of(RVReducerSpec).items()}
     sets = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}

@@ -1,4 +1,4 @@
-"""What summary.json holds of RV reducers besides what every run has."""
+"""Keys of summary.json for RV reducers, besides those of every run."""
 
 from collections.abc import Mapping
 from typing import Annotated, Final, Literal

@@ -100,7 +100,7 @@ class RVSystem(RVTrials):
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
-        """See System: by what touches at the positions that are taken; of a harmonic and a curve by mean slopes."""
+        """See System: by the contacts at the positions that are taken; of a harmonic and a curve by mean slopes."""
         own = self.read[measure.name]
         if own.positions.in_a_trial == 1:
             regress_touching(self, own, contributors, columns, rows)
@@ -127,6 +127,6 @@ class RVSystem(RVTrials):
 
 @dataclass(frozen=True)
 class PlayingSystem(RVSystem):
-    """A reducer whose bearings have play: where it rests no other engine knows."""
+    """A reducer whose bearings have play: no other engine knows its rest position."""
 
     methods: ClassVar[Mapping[str, MethodKind]] = {name: kind for name, kind in METHODS.items() if not kind.witness}

@@ -1,4 +1,4 @@
-"""Laws of a deviation: what a scene writes of them and what that means, one file each."""
+"""Laws of a deviation: their words in scenes and their meaning, one file each."""
 
 from tol3d.distributions.base import DeviationLaw, Distribution, DistributionSpec
 from tol3d.distributions.constant import Constant

@@ -1,4 +1,4 @@
-"""What every distribution of a deviation offers, and what every spec of one in a scene checks."""
+"""Interface of every distribution of a deviation, and the checks of every spec of one in a scene."""
 
 import math
 from abc import ABC, abstractmethod
@@ -22,10 +22,10 @@ RADIUS_HALVINGS = 60  # down to the last bits of a double
 LARGEST_DEVIATION = 1e9  # mm, rad or K; keeps squares and differences of what a user writes finite
 
 Stays = Literal["middle", "low", "high"]
-"""Of a law that is scaled: its mean, or one of its limits."""
+"""Fixed point of a law that is scaled: its mean, or one of its limits."""
 
 Place = Callable[[float], float]
-"""From a deviation to another one [mm, rad or K]."""
+"""Map from a deviation to another one [mm, rad or K]."""
 
 
 class DeviationLaw(Protocol):
@@ -85,7 +85,7 @@ class Distribution(ABC):
 
     @property
     def limits(self) -> tuple[float, float] | None:
-        """Where a law has limits of its own (bounds, or stated ones that draws may exceed)."""
+        """Limits of the law itself (bounds, or stated ones that draws may exceed)."""
         return None
 
     @property
@@ -105,7 +105,7 @@ class Distribution(ABC):
 
     @property
     def radius(self) -> float:
-        """The end for worst cases of a length in a direction: its larger limit, or what 99.73 % stay within."""
+        """The end for worst cases of a length in a direction: its larger limit, or the range of 99.73 %."""
         if self.limits:
             return max(abs(limit) for limit in self.limits)
         inside, outside = 0.0, max(abs(float(self.ppf(np.array([p]))[0])) for p in (1e-9, 1 - 1e-9))
@@ -156,7 +156,7 @@ class Distribution(ABC):
         raise InputError(f"expected limits of a law that is {type(self).__name__.lower()}, such as ±10 um")
 
     def scaled_at(self, factor: float, stays: Stays) -> Self:
-        """A law as many times as wide, of which the middle stays or a limit does.
+        """A law of a multiple of the width, about its middle or a limit.
 
         Raises:
             InputError: see `scaled`; a law that has no such limit.
@@ -202,7 +202,7 @@ class DistributionSpec(Strict, ABC):
 
     @property
     def by_default_law(self) -> bool:
-        """True if the default law of the scene decided what kind of law it is."""
+        """True if the default law of the scene decided the kind of law."""
         return self._drawn is not None and not (isinstance(self._drawn, dict) and "law" in self._drawn)
 
     def as_drawn(self, written: Any) -> Self:
@@ -212,7 +212,7 @@ class DistributionSpec(Strict, ABC):
         return law
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy; one that says something else is no longer as it was drawn."""
+        """A copy; one with other values is no longer as it was drawn."""
         copied = super().model_copy(update=update, deep=deep)
         if update:
             copied._drawn = None
@@ -233,17 +233,17 @@ class DistributionSpec(Strict, ABC):
 
     @abstractmethod
     def resolve(self, files: Files) -> Distribution:
-        """What the spec means, in mm, rad or K; `files` holds the content of those that it names.
+        """Distribution in mm, rad or K; `files` holds the content of those that the spec names.
 
         Raises:
-            SceneError: a file that it names makes no sense; the text names file and line.
+            SceneError: a named file is invalid; the message gives file and line.
         """
 
     def stating(self, law: Distribution) -> Self:
-        """As a scene writes another law of the kind, in the same units; to ten digits.
+        """Spec of another law of the kind as a scene writes it, in the same units; to ten digits.
 
         Raises:
-            InputError: a law that no numbers state.
+            InputError: the law cannot be stated by numbers.
         """
         told = self.numbers(law)
         given = {name: quantity.like(told[name]) for name, quantity in self.quantities().items() if name in told}
@@ -252,7 +252,7 @@ class DistributionSpec(Strict, ABC):
         return self.model_copy(update=given)
 
     def numbers(self, law: Distribution) -> Mapping[str, float]:
-        """What the quantities of a spec are of a law [mm, rad or K], by their fields."""
+        """Values of the spec's quantities in a law [mm, rad or K], by field."""
         return {name: getattr(law, name) for name in self.quantities() if hasattr(law, name)}
 
     @model_validator(mode="after")

@@ -36,7 +36,7 @@ class Cell:
 
     @property
     def shown(self) -> str:
-        """It in a message."""
+        """Text of it for a message."""
         if not self.text:
             return "an empty cell"
         return repr(self.text if len(self.text) <= LONGEST_SHOWN else self.text[: LONGEST_SHOWN - 3] + "…")

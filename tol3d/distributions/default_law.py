@@ -25,7 +25,7 @@ class LimitLaw(Strict, ABC):
 
 
 class NormalBetween(LimitLaw):
-    """Normal, with its limits at so many sigmas."""
+    """Normal, with its limits at a number of sigmas."""
 
     kind: Literal["normal"]
     sigmas: float = Field(default=3.0, gt=0.0, description="of which the limits are that far from the middle")

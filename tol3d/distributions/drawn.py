@@ -22,7 +22,7 @@ from tol3d.units import Of, Positive, Quantity, shown
 DEFAULT_LAW: Final = "default_law"
 """The key of a scene that names it."""
 KEYS: Final = ("fit", "general", "limits")
-"""Keys of which one says how limits are written, where no kind of law is stated."""
+"""Keys, one of which states the form of limits, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
 MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
 NUMBER: Final = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
@@ -76,7 +76,7 @@ _LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
 
 @contextmanager
 def default_law(given: Any) -> Iterator[None]:
-    """Within it limits without a law of their own have this one: what a scene says of it, or a LimitLaw."""
+    """Use this law for limits without one of their own: a scene's statement of it, or a LimitLaw."""
     token = _default.set(_read(given))
     try:
         yield
@@ -124,7 +124,7 @@ def drawn_law(value: Any) -> DistributionSpec:
 
 
 def _as_text(value: Any) -> Any:
-    """As YAML writes it; from Python it may hold quantities and a LimitLaw."""
+    """Value as YAML writes it; from Python it may hold quantities and a LimitLaw."""
     if isinstance(value, dict):
         return {key: _as_text(own) for key, own in value.items()}
     if isinstance(value, list | tuple):

@@ -14,9 +14,9 @@ from tol3d.strict import refused
 from tol3d.units import Quantity
 
 SAME: Final = 1e-12
-"""Of a sigma; a location nearer to the middle of limits than that is it."""
+"""Fraction of a sigma; a location nearer than that to the middle of the limits counts as the middle."""
 SIGMAS_DIGITS: Final = 9
-"""Of the number of sigmas at limits, which is one that somebody wrote."""
+"""Significant digits of the number of sigmas at limits, a number that somebody wrote."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Normal(Distribution):
         return min(low, self.location - 3 * self.scale), max(high, self.location + 3 * self.scale)
 
     def mapped(self, place: Place, factor: float) -> Self:
-        """See Distribution; of stated limits the middle and the sigma follow as a scene says them."""
+        """See Distribution; of stated limits the middle and the sigma follow as a scene states them."""
         if self.stated is None:
             return replace(self, location=place(self.location), scale=factor * self.scale)
         low, high = (place(own) for own in self.stated)

@@ -14,7 +14,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.units import Quantity
 
 SAME: Final = 1e-12
-"""Of a scale; lengths nearer to each other than that are one."""
+"""Fraction of a scale; lengths that differ by less are equal."""
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ def word_of(law: type[DistributionSpec]) -> str | None:
 
 @lru_cache
 def _one_of(laws: Laws) -> TypeAdapter[DistributionSpec]:
-    """One of some kinds, discriminated by the word."""
+    """Union of some kinds, discriminated by the word."""
     for law in laws:
         law.model_rebuild()  # each is serialized by itself; older pydantic does not build that when it is needed
     union: Any = reduce(or_, laws)

@@ -12,7 +12,7 @@ SCENE = "scene.yaml"
 
 
 def scene_from(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> tuple[str, Draft]:
-    """A scene from STEP files that `tol3d check` accepts and `tol3d run` runs, and what it was drafted as.
+    """A scene from STEP files that `tol3d check` accepts and `tol3d run` runs, and its draft.
 
     Raises:
         InputError: a file cannot be read, or a seat is of no part or face.

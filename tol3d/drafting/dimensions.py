@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def sized(drawing: "Drawing", dimension: Dimension) -> list[FoundFeature]:
-    """The round features of which a dimension is the size; none where it is of others."""
+    """The round features whose size a dimension is; none for other dimensions."""
     if not dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
         return []
     try:
@@ -29,7 +29,7 @@ def sized(drawing: "Drawing", dimension: Dimension) -> list[FoundFeature]:
 
 
 def take_size(drawing: "Drawing", dimension: Dimension) -> None:
-    """A size with limits of what the scene uses."""
+    """A size with limits of a used feature."""
     if dimension.limits is None or dimension.role != "toleranced" or "angle" in dimension.kind:
         return
     per = 2.0 if "radius" in dimension.kind else 1.0

@@ -26,7 +26,7 @@ LONGEST: Final = 240  # characters of a reason
 
 @dataclass(frozen=True)
 class Seat:
-    """Which face of a part lies on which of another: `cover.A` on `base.D`."""
+    """Seat of a face of a part on one of another: `cover.A` on `base.D`."""
 
     seat: str
     on: str
@@ -34,7 +34,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class Draft:
-    """A drafted scene with what it is of.
+    """A drafted scene and its sources.
 
     Args:
         files: as they were read.
@@ -52,7 +52,7 @@ class Draft:
         return Scene(self.head(), LAW, [*body, *self.entries], [*self.tail()]).written()
 
     def head(self) -> list[str]:
-        """What the scene is."""
+        """Heading of the scene."""
         files = [shown(own.file.content.path.name) for own in self.files]
         name = cleaned(" and ".join(own.rpartition(".")[0] or own for own in files), "/\\:") or "from STEP"
         return [
@@ -62,13 +62,13 @@ class Draft:
         ]
 
     def tail(self) -> Iterator[str]:
-        """The study, and what of the files is lost or left out, so that counts add up."""
+        """The study, and the losses and omissions of the files, so that counts add up."""
         yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
         for own in self.files:
             yield from self.told(own)
 
     def notes(self) -> Iterator[str]:
-        """What a person should know of the scene before reading it: counts, and parts that nothing places."""
+        """Notes to read before the scene: counts, and parts that nothing places."""
         for line in self.tail():
             if line.startswith("# Of the "):
                 yield line.removeprefix("# ")
@@ -78,7 +78,7 @@ class Draft:
                 yield f"{part}: {ALONE}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
 
     def told(self, own: ReadText) -> Iterator[str]:
-        """What became of each tolerance and dimension of a file, in comments."""
+        """Outcome of each tolerance and dimension of a file, in comments."""
         drawings = [each.drawing for each in self.parts if each.drawing and each.file is own.file]
         reasons = {key: why for each in drawings for key, why in each.reasons.items()}
         doubled = {key: why for each in drawings for key, why in each.doubled.items()}
@@ -111,7 +111,7 @@ class Draft:
             yield f"# {len(own.text.remarks)} remarks on what was not read or is incomplete: tol3d pmi lists them."
 
     def dimensions_told(self, own: ReadText, reasons: dict[int, str]) -> Iterator[str]:
-        """What became of each dimension of a file."""
+        """Outcome of each dimension of a file."""
         said = {each.source for each in self.entries if each.source is not None and each.stands}
         left = []
         for dimension in own.text.dimensions:
@@ -140,7 +140,7 @@ class Draft:
 
 
 def unread(own: ReadText, what: str) -> list[str]:
-    """The tolerances or dimensions of a file that cannot be read, each with why, for the list of what is left out."""
+    """The tolerances or dimensions of a file that cannot be read, each with the reason, for the list of omissions."""
     read = {each.id for each in own.text.tolerances} | {each.id for each in own.text.dimensions}
     lost = [each for each in own.text.remarks if each.what == what and each.id not in read]
     return [f"#{each.id}: {comment(each.why, LONGEST)}" for each in lost]
@@ -172,12 +172,12 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
 
 
 def is_inspection(entry: Entry) -> bool:
-    """Whether an entry is the measure of a frame's own limit: those come last, there are many of them."""
+    """True if an entry is the measure of a frame's own limit: those come last, there are many of them."""
     return entry.section == "measures" and "kind: inspected" in entry.wording.lines[0]
 
 
 def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
-    """Zones of all that the scene names, where no file states a tolerance: a list of contributors to begin with."""
+    """Zones of all named features, if no file states a tolerance: a list of contributors to begin with."""
     for part in parts:
         for group in () if part.like else part.features.groups:
             flat = group.kind == "plane"
@@ -240,7 +240,7 @@ def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[Drafte
 
 
 def settled(drafted: Draft, check: Callable[[str], None]) -> str:
-    """The text of a drafted scene that a check accepts: what it refuses is written otherwise, or left out.
+    """The text of a drafted scene that a check accepts: refused entries are written otherwise, or left out.
 
     Args:
         drafted: the scene.
@@ -282,7 +282,7 @@ def blame(problems: Sequence[str], by_line: dict[int, Entry]) -> Iterator[tuple[
 
 
 def entry_of(problem: str, by_line: dict[int, Entry]) -> Entry | None:
-    """The entry on whose line a message says that it is, else the one that it names."""
+    """The entry on whose line a message is, else the one that it names."""
     place = problem.split(": ", 1)[0].rpartition(":")[2]
     if place.isdecimal() and int(place) in by_line:
         return by_line[int(place)]

@@ -1,4 +1,4 @@
-"""The drawing of a part in its file as a scene's tolerances and measures: what is said, and what is not."""
+"""The drawing of a part in its file as a scene's tolerances and measures, and its omissions."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -27,10 +27,10 @@ NOTHING: Final = "left out"
 
 @dataclass
 class Drawing:
-    """What the file's drawing says of one part, as entries of a scene.
+    """Drawing of one part in the file, as entries of a scene.
 
     Args:
-        text: the file.
+        text: of the file.
         meanings: of all its tolerances.
         part: the name of the part in the scene.
         features: of the part.
@@ -42,7 +42,7 @@ class Drawing:
         located: the tolerance or dimension that locates each group of features; grows.
         sizes: the entry of the size of each group; grows.
         frames: the datums of that, as they are written, and how many there are; grows.
-        doubled: what is lost of tolerances of a feature that another one locates; grows.
+        doubled: losses of tolerances of a feature that another one locates; grows.
     """
 
     text: StepText
@@ -61,12 +61,12 @@ class Drawing:
 
     @property
     def product(self) -> int:
-        """That of the part."""
+        """Product of the part."""
         return self.features.part.body.product
 
     @cached_property
     def tolerances(self) -> tuple[tuple[Tolerance, Meaning], ...]:
-        """Those of this part, uppers before their lower segments, locations before orientations."""
+        """Tolerances of this part, uppers before their lower segments, locations before orientations."""
         own = [
             (each, meaning)
             for each, meaning in zip(self.text.tolerances, self.meanings.all, strict=True)
@@ -76,7 +76,7 @@ class Drawing:
 
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
-        """Those of this part."""
+        """Dimensions of this part."""
         return tuple(each for each in self.text.dimensions if self.text.product(each.features[0]) == self.product)
 
     def read(self) -> None:
@@ -118,12 +118,12 @@ class Drawing:
         return self.features.of_faces(tolerance.feature.faces)
 
     def is_slot(self, tolerance: Tolerance, kind: str) -> bool:
-        """Whether a tolerance is of the middle of two walls; a profile is of each wall."""
+        """True if a tolerance applies to the middle of two walls; a profile applies to each wall."""
         shape = shape_of(tolerance.feature, self.meanings.surfaces, self.text.structure)
         return shape.kind == "slot" and kind not in ("profile", "flatness")
 
     def take_families(self) -> None:
-        """Select what the drawing names alike, such as six holes, in one line."""
+        """Select features of one name in the drawing, such as six holes, in one line."""
         signed: dict[tuple[int, ...], tuple[FoundFeature, list[int]]] = {}
         by_name: dict[int, str] = {}
         for tolerance, meaning in self.tolerances:
@@ -170,7 +170,7 @@ class Drawing:
             self.features.add([own], pmi=pmi)
 
     def outward(self, member: FoundFeature) -> Triple | None:
-        """Where a projected zone leads out of a hole, if that is against its axis; else None."""
+        """Direction in which a projected zone leads out of a hole, if that is against the hole's axis; else None."""
         for tolerance, meaning in self.tolerances:
             shown = tolerance.projected
             if shown is None or meaning.how == NOTHING or not {*member.faces} & {*tolerance.feature.faces}:
@@ -259,7 +259,7 @@ class Drawing:
         self.inspect(tolerance, kind, group, inspected, remark, entry)
 
     def turns(self, tolerance: Tolerance, group: Group) -> bool:
-        """Whether a feature may turn about the one datum of its orientation."""
+        """True if a feature may turn about the one datum of its orientation."""
         datum = self.meanings.datum_shape(tolerance.datums[0])
         if datum is None or not datum.surfaces:
             return False
@@ -280,7 +280,7 @@ class Drawing:
     def wordings(
         self, tolerance: Tolerance, kind: str, group: Group, datums: tuple[tuple[str, str], ...], *, has_law: bool
     ) -> Iterator[tuple[str, str]]:
-        """Ways to write a tolerance, the best first, with what is lost."""
+        """Ways to write a tolerance, the best first, with the losses."""
         own = zone(self.meanings, tolerance, kind, group)
         law = f", law: {LAW}" if has_law else ""
         modifier = modifier_of(tolerance) if group.name in self.sizes and kind not in FORMS else ""

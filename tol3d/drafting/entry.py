@@ -1,4 +1,4 @@
-"""Entries of a drafted scene, each with what else it may be, and the text that they make together."""
+"""Entries of a drafted scene, each with its alternatives, and the text that they make together."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ Section = Literal["parts", "tolerances", "moves", "measures"]
 SECTIONS: Final[tuple[Section, ...]] = ("parts", "tolerances", "moves", "measures")
 
 LAW: Final = "\0law"
-"""Where the law of a zone stands in a wording; no text of a file can hold it."""
+"""Placeholder for the law of a zone in a wording; no text of a file can hold it."""
 ALIAS: Final = "*zones"
 
 
@@ -17,9 +17,9 @@ class Wording:
     """One way in which an entry may be written.
 
     Args:
-        lines: YAML below the entry's name; of one line what stands behind the name.
-        comment: where it comes from.
-        lost: what is lost by it; "" where nothing is.
+        lines: YAML below the entry's name; for one line, the text after the name.
+        comment: its source.
+        lost: its loss, in words; "" for none.
     """
 
     lines: tuple[str, ...]
@@ -35,8 +35,8 @@ class Entry:
         section: of the scene.
         name: as YAML reads it, quoted if need be.
         wordings: the best one first.
-        source: the `#id` of the tolerance that it says; None where it says none.
-        label: what it is in words, for the list of what is left out.
+        source: the `#id` of its tolerance; None without one.
+        label: its name in words, for the list of omissions.
         needs: entries without which it is of no use.
         refused: why it is left out; "" while it is not.
     """
@@ -52,12 +52,12 @@ class Entry:
 
     @property
     def stands(self) -> bool:
-        """Whether it is in the scene."""
+        """True if it is in the scene."""
         return not self.refused and all(own.stands for own in self.needs)
 
     @property
     def wording(self) -> Wording:
-        """How it is written now."""
+        """Current wording."""
         return self.wordings[0]
 
     def worsen(self, why: str) -> None:
@@ -88,7 +88,7 @@ class Scene:
         head: lines of comments and keys before the entries.
         law: the law of all zones, which the first of them names.
         entries: in the order in which they are written, section by section.
-        tail: lines after them, such as the study and what is left out.
+        tail: lines after them, such as the study and the omissions.
     """
 
     head: Sequence[str]

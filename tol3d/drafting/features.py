@@ -1,4 +1,4 @@
-"""The features of a drafted part: each is selected once, under one name, whatever names its faces."""
+"""The features of a drafted part: each is selected once, under one name, even if several name its faces."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -27,10 +27,10 @@ class Group:
 
     Args:
         name: in the scene.
-        members: what they are, in the order of their numbers.
-        line: how they are selected, as YAML.
+        members: the features, in the order of their numbers.
+        line: their selection, as YAML.
         slot: both walls, of a slot or tab; else none.
-        comment: what stands behind the line.
+        comment: text after the line.
     """
 
     name: str
@@ -41,14 +41,14 @@ class Group:
 
     @property
     def names(self) -> list[str]:
-        """Of the members."""
+        """Names of the members."""
         if len(self.members) == 1:
             return [self.name]
         return [f"{self.name} {k}" for k in range(1, len(self.members) + 1)]
 
     @property
     def kind(self) -> str:
-        """Of the members as a scene has it."""
+        """Kind of the members, as in a scene."""
         if self.slot:
             return "slot"
         first = self.members[0]
@@ -56,7 +56,7 @@ class Group:
 
     @property
     def size(self) -> float | None:
-        """Nominal diameter or width [mm]; None of what has none."""
+        """Nominal diameter or width [mm]; None for features without one."""
         if self.slot:
             first, second = self.slot
             return abs(float(np.dot(np.subtract(second.at, first.at), first.direction)))
@@ -70,7 +70,7 @@ class Features:
     Args:
         part: the part as it was read.
         names: those that are given.
-        groups: what is selected; grows.
+        groups: selected features; grows.
         owner: the drawing of the part, once there is one.
     """
 
@@ -101,7 +101,7 @@ class Features:
         return found
 
     def planes(self) -> Iterator[FoundFeature]:
-        """Those that are selected already."""
+        """Planes that are selected already."""
         for group in self.groups:
             if group.kind == "plane":
                 yield from group.members
@@ -171,7 +171,7 @@ class Features:
             members: of one kind and size.
             wish: a name for them.
             letter: that of the datum that they are.
-            pmi: names of what the drawing says of them.
+            pmi: names of their tolerances and dimensions in the drawing.
         """
         ordered = tuple(by_place(members))
         if len(ordered) > 1 and (line := self.selector(ordered, letter, pmi)) is None:
@@ -235,7 +235,7 @@ def faces_of(member: FoundFeature) -> str:
 
 
 def described(members: Sequence[FoundFeature]) -> str:
-    """What features are, for a comment."""
+    """Description of features, for a comment."""
     first = members[0]
     if first.kind == "plane" and not first.radius:
         size = f"{first.extent[0]:.6g} × {first.extent[1]:.6g}"

@@ -14,12 +14,12 @@ from tol3d.numerics.arrays import Array
 from tol3d.step.found import FoundFeature
 
 PADS: Final = {3: ((-0.4, -0.4), (0.4, -0.4), (0.0, 0.4)), 2: ((-0.4, 0.0), (0.4, 0.0)), 1: ((0.0, 0.0),)}
-"""Where pads lie, in extents of their face, by how many there are."""
+"""Positions of pads, in extents of their face, by number of pads."""
 LEANING: Final = 0.9  # cosine beyond which two normals are too near for pads of their own
 
 
 def fixture(part: DraftedPart, names: Names) -> list[Entry]:
-    """The fixture as a part, and the move that lays the part on it; where no datums say one, the part is fixed."""
+    """The fixture as a part, and the move that lays the part on it; without datums the part is fixed."""
     frame = datum_system(part)
     name = names.new("fixture", "fixture")
     move = names.new(f"{part.name} in the fixture", "in the fixture")
@@ -87,7 +87,7 @@ def pads(plane: FoundFeature, count: int) -> list[tuple[float, float]]:
 
 
 def seat_and_pins(part: DraftedPart, frame: Sequence[Group], name: str, move: str, held: str) -> list[Entry]:
-    """A seat on a plane, and expanding pins in holes: relations of a mate, each of which takes what is left."""
+    """A seat on a plane, and expanding pins in holes: relations of a mate, each of which takes remaining freedoms."""
     features, relations, holding = [], [], []
     for group in frame:
         holding += [group.name] if group.kind in ("plane", "cylinder") else []

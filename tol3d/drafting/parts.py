@@ -30,12 +30,12 @@ class DraftedPart:
         name: in the scene.
         file: that it is from.
         selection: how the scene names it in its file, as YAML; "" where that has only one.
-        pose: where it stands in the world (4, 4) [mm].
-        by_file: whether the file says so, rather than the scene.
+        pose: in the world (4, 4) [mm].
+        by_file: True if the file states it, False if the scene does.
         features: of its product; parts that are alike share them.
         drawing: of the first part of a product; None of those that are like it.
         like: the first part of its product.
-        guess: why it stands where it does; "" where the file says it.
+        guess: reason for its pose; "" if the file states it.
     """
 
     name: str
@@ -145,7 +145,7 @@ def drafted_part(own: ReadText, use: Use, names: Names, like: DraftedPart | None
 
 
 def posed(use: Use) -> Array:
-    """Where a use stands (4, 4) [mm]."""
+    """Pose of a use (4, 4) [mm]."""
     at, z, x = use.frame
     pose = np.eye(4)
     pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = x, np.cross(z, x), z, at

@@ -1,4 +1,4 @@
-"""Moves of several parts from the faces that touch as they stand, and measures of what lies between them."""
+"""Moves of several parts from the faces that touch as they stand, and measures between them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Faces:
     Args:
         part, other: their parts.
         face, there: of `part` and of `other`.
-        gap: how far they are apart [mm].
+        gap: their distance [mm].
         area: on which they overlap [mm²].
     """
 
@@ -51,12 +51,12 @@ class Coaxial:
 
     @property
     def holes(self) -> bool:
-        """Whether both are holes: a bolt goes through them."""
+        """True if both are holes: a bolt goes through them."""
         return self.own.hollow and self.there.hollow
 
     @property
     def axis(self) -> Array:
-        """In the world (3,)."""
+        """Axis in the world (3,)."""
         return self.other.along(self.there.direction)
 
 
@@ -80,7 +80,7 @@ def facing(part: DraftedPart, other: DraftedPart) -> list[Faces]:
 
 
 def corners(part: DraftedPart, plane: FoundFeature) -> Array:
-    """Of the rectangle around a face, in the world (4, 3) [mm]."""
+    """Corners of the rectangle around a face, in the world (4, 3) [mm]."""
     x, y = part.along(plane.x), part.along(np.cross(plane.direction, plane.x).tolist())
     half = [own / 2 for own in plane.extent]
     return np.array([part.at(plane) + a * half[0] * x + b * half[1] * y for a in (-1, 1) for b in (-1, 1)])
@@ -126,7 +126,7 @@ def coaxial(part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
 
 
 def same_line(first: Coaxial, second: Coaxial) -> bool:
-    """Whether two pairs lie on one axis."""
+    """True if two pairs lie on one axis."""
     off = first.other.at(first.there) - second.other.at(second.there)
     return float(np.linalg.norm(np.cross(off, second.axis))) < TOUCHING and (
         float(np.linalg.norm(np.cross(first.axis, second.axis))) < PARALLEL
@@ -134,7 +134,7 @@ def same_line(first: Coaxial, second: Coaxial) -> bool:
 
 
 def moves(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
-    """The first part fixed, each other one laid on what it touches, or fixed as it stands where it touches nothing."""
+    """The first part fixed, each other one laid on the parts that it touches, or fixed if it touches none."""
     first = parts[0]
     yield Entry("moves", scalar(names.new(f"{first.name} fixed", "fixed")), [fixed(first)])
     placed, waiting = [first], list(parts[1:])
@@ -147,12 +147,12 @@ def moves(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
 
 
 def touches(part: DraftedPart, other: DraftedPart) -> bool:
-    """Whether faces of two parts touch as they stand."""
+    """True if faces of two parts touch in their poses."""
     return any(own.gap < TOUCHING for own in facing(part, other)) or bool(coaxial(part, other))
 
 
 def fixed(part: DraftedPart) -> Wording:
-    """A part that stays where it stands."""
+    """A part fixed in its pose."""
     return Wording((f"{{kind: fix, part: {scalar(part.name)}}}",), "guess")
 
 
@@ -257,7 +257,7 @@ def between(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
 
 
 def gaps(part: DraftedPart, other: DraftedPart, names: Names) -> Iterator[Entry]:
-    """Of the nearest faces of two parts that do not touch, one of each direction first."""
+    """Gaps between the nearest faces of two parts that do not touch, one of each direction first."""
     apart = [own for own in facing(part, other) if own.gap > TOUCHING]
     taken: list[FoundFeature] = []
     count = 0
@@ -275,7 +275,7 @@ def gaps(part: DraftedPart, other: DraftedPart, names: Names) -> Iterator[Entry]
 
 
 def offsets(own: Coaxial, names: Names) -> Iterator[Entry]:
-    """How far the axes of a coaxial pair are off each other, along two directions across."""
+    """Offsets between the axes of a coaxial pair, along two directions across."""
     start, end = feature(own.other, own.there), feature(own.part, own.own)
     for along in across(own.there.direction):
         words = f"{{kind: gap, from: {start}, to: {end}, along: {direction(along)}}}"

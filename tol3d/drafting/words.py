@@ -1,4 +1,4 @@
-"""Words of a drafted scene: what a file says is data, and can neither end a comment nor become YAML of its own."""
+"""Words of a drafted scene: a file's text is data, and can neither end a comment nor become YAML of its own."""
 
 import math
 import re
@@ -21,7 +21,7 @@ MARKS: Final = frozenset("{}[],#&*!>'\"%@`?")
 
 
 def scalar(text: str) -> str:
-    """A text as YAML reads it back, whatever it holds, on one line of printable ASCII or plain words."""
+    """A text as YAML reads it back, on one line of printable ASCII or plain words."""
     if PLAIN.fullmatch(text) and text.lower() not in YAML_WORDS:
         return text
     return '"' + "".join(_escaped(sign) for sign in text) + '"'
@@ -37,7 +37,7 @@ def _escaped(sign: str) -> str:
 
 
 def comment(text: str, longest: int = LONGEST_SHOWN) -> str:
-    """What a file says, as it may stand in a comment: on one line, printable, cut where it is long."""
+    """Text of a file, fit for a comment: on one line, printable, truncated if it is long."""
     words = "".join(sign if sign.isprintable() else "·" for sign in text[: longest + 1])
     return " ".join((words if len(words) <= longest else words[: longest - 1] + "…").split())
 
@@ -74,7 +74,7 @@ def across(normal: Sequence[float] | Array) -> tuple[tuple[float, float, float],
 
 
 def cleaned(wish: str, forbidden: Iterable[str]) -> str:
-    """A text as a name; "" where nothing of it is left."""
+    """A text as a name; "" if nothing of it is left."""
     dropped = {*forbidden, *MARKS}
     normal = unicodedata.normalize("NFC", wish[: 4 * LONGEST])
     text = "".join(sign if sign.isprintable() and sign not in dropped else " " for sign in normal)
@@ -98,9 +98,9 @@ class Names:
         """A name near a wish that no other has, nor will a member of it.
 
         Args:
-            wish: what the file says.
+            wish: the file's text.
             fallback: used where that is no name at all.
-            members: how many there are of it, numbered behind its name.
+            members: their number, counted after its name.
         """
         base = cleaned(wish, self.forbidden) or cleaned(fallback, self.forbidden) or "unnamed"
         count, name = 1, base
@@ -111,7 +111,7 @@ class Names:
         return name
 
     def clashes(self, name: str, members: int) -> bool:
-        """Whether a name or one of its members is taken."""
+        """True if a name or one of its members is taken."""
         return any(own in self.taken for own in self.all_of(name, members))
 
     @staticmethod

@@ -1,1 +1,1 @@
-"""Who runs a study, and how its blocks are handed out and folded."""
+"""Execution of a study: workers, scheduling of its blocks, folding of their statistics."""

@@ -25,7 +25,7 @@ KEPT_WITHIN = 0.25  # s; statistics that take longer to keep are kept as much mo
 
 
 class Statistics(Protocol):
-    """What is folded over blocks."""
+    """Statistics that are folded over blocks."""
 
     def merge(self, other: Self) -> Self:
         """Both as one; folded in the order of the blocks."""
@@ -41,7 +41,7 @@ class Work(Protocol[S_co]):
 
     @property
     def concurrency(self) -> Concurrency:
-        """How its trials are handed out."""
+        """Scheduling of its trials."""
         ...
 
     def columns(self, first: int, count: int) -> Columns:
@@ -58,10 +58,10 @@ class Work(Protocol[S_co]):
 
 
 class BlockStore(Protocol):
-    """Where finished blocks are kept."""
+    """Store of finished blocks."""
 
     def holds(self, index: int) -> bool:
-        """Whether a finished block need not be made again."""
+        """True if a finished block need not be computed again."""
         ...
 
     def read(self, index: int) -> Columns | None:
@@ -82,10 +82,10 @@ class BlockStore(Protocol):
 
 
 class StatisticsStore(Protocol[S]):
-    """Where the statistics of the first blocks are kept."""
+    """Store of the statistics of the first blocks."""
 
     def read(self) -> tuple[int, S] | None:
-        """How many blocks, and their statistics; None where there are none."""
+        """Number of blocks, and their statistics; None if there are none."""
         ...
 
     def write(self, blocks: int, statistics: S) -> None:
@@ -95,12 +95,12 @@ class StatisticsStore(Protocol[S]):
 
 @dataclass(frozen=True)
 class Plan:
-    """How many trials, and how they are cut.
+    """Number of trials, and their division into blocks.
 
     Args:
-        trials: at most so many.
-        block_trials: trials of a block.
-        positions: contacts that a trial takes, for the size of what is handed out.
+        trials: largest number of trials.
+        block_trials: trials per block.
+        positions: contacts per trial, for the size of the pieces that workers get.
     """
 
     trials: int
@@ -113,7 +113,7 @@ class Plan:
         return max(1, TASK_CONTACTS // self.positions)
 
     def block_count(self, trials: int) -> int:
-        """How many blocks hold the first `trials` trials."""
+        """Number of blocks that hold the first `trials` trials."""
         return -(-trials // self.block_trials)
 
     def blocks(self) -> "Iterator[Block]":
@@ -139,13 +139,13 @@ class Block:
 
 @dataclass(frozen=True)
 class StudyOutcome(Generic[S]):
-    """What a study gave.
+    """Result of a study.
 
     Args:
         statistics: of all its trials.
-        trials: how many were run or read.
-        resumed_trials: how many of them an earlier run had made.
-        first_block_s: s until the first block was there.
+        trials: number run or read.
+        resumed_trials: number of them from an earlier run.
+        first_block_s: time to the first block [s].
     """
 
     statistics: S
@@ -176,14 +176,14 @@ def run_blocks(
     """Run all blocks of a study and fold their statistics.
 
     Args:
-        work: what is run.
-        plan: how many trials, and how they are cut.
+        work: task to run.
+        plan: number of trials, and their division into blocks.
         pool: who runs it.
         store: blocks found there are read, not run again; new ones are written before they count. Where `enough`
             ended the run, it may hold blocks after the last one.
         kept: statistics of an interrupted run's first blocks; written every KEEP_EVERY seconds or more, and when
             interrupted.
-        on_progress: called with how many trials were finished since it was called last.
+        on_progress: progress callback, called with the number of trials finished since its last call.
         enough: called after each block, in their order, with the statistics so far; True ends the run.
     """
     started = kept_at = time.monotonic()
@@ -219,7 +219,7 @@ def run_blocks(
 
 @dataclass(frozen=True)
 class _Parts(Generic[S]):
-    """What handing out blocks or pieces needs; the statistics of the first `counted` blocks are known."""
+    """Data for scheduling blocks or pieces; the statistics of the first `counted` blocks are known."""
 
     work: Work[S]
     plan: Plan
@@ -236,7 +236,7 @@ class _Parts(Generic[S]):
         return None if columns is None else _Done(block, self.work.statistics(block.first, columns), block.count)
 
     def done(self, block: Block, statistics: S, resumed: int) -> "_Done[S]":
-        """A block that was made; what is known of the first ones is not counted twice."""
+        """A block that was computed; the first ones are not counted twice."""
         return _Done(block, statistics if block.index >= self.counted else None, resumed)
 
 

@@ -1,7 +1,7 @@
-"""Where calls run: in this process, in threads, in other processes, or on a Dask cluster.
+"""Execution of calls: in this process, in threads, in other processes, or on a Dask cluster.
 
-All take calls and give what is pending; `in_order` keeps a bounded number of them under way. The only place that
-knows joblib and Dask.
+All take calls and return pending results; `in_order` keeps a bounded number of them under way. Only this module
+imports joblib and Dask.
 """
 
 import gc
@@ -31,13 +31,13 @@ TRACKERS = ("joblib.externals.loky.backend.resource_tracker", "multiprocessing.r
 
 @dataclass(frozen=True)
 class Execution:
-    """How a study is executed; its results do not depend on it.
+    """Execution options of a study; its results do not depend on them.
 
     Args:
         workers: threads or processes, as the engine needs.
         scheduler: address of a Dask scheduler whose workers run it instead.
         keep_trials: False keeps statistics only; any trial can still be replayed.
-        resume: there must be an interrupted run to go on with.
+        resume: continue an interrupted run, which must exist.
     """
 
     workers: int = 1
@@ -50,9 +50,9 @@ ONE_WORKER = Execution()
 
 
 class Concurrency(Enum):
-    """How an engine's trials are handed out on one machine.
+    """Scheduling of an engine's trials on one machine.
 
-    THREADS: whole blocks, for an engine that lets other threads run and makes a block in a second.
+    THREADS: whole blocks, for an engine that releases the GIL and computes a block in a second.
     PROCESSES: pieces of blocks, for one that does not.
     """
 
@@ -68,7 +68,7 @@ class Pending(Protocol[T_co]):
         ...
 
     def cancel(self) -> Any:
-        """It is not wanted any more."""
+        """Cancel the call, which is not wanted any more."""
         ...
 
 
@@ -77,12 +77,12 @@ class Pool(Protocol):
 
     @property
     def slots(self) -> int:
-        """How many calls run at once."""
+        """Number of calls that run at once."""
         ...
 
     @property
     def shares_memory(self) -> bool:
-        """Whether what a call does is seen here, and results cost nothing to bring back."""
+        """True if calls share this process's memory, and results cost nothing to bring back."""
         ...
 
     def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
@@ -92,7 +92,7 @@ class Pool(Protocol):
 
 @dataclass(frozen=True)
 class Ready(Pending[T]):
-    """What needed no call."""
+    """Result that needed no call."""
 
     value: T
 
@@ -268,7 +268,7 @@ def _threads_of(client: Any, address: str) -> int:
 
 
 def in_order(pool: Pool, calls: Iterable[tuple[Tag, Pending[T]]]) -> Iterator[tuple[Tag, T]]:
-    """Results in the order of the calls, of which no more are taken than keep all workers busy."""
+    """Results in the order of the calls, taking no more than keep all workers busy."""
     waiting: deque[tuple[Tag, Pending[T]]] = deque()
     try:
         for call in calls:
@@ -285,5 +285,5 @@ def in_order(pool: Pool, calls: Iterable[tuple[Tag, Pending[T]]]) -> Iterator[tu
 
 
 def suggested_workers(contacts: int, concurrency: Concurrency = Concurrency.PROCESSES) -> int:
-    """One for what takes seconds, as starting processes does; every core beyond, and for threads at once."""
+    """One for a study of seconds, the time to start processes; every core for a longer one, and for threads."""
     return 1 if concurrency is Concurrency.PROCESSES and contacts <= SHORT_STUDY else os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""How long a run took and how much memory it had."""
+"""Duration of a run, and the memory that it had."""
 
 import sys
 import time
@@ -37,7 +37,7 @@ class Clock:
         self.findings_ended = time.perf_counter()
 
     def timing(self, outcome: StudyOutcome[Any]) -> Mapping[str, float | None]:
-        """As summary.json shows it.
+        """Timing in the form of summary.json.
 
         Args:
             outcome: of the trials.

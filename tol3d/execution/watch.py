@@ -16,8 +16,8 @@ class Watch:
     """Callbacks.
 
     Args:
-        activity: gets what goes on now, in words.
-        progress: gets how many trials were finished since it was called last.
+        activity: callback for the current activity, in words.
+        progress: callback for the number of trials finished since its last call.
         finisher: adds pictures to the folder before the run is put in its place.
     """
 

@@ -2,7 +2,7 @@
 
 Gear frame: apex at the origin, z the axis towards the heel, x through the middle of tooth 0. A tooth is a cone:
 every length in it is proportional to the distance from the apex, so most of the geometry is in angles.
-Sources: ISO 23509:2016 for words, cones and diameters; what concerns the flank is worked out on the sphere, from the
+Sources: ISO 23509:2016 for words, cones and diameters; the flank is worked out on the sphere, from the
 rolling plane, where others (Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, section 3) take the imaginary
 spur gear of the back cone.
 """

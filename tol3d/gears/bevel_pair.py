@@ -165,18 +165,18 @@ class BevelPair(RollingPair):
 
     @property
     def pinion_section(self) -> float:
-        """Where the middle of the common face lies on the pinion's, from toe (0) to heel (1)."""
+        """Position of the middle of the common face on the pinion's, from toe (0) to heel (1)."""
         return (self.mean_cone_distance - self.pinion.inner_cone_distance) / self.pinion.face_width
 
     @property
     def arm_spread(self) -> float:
-        """From toe to heel of the common face, (R_e - R_i)/R_e."""
+        """Spread from toe to heel of the common face, (R_e - R_i)/R_e."""
         inner, outer = self.face
         return (outer - inner) / outer
 
     @property
     def view_from_world(self) -> Array:
-        """Rotation (3, 3) to what one sees who looks along the pitch line to the apex, the wheel on the right."""
+        """Rotation (3, 3) to the view along the pitch line towards the apex, the wheel on the right."""
         cos, sin = math.cos(self.pinion.pitch_angle), math.sin(self.pinion.pitch_angle)
         return np.array([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
 
@@ -274,7 +274,7 @@ class BevelPair(RollingPair):
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
-        """The path of contact and twice CONTACT_MARGIN: cones that tilt bring edges to touch so far beyond it."""
+        """The path of contact and twice CONTACT_MARGIN: tilted cones bring edges into contact that far beyond it."""
         lowest, highest = self.active_azimuths
         margin = 2 * CONTACT_MARGIN * self.pinion.angular_pitch
         return lowest - margin, highest + margin
@@ -284,7 +284,7 @@ class BevelPair(RollingPair):
         return -driver_teeth - (0 if flank == 1 else 1)
 
     def mating_flank(self, flank: Flank) -> Flank:
-        """Of the same side: at the mesh the driver's right flank faces -y, where the wheel's y points the other way."""
+        """Flank of the same side: the driver's right flank faces -y at the mesh, where the wheel's y is opposite."""
         return flank
 
 

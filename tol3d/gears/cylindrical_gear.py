@@ -1,4 +1,4 @@
-"""What external and internal involute spur gears share: circles, tooth thickness, flanks.
+"""Common base of external and internal involute spur gears: circles, tooth thickness, flanks.
 
 Formulas are those of ISO 21771-1 with the sign of the number of teeth written out: +1 outside, -1 inside. Users and
 properties have positive numbers.
@@ -204,12 +204,12 @@ class CylindricalGear(ToothedGear):
         return centre * math.cos(azimuth), centre * math.sin(azimuth)
 
     def fillet_top(self, flank: Flank) -> tuple[float, float]:
-        """Where the fillet leaves the flank, (x, y) [mm]."""
+        """Point where the fillet leaves the flank, (x, y) [mm]."""
         x, y = self.flank_points(np.array([self.form_roll]), flank)[0]
         return float(x), float(y)
 
     def fillet_bottom(self, flank: Flank) -> tuple[float, float]:
-        """Where the fillet meets the root circle, (x, y) [mm]."""
+        """Point where the fillet meets the root circle, (x, y) [mm]."""
         azimuth = -flank * self._fillet_azimuth(self.fillet_radius)
         return self.root_radius * math.cos(azimuth), self.root_radius * math.sin(azimuth)
 

@@ -1,4 +1,4 @@
-"""What two spur gears on parallel axes share, be one of them internal or not: angles, backlash, path of contact.
+"""Common base of two spur gears on parallel axes, internal or not: angles, backlash, path of contact.
 
 Exact for rigid involute teeth. Sources: ISO 21771-1:2024, 5.3 (pair geometry) and 5.6 (backlash), whose formulas hold
 for internal gears with their teeth, radii and centre distance counted negative.
@@ -112,7 +112,7 @@ class CylindricalPair(RollingPair):
 
     @property
     def radial_backlash(self) -> float:
-        """j_r [mm]: how far the gears may go towards each other until both flanks touch; not j_wt/(2 tan alpha_w).
+        """j_r [mm]: travel of the gears towards each other until both flanks touch; not j_wt/(2 tan alpha_w).
 
         External gears do so as the centre distance shrinks, internal ones as it grows.
         """
@@ -162,7 +162,7 @@ class CylindricalPair(RollingPair):
             )
 
     def _along(self, working: Array, displaced: Displaced) -> Array:
-        """Half of what the teeth leave of the line of action [mm], (rows,), at working pressure angles [rad]."""
+        """Half of the gap of the teeth along the line of action [mm], (rows,), at working pressure angles [rad]."""
         half_angles = sum(
             gear.base_radius * (gear.base_half_angle + displaced.flank_turn[:, k])
             for k, gear in enumerate((self.pinion, self.wheel))

@@ -1,4 +1,4 @@
-"""Which side of a tooth: the sign sigma that every formula of tol3d shares."""
+"""Side of a tooth: the sign sigma that every formula of tol3d shares."""
 
 from typing import Final, Literal
 

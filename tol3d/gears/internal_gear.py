@@ -1,4 +1,4 @@
-"""One internal involute spur gear, the ring: what it can be, root fillet, rim."""
+"""One internal involute spur gear, the ring: allowed sizes, root fillet, rim."""
 
 import math
 from dataclasses import dataclass
@@ -100,7 +100,7 @@ class InternalGear(CylindricalGear):
 
     @property
     def rim_diameter(self) -> float:
-        """Of the outside [mm]."""
+        """Outside diameter of the rim [mm]."""
         return self.root_diameter + 2 * RIM * self.module if self.outer_diameter is None else self.outer_diameter
 
     @property

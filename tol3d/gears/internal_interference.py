@@ -1,4 +1,4 @@
-"""Why an external and an internal gear cannot run together: the condition that fails, its numbers, what would do.
+"""Interference of an external and an internal gear: the condition that fails, its numbers, and the remedy.
 
 Conditions hold for the nominal teeth, with either flank in touch. Together they are exact for the outlines of both
 gears: where none fails these overlap nowhere, at no position. Sources: DIN 3993 (1981) and J. R. Colbourne, The
@@ -22,7 +22,7 @@ Who = Literal["inner", "internal", "both"]
 
 
 def interferes(mesh: InternalMesh) -> bool:
-    """Whether any condition fails."""
+    """True if any condition fails."""
     ring, inner = mesh.ring, mesh.inner
     return bool(
         mesh.clearance_at_ring_root <= 0.0

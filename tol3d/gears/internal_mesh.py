@@ -1,4 +1,4 @@
-"""An external gear in an internal one as their flanks touch: where tips go, and by how much they miss the mate.
+"""An external gear in an internal one as their flanks touch: paths of the tips, and their gap to the mate.
 
 Formulas stand in the plane of the gears, with the axis of the ring at the origin, the other axis at +x and the right
 flank of the inner gear (its low azimuth) on the left flank of a ring's tooth. What holds for the other flanks is the
@@ -99,7 +99,7 @@ class InternalMesh:
         return math.acos(max(-1.0, min(1.0, cosine)))
 
     def inner_tip_gap(self, azimuth: Array) -> tuple[Array, Array]:
-        """By how much the inner gear's tip corner misses the ring's flank or fillet [mm], and its radius in the ring.
+        """Gap between the inner gear's tip corner and the ring's flank or fillet [mm], and its radius in the ring.
 
         Args:
             azimuth: of the corner about the inner gear's axis [rad], (n,).
@@ -112,7 +112,7 @@ class InternalMesh:
         return radius * (np.arctan2(y, x) - mate - tooth_half_angle(self.ring, radius)), radius
 
     def ring_tip_gap(self, azimuth: Array) -> tuple[Array, Array]:
-        """By how much the ring's tip corner misses the inner gear's flank or fillet [mm], and its radius there.
+        """Gap between the ring's tip corner and the inner gear's flank or fillet [mm], and its radius there.
 
         Args:
             azimuth: of the corner about the ring's axis [rad], (n,).
@@ -126,7 +126,7 @@ class InternalMesh:
 
     @property
     def trimming_gap(self) -> float:
-        """By how much tip corners miss each other [mm] where the tip circles cross; negative: they trim each other.
+        """Gap between tip corners [mm] where the tip circles cross; negative: they trim each other.
 
         A corner's gap to the flank rises from 0 on the path of contact to where the flank's normal passes through the
         pitch point again, on the other tangent of the base circles, and falls from there on: it is least at the ends.

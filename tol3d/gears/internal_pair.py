@@ -76,7 +76,7 @@ class InternalPair(CylindricalPair):
 
     @property
     def ring_drives(self) -> bool:
-        """Whether the internal gear is the driver."""
+        """True if the internal gear is the driver."""
         return isinstance(self.pinion, InternalGear)
 
     @property
@@ -107,7 +107,7 @@ class InternalPair(CylindricalPair):
 
     @property
     def remedy(self) -> str:
-        """What zero backlash needs."""
+        """Change needed for zero backlash."""
         nearest = self.zero_backlash_centre_distance
         if math.isnan(nearest):
             return "no centre distance leaves backlash: the teeth are too thick together. Thin the teeth"
@@ -118,24 +118,24 @@ class InternalPair(CylindricalPair):
 
     @property
     def interference(self) -> str:
-        """The condition of interference that fails, its numbers and what would do; or nothing."""
+        """The condition of interference that fails, its numbers and the remedy; or nothing."""
         return interference(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     @property
     def interferes(self) -> bool:
-        """Whether some condition of interference fails: quicker than the words."""
+        """True if some condition of interference fails: quicker than the words."""
         return interferes(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     @property
     def radially_assembled(self) -> bool:
-        """Whether the inner gear can be put in along the line of centres; else only along its axis."""
+        """True if the inner gear can be put in along the line of centres; else only along its axis."""
         return radially_assembled(InternalMesh(self.ring, self.inner, self.centre_distance))
 
     def refuse_interference(self) -> None:
         """Raise unless the gears run without interference, contact keeps off undercut, and the next pair takes over.
 
         Raises:
-            GeometryError: with the condition that fails, its numbers and what to change.
+            GeometryError: with the condition that fails, its numbers and the remedy.
         """
         if self.interference:
             raise GeometryError(self.interference)
@@ -146,7 +146,7 @@ class InternalPair(CylindricalPair):
 
     @property
     def touching_azimuths(self) -> tuple[float, float]:
-        """The path of contact, and what its ends move by as axes stray by CONTACT_MARGIN p_b sin(alpha_w).
+        """The path of contact, and the movement of its ends as axes stray by CONTACT_MARGIN p_b sin(alpha_w).
 
         As an axis moves by d the path ends off by d/sin(alpha_w), as of external gears, and the line of centres and the
         working pressure angle turn by d/(a sin(alpha_w)): much where the teeth differ by few.
@@ -185,7 +185,7 @@ class InternalPair(CylindricalPair):
         )
 
     def mating_flank(self, flank: Flank) -> Flank:
-        """Which flank of the wheel that side of the pinion meets: the other, by azimuth."""
+        """Flank of the wheel that meets that side of the pinion: the other, by azimuth."""
         return opposite(flank)
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:

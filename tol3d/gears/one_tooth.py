@@ -38,7 +38,7 @@ def driver_teeth_at_one_tooth(
 
 
 def one_tooth_acts(pair: GearPair, driver_angle: Array, owner: Owner) -> NDArray[np.bool_]:
-    """Whether both flanks of the one tooth are on the nominal path of contact, (rows,), at driver angles [rad]."""
+    """True where both flanks of the one tooth are on the nominal path of contact, (rows,), at driver angles [rad]."""
     pitch = pair.pinion.angular_pitch
     lowest, highest = pair.active_azimuths
     acts = np.ones(len(driver_angle), dtype=bool)

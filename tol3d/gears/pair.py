@@ -1,4 +1,4 @@
-"""What every gear and every pair of gears offers to builds, moves and engines, whatever their teeth are like."""
+"""Interface of every gear and every pair of gears to builds, moves and engines, whatever the teeth."""
 
 import math
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class Gear(Protocol):
 
     @property
     def section_arm(self) -> float:
-        """That arm [mm] in the section in which the gear is measured: the middle of its face."""
+        """Lever arm [mm] in the section in which the gear is measured: the middle of its face."""
 
     @property
     def thickness_radius(self) -> float:
@@ -85,7 +85,7 @@ CONTACT_MARGIN = 0.15  # pitches beyond the path of contact, whose ends move by 
 
 @dataclass(frozen=True)
 class Displaced:
-    """Where the gears of a pair lie in virtual builds; axis 1 is pinion, wheel.
+    """Positions of the gears of a pair in virtual builds; axis 1 is pinion, wheel.
 
     Args:
         origin: (rows, 2, 3) [mm], origins of both gears' frames in the world of the mesh.
@@ -143,15 +143,15 @@ class GearPair(Protocol):
 
     @property
     def pinion_section(self) -> float:
-        """Where on the pinion's face, from 0 to 1 along its z, the middle of the common face lies."""
+        """Position of the middle of the common face on the pinion's face, from 0 to 1 along its z."""
 
     @property
     def arm_spread(self) -> float:
-        """By how much of itself the arm of a turn about the axis varies over the face: 0 on a cylinder."""
+        """Relative variation of the lever arm of a turn about the axis over the face: 0 on a cylinder."""
 
     @property
     def view_from_world(self) -> Array:
-        """Rotation (3, 3) to what one sees who looks at the heel of the teeth in mesh, the wheel on the right."""
+        """Rotation (3, 3) to the view of the heel of the teeth in mesh, the wheel on the right."""
 
     def tip_clearance(self, origins: Array, scale: tuple[float, float]) -> float:
         """Smaller free distance [mm] between a tip and the mate's root.
@@ -163,7 +163,7 @@ class GearPair(Protocol):
 
     @property
     def remedy(self) -> str:
-        """What to do about teeth that interfere, with the numbers."""
+        """Remedy for teeth that interfere, with the numbers."""
 
     def refuse_interference(self) -> None:
         """Raise a GeometryError unless tips clear roots and contact stays on both flanks."""
@@ -189,7 +189,7 @@ class GearPair(Protocol):
         """The wheel's tooth that each of those pinion flanks meets."""
 
     def mating_flank(self, flank: Flank) -> Flank:
-        """Which flank of the wheel that side of the pinion meets.
+        """Flank of the wheel that meets that side of the pinion.
 
         A gear leaves its mate on its own right flanks by a turn in the positive sense, on its left ones by one back.
         """
@@ -200,7 +200,7 @@ SAME_LENGTH: Final = 1e-9  # relative; two modules written alike are equal in th
 
 @dataclass(frozen=True)
 class RollingPair:
-    """What pairs of any teeth share: one module and pressure angle, numbers of teeth, and which of them may touch."""
+    """Common base of pairs with any teeth: module, pressure angle, numbers of teeth, and teeth that may touch."""
 
     pinion: ToothedGear
     wheel: ToothedGear

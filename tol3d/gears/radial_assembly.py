@@ -1,8 +1,8 @@
-"""Whether a gear goes into an internal one along the line of centres, or only along the axes.
+"""Assembly of a gear into an internal one, along the line of centres or only along the axes.
 
 As it moves outwards from the middle of the ring no point of it may meet a tooth at its own height off the line of
 centres. Source of the condition: J. R. Colbourne, The Geometry of Involute Gears, Springer 1987, who looks at the tips
-of the teeth; here it is the whole outlines, at several phases of the teeth.
+of the teeth; here the whole outlines are checked, at several phases.
 """
 
 import math
@@ -20,14 +20,14 @@ TOUCHING: Final = 1e-3  # modules; outlines that come closer count as free: chor
 
 
 def radially_assembled(mesh: InternalMesh) -> bool:
-    """Whether the inner gear can be put in place along the line of centres, in the middle of its backlash."""
+    """True if the inner gear can be assembled along the line of centres, in the middle of its backlash."""
     if mesh.inner.tip_radius > mesh.ring.tip_radius:
         return False
     return any(_passes(mesh, phase / PHASES / 2) for phase in range(PHASES + 1))
 
 
 def _passes(mesh: InternalMesh, phase: float) -> bool:
-    """At a phase, in pitches, of the inner gear's tooth off the line of centres."""
+    """True if it passes at a phase, in pitches, of the inner gear's tooth off the line of centres."""
     inner = _right_half(mesh.inner, phase, mesh.centre_distance)
     ring = _right_half(mesh.ring, phase + 0.5, 0.0)
     reach = mesh.inner.tip_radius
@@ -50,7 +50,7 @@ def _right_half(gear: CylindricalGear, phase: float, x: float) -> list[Array]:
 
 
 def _ahead(points: Array, teeth: list[Array]) -> float:
-    """How far [mm] points are from the nearest tooth to the right of them, at their own heights; negative: beyond."""
+    """Distance [mm] of points from the nearest tooth to their right, at their own heights; negative: beyond."""
     return min(
         (float((_crossings(points, tooth, np.inf).min(axis=1) - points[:, 0]).min()) for tooth in teeth),
         default=math.inf,
@@ -58,7 +58,7 @@ def _ahead(points: Array, teeth: list[Array]) -> float:
 
 
 def _behind(points: Array, teeth: list[Array]) -> float:
-    """How far [mm] points are from the farthest tooth to the left of them, at their own heights."""
+    """Distance [mm] of points from the farthest tooth to their left, at their own heights."""
     return min(
         (float((points[:, 0] - _crossings(points, tooth, -np.inf).max(axis=1)).min()) for tooth in teeth),
         default=math.inf,
@@ -66,7 +66,7 @@ def _behind(points: Array, teeth: list[Array]) -> float:
 
 
 def _crossings(points: Array, outline: Array, otherwise: float) -> Array:
-    """Where an outline's pieces cross the heights of points, (points, pieces) [mm]."""
+    """Crossings of an outline's pieces with the heights of points, (points, pieces) [mm]."""
     (x0, y0), (x1, y1) = outline[:-1].T, outline[1:].T
     share = (points[:, 1, None] - y0) / np.where(y1 == y0, np.nan, y1 - y0)
     return np.where((share >= 0.0) & (share <= 1.0), x0 + share * (x1 - x0), otherwise)

@@ -1,4 +1,4 @@
-"""The spherical involute: what a line through the apex draws while its plane rolls on a base cone.
+"""The spherical involute: the trace of a line through the apex while its plane rolls on a base cone.
 
 Worked out from the rolling plane. Angles in rad, lengths in mm. Frame: apex at the origin, z the cone's axis.
 

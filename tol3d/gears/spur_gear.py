@@ -1,4 +1,4 @@
-"""One external involute spur gear: what it can be, root fillet, undercut."""
+"""One external involute spur gear: allowed sizes, root fillet, undercut."""
 
 import math
 from dataclasses import dataclass
@@ -135,7 +135,7 @@ class SpurGear(CylindricalGear):
         return fillet_azimuth(radius, self.root_radius, self.base_radius, self.base_half_angle)
 
     def fillet_top(self, flank: Flank) -> tuple[float, float]:
-        """Where the fillet leaves the flank (involute or radial line), (x, y) [mm]."""
+        """Point where the fillet leaves the flank (involute or radial line), (x, y) [mm]."""
         if self.form_roll > 0.0:
             return super().fillet_top(flank)
         radius = math.sqrt((self.root_radius + self.fillet_radius) ** 2 - self.fillet_radius**2)

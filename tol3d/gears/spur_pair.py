@@ -69,7 +69,7 @@ class SpurPair(CylindricalPair):
 
     @property
     def remedy(self) -> str:
-        """What zero backlash needs."""
+        """Change needed for zero backlash."""
         return (
             f"zero backlash needs a centre distance of {self.zero_backlash_centre_distance:.4f} mm for the nominal "
             "teeth. Open the centre distance or thin the teeth"
@@ -79,7 +79,7 @@ class SpurPair(CylindricalPair):
         """Raise unless tips clear roots and the path of contact stays on both involutes.
 
         Raises:
-            GeometryError: with the radii and what to change.
+            GeometryError: with the radii and the remedy.
         """
         for pair, name, mate in ((self, "driver", "driven"), (self.mirrored, "driven", "driver")):
             gear, other = pair.pinion, pair.wheel
@@ -134,7 +134,7 @@ class SpurPair(CylindricalPair):
         )
 
     def mating_flank(self, flank: Flank) -> Flank:
-        """Which flank of the wheel that side of the pinion meets: the same."""
+        """Flank of the wheel that meets that side of the pinion: the same."""
         return flank
 
     def mating_teeth(self, driver_teeth: NDArray[np.int64], flank: Flank) -> NDArray[np.int64]:

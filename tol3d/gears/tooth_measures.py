@@ -111,7 +111,7 @@ class OverPins:
         """Refuse pins that touch no involute, that touch the root, or that do not stand out beyond the tips.
 
         Raises:
-            GeometryError: with what would do.
+            GeometryError: with the remedy.
         """
         centre, sign = gear.base_radius / math.cos(self._angle(gear)), gear.iso_sign
         in_root = sign * (centre - sign * self.diameter / 2 - gear.root_radius) < 0.0
@@ -196,7 +196,7 @@ def _middle(gear: CylindricalGear) -> float:
 
 
 def _convex_half_angle(gear: CylindricalGear) -> float:
-    """Half of what is convex at the base circle [rad]: of a tooth outside, of a space inside."""
+    """Half angle of the convex body at the base circle [rad]: a tooth outside, a space inside."""
     return gear.base_half_angle if gear.iso_sign > 0 else math.pi / gear.teeth - gear.base_half_angle
 
 

@@ -1,4 +1,4 @@
-"""What spur and bevel gears share: sizes that make no gear, reference circle, flanks that deviate."""
+"""Common base of spur and bevel gears: refused sizes, reference circle, flanks that deviate."""
 
 import math
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ class ToothedGear:
     face_width: float
 
     lengths: ClassVar[tuple[str, ...]] = ("module", "face_width")
-    """What grows with the gear, thickness deviations aside."""
+    """Lengths that grow with the gear, apart from thickness deviations."""
 
     @property
     def tooth_thickness_deviation(self) -> float:
@@ -28,7 +28,7 @@ class ToothedGear:
         raise NotImplementedError
 
     def _refuse_sizes(self, angles: Mapping[str, tuple[float, float]]) -> None:
-        """Refuse too few teeth, what has no size, and angles out of their limits [deg]."""
+        """Refuse too few teeth, sizes not above 0, and angles out of their limits [deg]."""
         if self.teeth < 3:
             raise GeometryError(f"teeth: expected at least 3, got {self.teeth}")
         for name in ("module", "face_width"):

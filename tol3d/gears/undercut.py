@@ -1,4 +1,4 @@
-"""Where the rack or crown rack that generates a gear would cut the involute away, below its pitch line.
+"""Undercut: the part of the involute that the generating rack or crown rack cuts away, below its pitch line.
 
 The corner at the end of the rack's straight flank sweeps through the flank that the rack has made; both curves cross
 once between base and tip. The crossing is bisected.
@@ -58,7 +58,7 @@ def crown_rack_undercut_angle(
         pitch_angle: delta [rad].
         eta: of the corner below the crown gear's pitch plane [rad].
         ends: polar angles [rad] of base and tip cone.
-        flank_at: azimuth [rad] of the flank off where it crosses the pitch cone, at a polar angle [rad].
+        flank_at: azimuth [rad] of the flank from its crossing with the pitch cone, at a polar angle [rad].
     """
     sin, cos = math.sin(pitch_angle), math.cos(pitch_angle)
     crown_base = math.pi / 2 - pressure_angle
@@ -76,7 +76,7 @@ def crown_rack_undercut_angle(
 
 
 def _crossing(inside: Callable[[float], bool], ends: tuple[float, float], xtol: float) -> float:
-    """Where the corner comes out of the tooth between two ends."""
+    """Crossing at which the corner leaves the tooth, between two ends."""
     low, high = ends
     while high - low > xtol:
         middle = (low + high) / 2

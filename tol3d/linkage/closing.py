@@ -20,11 +20,11 @@ from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy, copy_matrix, fill
 
 STEPS: Final = 24
-"""Of Newton, most trials take 2."""
+"""Largest number of Newton steps; most trials take 2."""
 MET: Final = 1e-11
-"""Last step, as a share of the loop's length, or rad: what it leaves is its square."""
+"""Last step, as a share of the loop's length, or rad: the remaining error is its square."""
 LEFT: Final = 1e-15
-"""What the next step would be, as the last two shrink: it is not taken."""
+"""Size of the next step, estimated from the last two, below which it is not taken."""
 NEARLY: Final = 1e-8
 """Last step where rounding lets none be shorter, near a singular pose."""
 LONGEST: Final = 0.4
@@ -176,7 +176,7 @@ def newton(model: Any, state: Any, scale: Any, length: float, work: Any, room: A
 
 @nested
 def begin(start: Any, frames: Any, given: Any, free: Any, i: int, share: float, state: Any) -> None:
-    """The coordinates and frames of a trial whose deviations are a share of what they are."""
+    """The coordinates and frames of a trial whose deviations are scaled by a fraction."""
     base, child, nominal_base, nominal_child = frames
     b, c = min(i, base.shape[0] - 1), min(i, child.shape[0] - 1)
     for k in range(start.shape[0]):
@@ -208,7 +208,7 @@ def at_start(start: Any, turns: Any, state: Any, moved: Any) -> None:
 
 @nested
 def far_off(moved: Any, most: float) -> bool:
-    """Whether coordinates have moved by more than that."""
+    """True if coordinates have moved by more than `most`."""
     largest = 0.0
     for k in range(moved.shape[0]):
         largest = max(largest, abs(moved[k]))
@@ -249,15 +249,15 @@ def loops_closed(
             -1 for a placed body.
         shut: joints that shut loops (joints, 5): kind, body before, body after, first coordinate, frame.
         numbers: of each frame (frames, 10), see `motion`.
-        free: of each coordinate its column, -1 where it is given.
+        free: column of each coordinate, -1 if it is given.
         held: motions that stay as they are (motions, free).
         start: nominal coordinates.
         turns: nominal rotations of balls (frames, 3, 3).
         base, child: frames of joints, on the body before, and of the body after seen from its frame in a tree, else on
             that body (n or 1, frames, 3, 4).
         nominal_base, nominal_child: the same nominally (frames, 3, 4).
-        given: coordinates (n or 1, coordinates) of which those count that are not free.
-        scale: of each free coordinate what makes a length of it a share of the loop's (free,).
+        given: coordinates (n or 1, coordinates); only those that are not free count.
+        scale: factor that makes each free coordinate a fraction of the loop's length (free,).
         lengths: the loop's; then the sign of the determinant at the nominal pose, 0 where any will do.
         poses: of the bodies (n, bodies, 3, 4), found.
         coordinates: (n, coordinates), found.

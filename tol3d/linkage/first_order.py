@@ -32,7 +32,7 @@ class Displaced:
     Args:
         structure: the loop.
         plays: by joint, the torsor (6, columns) by which its play displaces the frame before, in that frame.
-        inputs: by name, how far off an input is (columns,) [mm or rad].
+        inputs: by name, deviation of an input (columns,) [mm or rad].
     """
 
     structure: Structure
@@ -40,7 +40,7 @@ class Displaced:
     inputs: Mapping[str, Array]
 
     def torsors(self, world: World) -> Array:
-        """Of the bodies (bodies, 6, columns), in the world."""
+        """Torsors of the bodies (bodies, 6, columns), in the world."""
         own, length = self.structure, self.structure.length
         count = len(own.bodies)
         rows, right = list[Array](), list[Array]()
@@ -57,7 +57,7 @@ class Displaced:
         return np.asarray(np.einsum("ij,bjc->bic", _about(centre), shaped))
 
     def _equations(self, joint: Joint, world: World) -> Sequence[tuple[Array, Array]]:
-        """Rows (rows, bodies, 6) on the torsors of the bodies, and what they amount to (rows, columns)."""
+        """Rows (rows, bodies, 6) on the torsors of the bodies, and their values (rows, columns)."""
         kept = _rolling(joint, world, self.structure) if joint.kind == ROLLING else [(None, _kept(joint, world, self))]
         given = [
             (own, self.inputs[name])
@@ -139,7 +139,7 @@ def _kept(joint: Joint, world: World, displaced: Displaced) -> Array:
 
 
 def _coordinate(joint: Joint, word: str, world: World, structure: Structure) -> Array:
-    """A row (1, 6) of relative displacements that is how far a coordinate of a joint goes."""
+    """A row (1, 6) of relative displacements that gives the travel of a joint's coordinate."""
     z = world.axis(joint.on)
     match word:
         case "slide":
@@ -163,7 +163,7 @@ def _coordinate(joint: Joint, word: str, world: World, structure: Structure) -> 
 
 
 def _tilt(rest: Array, axis: Array) -> tuple[float, float, Array, Array]:
-    """Of an axis against where it is at rest: the angle, its sine, about what it tilts and towards what (3,)."""
+    """Tilt of an axis from rest: the angle, its sine, and the directions (3,) about and towards which it tilts."""
     across = np.cross(rest, axis)
     sine = float(np.linalg.norm(across))
     about = across / sine if sine > NO_TILT else perpendicular(rest)[0]
@@ -171,7 +171,7 @@ def _tilt(rest: Array, axis: Array) -> tuple[float, float, Array, Array]:
 
 
 def _rolling(joint: Joint, world: World, structure: Structure) -> list[tuple[Mapping[str, Array], Array]]:
-    """What keeps a rolling gear: its centre goes with the carrier, and it tilts `ratio` times as far, without spin."""
+    """Constraints of a rolling gear: its centre follows the carrier; it tilts `ratio` times as far, without spin."""
     carrier, frame = joint.carrier, world.frame(joint.on)
     part = carrier.partition(".")[0]
     rest = frame[:3, 2]

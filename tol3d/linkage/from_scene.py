@@ -1,4 +1,4 @@
-"""Loops of a scene: their structure, where they stand in a pose, what they draw."""
+"""Loops of a scene: their structure, positions in a pose, draws."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -66,7 +66,7 @@ def deviation_name(deviation: str, of: str) -> str:
 
 
 def contributors_of(spec: "CloseLoopSpec", name: str, scene: Scene) -> Sequence[PlainContributor]:
-    """What a loop draws: clearances and where joints lie in them, then deviations of inputs."""
+    """Contributors of a loop: clearances and positions of joints in them, then deviations of inputs."""
     return tuple(_drawn(spec, scene))
 
 
@@ -91,7 +91,7 @@ def _drawn(spec: "CloseLoopSpec", scene: Scene) -> Iterator[PlainContributor]:
 
 
 class _Known:
-    """What is known of the loops of a scene: kinematics by where other parts lie, positions by pose."""
+    """Known data of the loops of a scene: kinematics by the places of other parts, positions by pose."""
 
     def __init__(self) -> None:
         self.kinematics: dict[tuple[str, bytes], Kinematics] = {}
@@ -244,7 +244,7 @@ def _read_turns(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tupl
 
 
 def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
-    """Refuse to read what a freedom moves that moves no joint, for nothing says where it is."""
+    """Refuse to read a feature moved by a freedom that moves no joint, as its place is undefined."""
     own = kinematics.structure
     for words, moved in kinematics.idle_freedoms():
         size = max(np.abs(moved[:, :3]).max() * own.length, np.abs(moved[:, 3:]).max())
@@ -276,7 +276,7 @@ def _position(
     known: dict[tuple[str, bytes, str], Position],
     key: tuple[str, bytes],
 ) -> Position:
-    """Where a loop stands in a pose, found from the pose before it on a path, or from how it is drawn."""
+    """Position of a loop in a pose, found from the pose before it on a path, or from the drawn one."""
     if not pose:
         return kinematics.drawn
     if (*key, pose) in known:
@@ -310,7 +310,7 @@ def _position(
 
 
 def _leg(path: PathSpec, k: int) -> tuple[str, str, float]:
-    """The poses between which a position of a path lies, and how far on."""
+    """The poses between which a position of a path lies, and its fraction of the way."""
     legs = len(path.path) - 1
     counts = [len(own) for own in np.array_split(np.arange(path.steps), legs)]
     for leg, count in enumerate(counts):
@@ -362,7 +362,7 @@ def _between(
     share: float,
     start: Position,
 ) -> Position:
-    """On the way between two poses: of the output where both name it, else of the inputs."""
+    """Position between two poses: by the output if both name it, else by the inputs."""
     first, last = (spec.poses[name] for name in names)
     if isinstance(first, TiltPoseSpec) and isinstance(last, TiltPoseSpec):
         tilts = [kinematics.tilt_at(own) for own in ends]
@@ -380,7 +380,7 @@ def _between(
 
 
 def inputs_of(spec: "CloseLoopSpec") -> Mapping[str, LoopInput]:
-    """What the inputs of a loop are."""
+    """Inputs of a loop."""
     return {
         name: LoopInput(
             own.of,

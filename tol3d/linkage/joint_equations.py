@@ -1,4 +1,4 @@
-"""Poses and twists of a loop's bodies along its tree, and what the joints that shut it lack, in kernels."""
+"""Poses and twists of a loop's bodies along its tree, and residuals of the joints that close it, in kernels."""
 
 from typing import Any
 
@@ -56,23 +56,23 @@ def forward(model: Any, state: Any, room: Any) -> None:
 
 @nested
 def turn_row(seen: Any, twist: Any, r: int, c: int) -> Any:
-    """How an entry of a rotation (3, 4) changes with an angular velocity (3,)."""
+    """Derivative of an entry of a rotation (3, 4) at an angular velocity (3,)."""
     s, t = (r + 1) % 3, (r + 2) % 3
     return twist[s] * seen[t, c] - twist[t] * seen[s, c]
 
 
 @nested
 def keeps(kind: int, k: int, numbers: Any, angle: float, seen: Any, twist: Any, length: float) -> Any:
-    """An equation of a joint that shuts a loop: what it lacks, and how that changes with a twist (6,).
+    """An equation of a joint that closes a loop: its residual, and the residual's change with a twist (6,).
 
     Args:
         kind: of the joint.
         k: which of its equations.
         numbers: see `motion`.
-        angle: of a screw, about where it is [rad].
+        angle: approximate one of a screw [rad].
         seen: the one frame in the other (3, 4).
         twist: of it, in the other's frame, at its own origin.
-        length: by which angles are lengths.
+        length: that turns angles into lengths.
     """
     if kind == SWING and k == 3:
         return length * (seen[1, 0] - seen[0, 1]), length * (turn_row(seen, twist, 1, 0) - turn_row(seen, twist, 0, 1))
@@ -100,7 +100,7 @@ def keeps(kind: int, k: int, numbers: Any, angle: float, seen: Any, twist: Any, 
 
 @nested
 def rows_of(kind: int) -> int:
-    """How many equations a joint asks for."""
+    """Number of equations of a joint."""
     if kind == BALL:
         return 3
     if kind in (REVOLUTE, PRISMATIC, SCREW):
@@ -112,7 +112,7 @@ def rows_of(kind: int) -> int:
 
 @nested
 def equations(model: Any, state: Any, room: Any, length: float, matrix: Any, right: Any) -> None:
-    """What the joints that shut loops lack (rows,) and its Jacobian (rows, free), then what is held."""
+    """Residuals of the joints that close loops (rows,), their Jacobian (rows, free), then those of held motions."""
     _, shut, numbers, _, held = model
     q, _, base, child, poses, twists = state
     at, other, seen, vectors, none, twist, own = room

@@ -13,6 +13,6 @@ ROLLING: Final = 7
 ALONG: Final = 8
 """The z of both frames are one direction: of an output that a pose names."""
 FIXED: Final = 9
-"""Both frames are one: likewise."""
+"""Both frames coincide: of such an output too."""
 ON_AXES_KINDS: Final = frozenset([REVOLUTE, PRISMATIC, CYLINDRICAL, SCREW])
-"""Those of two axes on one line."""
+"""Kinds with two axes on one line."""

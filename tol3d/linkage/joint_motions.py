@@ -1,4 +1,4 @@
-"""What the coordinates of joints make of poses and twists, in kernels."""
+"""Poses and twists from the coordinates of joints, in kernels."""
 
 from typing import Any, Final
 
@@ -55,11 +55,11 @@ def rate_of(x: float, y: float, u: float, v: float, to: Any) -> None:
 
 @nested
 def motion(kind: int, numbers: Any, q: Any, q0: int, turn: Any, to: Any) -> None:
-    """What the coordinates of a joint make of its frame: a pose (3, 4).
+    """Motion of a joint's frame at some coordinates: a pose (3, 4).
 
     Args:
         kind: the joint's.
-        numbers: its lead a radian or its ratio, then a rotation between its two axes (10,).
+        numbers: its lead per radian or its ratio, then a rotation between its two axes (10,).
         q: all coordinates.
         q0: the first of its own.
         turn: of a ball, its rotation (3, 3).
@@ -114,7 +114,7 @@ def add_slide(twists: Any, column: int, axis: Any, rate: float) -> None:
 
 @nested
 def moving(kind: int, numbers: Any, q: Any, q0: int, at: Any, free: Any, twists: Any, room: Any) -> None:
-    """Add to a body's twists (6, free) what the coordinates of the joint that carries it make of them.
+    """Add to a body's twists (6, free) those of the coordinates of the joint that carries it.
 
     Args:
         kind, numbers, q, q0: of the joint, see `motion`.
@@ -160,7 +160,7 @@ def rolled(ratio: float, at: Any, carried: Any, to: Any, tilt: Any) -> None:
         ratio: its tilt by that of the carrier.
         at: frame of the fixed gear (3, 4).
         carried: frame of the carrier: its origin is the gear's centre, its z lies along that of the fixed gear at rest.
-        to, tilt: what is found.
+        to, tilt: results.
     """
     n, turned = np.empty(3), np.empty((3, 3))
     for c in range(3):
@@ -184,7 +184,7 @@ def rolling(ratio: float, at: Any, tilt: Any, centre: Any, fixed: Any, carrier: 
         tilt: of the carrier (2,).
         centre: of the gear's frame (3, 4).
         fixed, carrier: twists of the other gear and of the carrier (6, free).
-        twists: what is found.
+        twists: results.
     """
     swung, own, rate, turned = np.empty((3, 3)), np.empty(3), np.empty((2, 3)), np.empty(3)
     rotation_of(tilt[0], tilt[1], 0.0, swung)

@@ -1,4 +1,4 @@
-"""A loop without deviations: whether it closes as it is drawn, what is free in it, and where it stands in a pose."""
+"""A loop without deviations: its closure as drawn, its freedoms, and its position in a pose."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 DEPENDENT: Final = 1e-7
 """Singular value of the equations, lengths as shares of the loop's, under which they ask twice for the same."""
 CLOSED: Final = 1e-9
-"""What a loop may lack as it is drawn, as a share of its length."""
+"""Largest gap of a loop as drawn, as a fraction of its length."""
 STRIDE: Final = 0.1
 """Step of inputs and outputs [rad, or of the loop's length] on the way to a pose."""
 LEAST: Final = 2.0**-20
@@ -32,18 +32,18 @@ LEAST: Final = 2.0**-20
 FLAT: Final = 1e-6
 """The same where a pose is singular, as in trials."""
 ROUNDS: Final = 60
-"""Of closing a loop as it is drawn."""
+"""Largest number of iterations that close a loop as drawn."""
 
 
 @dataclass(frozen=True, eq=False)
 class Position:
-    """Where a loop stands without deviations.
+    """Position of a loop without deviations.
 
     Args:
         coordinates: of its joints, see Structure; all that are given among them.
         turns: rotations of balls (frames, 3, 3).
         held: motions of the free coordinates that move nothing that counts, (motions, free), orthonormal.
-        sign: of the determinant of the equations with what is held.
+        sign: of the determinant of the equations with the held motions.
         base, child: frames of joints (frames, 3, 4).
         singular: singular values of the equations, largest first, lengths as shares of the loop's.
         poses: of its bodies in the world (bodies, 4, 4).
@@ -85,7 +85,7 @@ class Kinematics:
     Args:
         structure: the loop.
         placed: poses of the parts that are placed before, in the world (4, 4).
-        plays: by joint, what its play makes of the frame before.
+        plays: by joint, offset of the frame before by its play.
     """
 
     structure: Structure
@@ -114,7 +114,7 @@ class Kinematics:
     # what it lacks and what is free -----------------------------------------------------------------
 
     def _linear(self, coordinates: Array, turns: Array) -> tuple[Array, Array, Array, Array]:
-        """What the equations lack (rows,), their Jacobian (rows, free), twists (bodies, 6, free), poses of bodies."""
+        """Residuals of the equations (rows,), Jacobian (rows, free), twists (bodies, 6, free), poses of bodies."""
         own, free = self.structure, self.structure.free(inputs=False)
         count = int(free.max(initial=-1)) + 1
         base, child = self._frames
@@ -131,7 +131,7 @@ class Kinematics:
 
     @cached_property
     def drawn(self) -> Position:
-        """Closed as near as can be to how its parts are drawn.
+        """Close the loop as near as possible to the drawn parts.
 
         Raises:
             InputError: it does not close, asks twice for the same or leaves a part free; the text begins with the
@@ -176,7 +176,7 @@ class Kinematics:
         return coordinates, turns
 
     def _least_open(self, coordinates: Array, turns: Array, free: NDArray[np.int64], scale: Array) -> Array:
-        """What the equations lack at the least, near some coordinates (rows,)."""
+        """Smallest residuals of the equations near some coordinates (rows,)."""
 
         def lacks(step: Array) -> Array:
             return self._linear(*self._stepped(coordinates, turns, free, step * scale))[0]
@@ -185,7 +185,7 @@ class Kinematics:
         return found
 
     def _open(self, first: Array, right: Array) -> str:
-        """Which joint stays open, and how far."""
+        """Joint that stays open, and its gap."""
         worst, size, start = "", -1.0, 0
         for own in self.structure.shut:
             rows = slice(start, start + rows_of(own.joint.kind))
@@ -209,7 +209,7 @@ class Kinematics:
             raise InputError(f"moves.{self.structure.name}: {words}, or leave it free; place them in another one")
 
     def _refuse_unfit(self, matrix: Array, twists: Array, poses: Array, elsewhere: Array) -> None:
-        """Refuse equations that ask twice for the same, and freedoms that move what joints hold.
+        """Refuse redundant equations, and freedoms that move features held by joints.
 
         Args:
             matrix: of the equations (rows, free).
@@ -271,7 +271,7 @@ class Kinematics:
         return np.asarray(right[rank:])
 
     def _moves_joints(self, moved: Array, poses: Array) -> bool:
-        """Whether motions of the bodies (bodies, 6) move features by which joints hold them, where play has those."""
+        """True if motions of the bodies (bodies, 6) move features by which joints hold them, as displaced by play."""
         own, tiny = self.structure, 1e-6
         size = max(np.abs(moved[:, :3]).max() * own.length, np.abs(moved[:, 3:]).max(), 1e-300)
         for step in own.steps:
@@ -313,7 +313,7 @@ class Kinematics:
 
     @staticmethod
     def _held(matrix: Array, before: Array | None) -> tuple[Array, Array, float]:
-        """What is held, near what was held before, singular values and the determinant's sign."""
+        """Held motions near those held before, singular values and the determinant's sign."""
         count = matrix.shape[1]
         rows = matrix.shape[0]
         if rows:
@@ -328,7 +328,7 @@ class Kinematics:
         return np.ascontiguousarray(held), sizes, sign
 
     def _solved(self, start: Position, inputs: Mapping[str, float], target: Array | None) -> Position | None:
-        """Closed from a position near by; None where it is not found on the same branch."""
+        """Close the loop from a position near by; None if that fails on the same branch."""
         own = self.structure
         solved = self._run(start, inputs, target)
         if solved is None:
@@ -345,7 +345,7 @@ class Kinematics:
         return Position(coordinates, turns, held, sign, base, child, singular, poses)
 
     def _wound(self, coordinates: Array, poses: Array, base: Array, child: Array) -> Array:
-        """With the turns of screws that shut loops, which may be several: the next ones count from there."""
+        """Coordinates with the turns of screws that close loops, possibly several: the next ones count from there."""
         found = coordinates.copy()
         for own in self.structure.shut:
             if own.joint.kind == SCREW:
@@ -405,7 +405,7 @@ class Kinematics:
         return coordinates[0], turned[0], matrix, whole
 
     def _wide(self, start: Position, free: NDArray[np.int64], scale: Array) -> Array:
-        """What is held where inputs are free too: the same motions, of the other coordinates alone."""
+        """Held motions with the inputs free too: the same motions, of the other coordinates alone."""
         narrow = self.structure.free(inputs=False)
         found = np.zeros((len(start.held), len(scale)))
         for place, column in enumerate(narrow):
@@ -420,10 +420,10 @@ class Kinematics:
         }
 
     def at_inputs(self, inputs: Mapping[str, float], start: Position | None = None) -> Position:
-        """Where it stands at some inputs, on the branch on which it is drawn.
+        """Position at some inputs, on the branch that is drawn.
 
         Raises:
-            UnreachedError: it does not get there.
+            UnreachedError: the loop does not reach it.
         """
         start = start or self.drawn
         before = self.inputs_at(start)
@@ -443,10 +443,10 @@ class Kinematics:
         return FREEDOMS[self.structure.step[joint].joint.kind][k] == "slide"
 
     def at_output(self, along: Sequence[float] | Array, start: Position | None = None) -> Position:
-        """Where its output tilts by a rotation vector (x, y) [rad] in the frame from which it is read.
+        """Position at which its output tilts by a rotation vector (x, y) [rad] in the frame from which it is read.
 
         Raises:
-            UnreachedError: it does not get there.
+            UnreachedError: the loop does not reach it.
         """
         start = start or self.drawn
         before = self.tilt_at(start)
@@ -458,10 +458,10 @@ class Kinematics:
         )
 
     def at_place(self, pose: Array, start: Position | None = None) -> Position:
-        """Where its output has a pose (4, 4) in the frame from which it is read, moved from where it is drawn.
+        """Position at which its output has a pose (4, 4) in the frame from which it is read, on the drawn branch.
 
         Raises:
-            UnreachedError: it does not get there.
+            UnreachedError: the loop does not reach it.
         """
         output, start = self.structure.output, start or self.drawn
         assert output is not None

@@ -28,7 +28,7 @@ class InputDeviation:
 
     Args:
         column: of the deviations.
-        share: by how much of it the input is off, in the pose in which the loop is read.
+        share: fraction of it that the input is off, in the pose in which the loop is read.
     """
 
     column: int
@@ -43,7 +43,7 @@ class LoopInput:
         joint: whose.
         coordinate: which of its freedoms: "slide", else an angle.
         as_placed: its value as parts are placed [mm or rad].
-        range: from where to where it may go [mm or rad]; None where nothing is said.
+        range: ends of its travel [mm or rad]; None if not stated.
     """
 
     joint: str
@@ -53,11 +53,11 @@ class LoopInput:
 
     @property
     def is_slide(self) -> bool:
-        """Whether it is a length."""
+        """True if it is a length."""
         return self.coordinate == "slide"
 
     def told(self, value: float) -> str:
-        """How far it has gone from where parts are placed [mm or rad], as the scene counts."""
+        """Input in words, from its displacement off the placed parts [mm or rad]."""
         whole = self.as_placed + value
         return f"{whole:.6g} mm" if self.is_slide else f"{np.degrees(whole):.6g} deg"
 
@@ -68,9 +68,9 @@ class ClosedLoop(StatedMove):
 
     Args:
         kinematics: of the loop.
-        position: where it stands without deviations.
-        inputs: what each of them is, by name.
-        stations: where it stands in the poses that the scene names.
+        position: without deviations.
+        inputs: by name.
+        stations: its positions in the poses that the scene names.
         plays: of joints, by their names.
         errors: of inputs, by their names.
     """
@@ -164,7 +164,7 @@ class Closing:
     move: ClosedLoop
 
     def placed(self, world: PlacedWorld) -> tuple[PlacedWorld, Codes]:
-        """See Placer; where it is not closed, its bodies lie as they do without deviations."""
+        """See Placer; if it is not closed, its bodies lie as without deviations."""
         own, at = self.move.structure, self.move.position
         plays, fits = dict[str, Pose](), np.ones(1, dtype=bool)
         for name, play in self.move.plays.items():

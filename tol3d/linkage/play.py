@@ -1,4 +1,4 @@
-"""Where in its play a joint lies: draws that are shares of its clearance, and what they make of its frame."""
+"""Position of a joint in its play: draws that are fractions of its clearance, and the offset of its frame."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -47,7 +47,7 @@ class InBall(Distribution):
 
 @dataclass(frozen=True, eq=False)
 class JointPlay:
-    """Of one joint.
+    """Play of one joint.
 
     Args:
         clearance: half of the diameter's nominal clearance [mm].
@@ -70,7 +70,7 @@ class JointPlay:
         return np.asarray(self.clearance + 0.5 * columns[self.clearance_by])
 
     def offset(self, columns: Array) -> tuple[Pose, NDArray[np.bool_]]:
-        """What it makes of the frame before, and whether there is any room (n,) or (1,)."""
+        """Offset of the frame before, and True where there is any room (n,) or (1,)."""
         radius = self.radius(columns)
         fits = radius >= 0.0
         size = np.maximum(radius, 0.0)
@@ -94,11 +94,11 @@ class JointPlay:
 
     @property
     def nominal(self) -> Pose:
-        """What it makes of the frame before without deviations."""
+        """Offset of the frame before without deviations."""
         return IDENTITY if self.toward is None else Pose(IDENTITY.turn, self.clearance * self.toward[:, None])
 
     def torsor(self, columns: Columns) -> Array:
-        """To first order about where it lies nominally, in the frame before (6, columns)."""
+        """First-order torsor about its nominal position, in the frame before (6, columns)."""
         found = columns.zeros(6)
         if self.toward is not None:
             if self.clearance_by >= 0:

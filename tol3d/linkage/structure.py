@@ -67,7 +67,7 @@ class Joint:
         name: the scene's.
         kind: of KINDS.
         on, of: the features, of the part before and of the part after.
-        lead: how far a screw goes a radian [mm].
+        lead: travel of a screw per radian [mm].
         ratio: of rolling, the tilt of the gear by that of its carrier.
         carrier: of rolling, the part on which the gear after sits, or a feature of it.
     """
@@ -92,7 +92,7 @@ class Step:
 
     Args:
         joint: which.
-        on, body: the bodies before and after, ROOT where they are placed.
+        on, body: the bodies before and after, ROOT for placed parts.
         reverse: whether the tree goes against the joint, from its part after to its part before.
         first: of its coordinates.
         frame: of its frames.
@@ -115,12 +115,12 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """What a pose may name instead of inputs.
+    """Output that a pose may name instead of inputs.
 
     Args:
         of: a feature of a body of the loop.
         on: one of a part that is placed.
-        whole: whether its place and its turn are named, else the direction of its z.
+        whole: True if its place and its turn are named, False for the direction of its z.
     """
 
     of: str
@@ -137,10 +137,10 @@ class Structure:
         bodies: its parts, each placed by the tree after those that carry it.
         tree, shut: its joints.
         inputs: by name, the joint and which of its coordinates is given.
-        output: what poses name instead; None for nothing.
+        output: that poses name instead; None for none.
         drawn: poses of all parts as they are drawn, in the world (4, 4).
         frames: of all features, in their parts (4, 4).
-        length: by which angles are lengths [mm].
+        length: that turns angles into lengths [mm].
     """
 
     name: str
@@ -156,32 +156,32 @@ class Structure:
 
     @cached_property
     def steps(self) -> tuple[Step, ...]:
-        """Those of the tree, then the others."""
+        """Steps of the tree, then the others."""
         return self.tree + self.shut
 
     @cached_property
     def step(self) -> Mapping[str, Step]:
-        """By the joint's name."""
+        """Steps by the joint's name."""
         return {own.joint.name: own for own in self.steps}
 
     @cached_property
     def slots(self) -> int:
-        """How many frames there are; the last one is the output's."""
+        """Number of frames; the last one is the output's."""
         return sum(2 if own.joint.kind == ROLLING else 1 for own in self.steps) + 1
 
     @cached_property
     def width(self) -> int:
-        """How many coordinates there are."""
+        """Number of coordinates."""
         return sum(max(len(FREEDOMS[own.joint.kind]), 1) for own in self.steps)
 
     @cached_property
     def rows(self) -> int:
-        """How many equations the joints that shut loops ask for."""
+        """Number of equations of the joints that close loops."""
         return sum(rows_of(own.joint.kind) for own in self.shut)
 
     @cached_property
     def given(self) -> Mapping[str, tuple[int, float]]:
-        """By input, its coordinate and the sense of it."""
+        """Coordinate of each input, and its sense."""
         found = {}
         for name, (joint, k) in self.inputs.items():
             own = self.step[joint]
@@ -204,7 +204,7 @@ class Structure:
         return found
 
     def scale(self, free: Integers) -> Array:
-        """What makes one of a free coordinate a share of the loop's length (free,)."""
+        """Factors that make one of a free coordinate a fraction of the loop's length (free,)."""
         found = np.ones(int(free.max(initial=-1)) + 1)
         for own in self.tree:
             for k, word in enumerate(FREEDOMS[own.joint.kind]):
@@ -246,14 +246,14 @@ class Structure:
         return np.asarray(np.linalg.inv(self.world(joint.on)) @ self.world(joint.of))
 
     def rest(self, joint: Joint) -> Array:
-        """What is left of it where all coordinates are 0 and the joint holds (4, 4)."""
+        """Transform left of a joint that holds, with all coordinates 0 (4, 4)."""
         if joint.name not in self._rests:
             self._rests[joint.name] = self._rest(joint)
         return self._rests[joint.name]
 
     @cached_property
     def _rests(self) -> dict[str, Array]:
-        """By joint, as far as they were asked for."""
+        """Rest transforms by joint, as far as they were asked for."""
         return {}
 
     def _rest(self, joint: Joint) -> Array:

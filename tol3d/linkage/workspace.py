@@ -1,4 +1,4 @@
-"""How far a loop reaches: condition numbers over its output or its inputs, and where it is singular."""
+"""Workspace of a loop: condition numbers over its output or its inputs, and its singular positions."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from tol3d.linkage.loop import ClosedLoop
 Array = NDArray[np.float64]
 
 NEAREST: Final = 0.985
-"""Of the reach: how near to its end a ray is looked at."""
+"""Fraction of the reach up to which a ray is examined."""
 FURTHEST: Final = np.radians(175.0)
 """Tilt beyond which nothing is looked at."""
 
@@ -37,7 +37,7 @@ class Workspace:
 
     @property
     def tilts(self) -> Array:
-        """Of all places (rays, places) [rad]."""
+        """Tilts of all places (rays, places) [rad]."""
         return self.reach[:, None] * self.shares
 
     @property
@@ -55,7 +55,7 @@ def workspace_of(
         move: the loop.
         rays: azimuths, evenly over a turn.
         places: on each ray, from no tilt to near its end.
-        activity: told how many rays are done.
+        activity: progress callback, with the number of rays done.
 
     Raises:
         InputError: it has no output that tilts.
@@ -95,10 +95,10 @@ class InputGrid:
 
 
 def range_of(move: ClosedLoop, name: str) -> tuple[float, float]:
-    """From where to where an input may go, from where parts are placed; as far as its poses do where nothing is said.
+    """Range of an input, counted from the placed parts; that of its poses if none is stated.
 
     Raises:
-        InputError: neither a range nor two poses say it.
+        InputError: neither a range nor two poses state it.
     """
     own = move.inputs[name]
     if own.range is not None:
@@ -116,10 +116,10 @@ def input_grid_of(move: ClosedLoop, count: int, activity: Callable[[int], None] 
     Args:
         move: the loop.
         count: values of each input.
-        activity: told how many values of the first one are done.
+        activity: progress callback, with the number of values of the first one done.
 
     Raises:
-        InputError: it has no inputs, or nothing says how far they go.
+        InputError: it has no inputs, or their ranges are unknown.
     """
     names = tuple(move.inputs)[:2]
     if not names:

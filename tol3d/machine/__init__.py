@@ -2,20 +2,20 @@
 
 The parts are an assembly, placed and measured as any; the gears, planetary sets and reducers are those of any train.
 Between both stand moves: the axis of a shaft is the line through its bores in the trial, planets turn about pins of a
-plate, and a train turns the links of an arm by what it leaves free. Each hands on what it reads as deviations that
+plate, and a train turns the links of an arm by its play. Each hands on its readings as deviations that
 nobody draws, so that either side sees no more than its own kind.
 
-grammar/     the moves, worst errors over poses, and what does not hold together
+grammar/     the moves, worst errors over poses, and consistency checks
 nominal      where shafts lie in their bores, and the centre distances and azimuths that follow
 bores, pins  lines through bores, and pins of plates, trial by trial, by either method of the assembly
-centrals     what bores do to the parts on the axis of a planetary set or a reducer
+centrals     effects of bores on the parts on the axis of a planetary set or a reducer
 chain        links, joints and poses on both methods; open_chains makes them of a scene, with the flanks that are loaded
 drives       which train turns which joint, and where its lost motion is read
 from_scene   all of it, from one scene
 joined       all together: whose columns are whose, how bores and joints follow from deviations
-turned       what trains leave free, each build and position once
+turned       play of trains, each build and position once
 methods        placed, meshed, turned
-counted      what would be counted twice
+counted      deviations that would be counted twice
 closed_form  moments of a backlash, and of a part that trains turn
 system       all of it as one system
 presenting/  gears, housing and arms in one picture

@@ -1,4 +1,4 @@
-"""How far the axes of shafts lie off their nominal places, trial by trial: what both methods of the assembly say.
+"""Offsets of the axes of shafts from their nominal places, trial by trial, by both methods of the assembly.
 
 Each point of an axis has a twin where the point is nominally, on the part that carries the first bore of its train.
 Gaps between the two along the shaft's x, y and z are measures of the assembly, which either method reads as any other.
@@ -22,7 +22,7 @@ COMPONENTS: Final = ("x", "y")
 
 
 def reading_name(shaft: str, point: int, direction: str) -> str:
-    """The measure of the assembly that says how far a point of an axis lies aside; scenes cannot name one so."""
+    """Name of the assembly's measure of the offset of a point of an axis; scenes cannot use such a name."""
     return f".{shaft}.{point}.{direction}"
 
 
@@ -52,7 +52,7 @@ class Bores:
 
     @cached_property
     def lateral_names(self) -> tuple[str, ...]:
-        """Those across the axes, in the order of the columns."""
+        """Names of the displacements across the axes, in the order of the columns."""
         return tuple(
             reading_name(own.shaft, k, direction) for own in self.shafts for k in range(2) for direction in COMPONENTS
         )

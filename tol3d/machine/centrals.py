@@ -1,6 +1,6 @@
-"""What bores do to the parts on the axis of a link: sun, rings, carrier and pin ring lie aside where their bores do.
+"""Effect of bores on the parts on the axis of a link: sun, rings, carrier and pin ring are offset as their bores are.
 
-A part of which no move says in which bores it lies is taken to lie on the axis of the first one that has some.
+A part whose bores no move names is taken to lie on the axis of the first part that has some.
 """
 
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ def with_bores(scene: Scene, model: Model, place: Housed) -> Model:
 
     Args:
         scene: of the gears.
-        model: of them, nobody's bores in it yet.
+        model: of them, still without bores.
         place: their shafts in bores.
     """
     return replace(model, links=tuple(_in_bores(scene, model, place, link) for link in model.links))
@@ -49,7 +49,7 @@ def _in_bores(scene: Scene, model: Model, place: Housed, link: StatedLink) -> St
 
 
 def _moved(shaft: HousedShaft, part: str, driver: Array, level: float) -> Iterator[Moved]:
-    """What both points of a shaft's axis do to a part of a link.
+    """Effect of both points of a shaft's axis on a part of a link.
 
     Args:
         shaft: in its bores.

@@ -35,7 +35,7 @@ class Joint:
         frame: name of a datum frame by which the link lies there instead; "" for none.
         zero: pose of the link in the frame of the axis at input 0, nominally (4, 4).
         angle: the input [rad].
-        column: of the deviations: how far it turns beyond the input.
+        column: of the deviations: its turn beyond the input.
     """
 
     name: str
@@ -80,7 +80,7 @@ class Chain(StatedMove):
         return Turning(self)
 
     def displaced(self, world: TorsorWorld) -> TorsorWorld:
-        """See StatedMove: a turn about an axis where that is nominally; what moves the seat moves the link back."""
+        """See StatedMove: a turn about an axis where that is nominally; a motion of the seat moves the link back."""
         for joint in self.joints:
             at, z = world.origin(joint.axis), world.axis(joint.axis)
             turned = world.columns.zeros(6)

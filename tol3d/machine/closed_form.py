@@ -68,14 +68,14 @@ def closed_form(system: Joined, measure: GearMeasure, *, at_one_position: bool =
 
 
 def with_joints(form: ClosedForm, joints: Sequence[tuple[float, ClosedForm]], order: Sequence[str]) -> ClosedForm:
-    """Moments of what is read of a part, with what trains turn it by.
+    """Moments of a part's measure, with the turns by trains.
 
     Contributors of two trains, or of a train and the part, are added up where they are; their common part of the
     variance is that of coefficients added up, as long as each acts by one coefficient.
 
     Args:
         form: of the part, its joints in the middle of their plays.
-        joints: by how much each lost motion moves what is read, and the moments of that.
+        joints: movement of the measure by each lost motion, and the moments of that.
         order: of the contributors.
     """
     shares: dict[str, Share] = {share.name: share for share in form.shares}
@@ -98,7 +98,7 @@ def with_joints(form: ClosedForm, joints: Sequence[tuple[float, ClosedForm]], or
 
 
 def _together(first: Share, second: Share) -> Share:
-    """Of one contributor that acts twice, by one coefficient each: sigma is that of both added up."""
+    """Combined effect of one contributor that acts twice, by one coefficient each: sigma is that of the sum."""
     sigmas = [np.sign(own.coefficient) * np.sqrt(own.variance) for own in (first, second)]
     return Share(first.name, first.coefficient + second.coefficient, first.mean + second.mean, float(sum(sigmas)) ** 2)
 
@@ -123,7 +123,7 @@ def _moving(system: Joined) -> set[str]:
 
 
 def _linear(system: Joined, measure: GearMeasure, direct: Mapping[str, float]) -> list[Share]:
-    """Shares of what moves the bores, where a backlash is linear in that; `direct` is what it does to the gears too."""
+    """Shares of contributors to the bores, if a backlash is linear in them; `direct` is their effect on the gears."""
     slopes = np.asarray(system.bore_slopes(measure) @ system.displacing)
     slices = component_slices(system.drawn)
     found = []
@@ -148,7 +148,7 @@ def _by_net(
     nothing = np.zeros((1, 4 * len(system.bores.shafts)))
 
     def displacement(name: str, own: Array) -> Array:
-        """Of the bores (points, shafts * 4); worked out once of each array."""
+        """Displacement of the bores (points, shafts * 4); computed once per array."""
         key = name, id(own)
         if key not in displaced:
             displaced[key] = own @ system.displacing[:, slices[name]].T
@@ -165,7 +165,7 @@ def _by_net(
 
 
 def _merged(contributors: Sequence[Contributor | GearContributor], shares: Sequence[Share]) -> list[Share]:
-    """One share a contributor, in their order: what it does to the gears and by the bores added up."""
+    """One share per contributor, in their order: its effect on the gears plus that by the bores."""
     found = []
     for contributor in contributors:
         own = [share for share in shares if share.name == contributor.name]

@@ -1,4 +1,4 @@
-"""What a scene would count twice: deviations of axes that bores give, and tolerances that say them again."""
+"""Deviations that a scene counts twice: those of axes that bores give, and tolerances that state them again."""
 
 from collections.abc import Iterator
 
@@ -49,7 +49,7 @@ def _sizes(scene: Scene, spec: BearingClearanceSpec) -> Iterator[str]:
 
 
 def _is_copy(scene: Scene, bore: str, original: str) -> bool:
-    """Whether a bore is that of a part that is like the toleranced one."""
+    """True if a bore belongs to a part identical to the toleranced one."""
     solids, feature = scene.of(SolidSpec), bore.partition(".")[2]
     others = likes(part_of(bore), solids)[1:] if part_of(bore) in solids else ()
     return any(f"{own}.{feature}" == original for own in others)

@@ -14,7 +14,7 @@ from tol3d.scene import Scene
 from tol3d.system.positions import Positions
 
 HALF: Final = 0.5
-"""Of its play, by which a joint lies off the middle."""
+"""Fraction of its play by which a joint lies off the middle."""
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class JointDrive:
 
     Args:
         joint: its name.
-        turn: name of the assembly's contributor, which nobody draws, that is its turn beyond the input.
-        flank: name of the contributor that says on which side it lies where nothing loads it.
+        turn: name of the assembly's contributor, not drawn, that is its turn beyond the input.
+        flank: name of the contributor that decides its side where nothing loads it.
         readings: by pose, the lost motion of the train's output where its input has the joint stand.
         sides: by pose, 1 or -1 by its load, 0 where nothing loads it.
     """

@@ -1,4 +1,4 @@
-"""From one scene to gears, the assembly that holds them, and the bores between the two."""
+"""Gears of one scene, the assembly that holds them, and the bores between the two."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -46,10 +46,10 @@ KIND = "shaft_in_bores"
 
 
 def machine_system(scene: Scene) -> MachineSystem:
-    """What a scene of gears in a housing means.
+    """System of gears in a housing, from its scene.
 
     Raises:
-        SceneError: what one of its parts does not allow, bores that do not fit the meshes, or what counts twice.
+        SceneError: one of its parts refuses it, bores do not fit the meshes, or a deviation counts twice.
     """
     parts = _parts_of(scene)
     poses = {pose: assembly_system(parts, pose) for pose in pose_names(parts) or ("",)}
@@ -82,7 +82,7 @@ def machine_system(scene: Scene) -> MachineSystem:
 
 
 def _up(scene: Scene) -> tuple[float, float, float]:
-    """Against the gravity of a chain; along y where none is said."""
+    """Against the gravity of a chain; by default along y."""
     for spec in scene.of(OpenChainSpec).values():
         if spec.gravity is not None:
             x, y, z = (-np.array(spec.gravity) / np.linalg.norm(spec.gravity) + 0.0).tolist()
@@ -91,7 +91,7 @@ def _up(scene: Scene) -> tuple[float, float, float]:
 
 
 def _parts_of(scene: Scene) -> Scene:
-    """Its assembly: parts with drawings, the moves that place them, and what is read of them, in every pose."""
+    """Its assembly: parts with drawings, the moves that place them, and their measures, in every pose."""
     parts = _entries_of(scene, ASSEMBLY)
     moves = {
         name: move for name, move in scene.moves.items() if name in parts.moves or isinstance(move, StatedMoveSpec)
@@ -117,7 +117,7 @@ def _worst(scene: Scene, name: str, spec: WorstPositionErrorSpec) -> WorstMeasur
 
 
 def _refuse_turned_bores(scene: Scene, system: MachineSystem) -> None:
-    """Refuse shafts between parts that a joint turns against each other: the shaft would turn what it lies in.
+    """Refuse shafts between parts that a joint turns against each other: the shaft would turn its own bearings.
 
     Raises:
         SceneError: at the move that lays the shaft.
@@ -200,7 +200,7 @@ def _gears_of(scene: Scene) -> Scene:
 
 
 def _by_bores(model: Model, bores: Bores) -> Iterator[Contributor]:
-    """For each point of the axis of a shaft what its displacement across the axis does to the gears; nobody draws it.
+    """Effects on the gears of the displacement across the axis of each point of a shaft's axis; they are not drawn.
 
     Two a shaft, of components x and y each, in the order of the columns of `bores`.
     """

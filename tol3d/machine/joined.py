@@ -29,7 +29,7 @@ from tol3d.system.trials import Trials
 Bools = NDArray[np.bool_]
 
 HIDDEN: Final = "."
-"""With which names of contributors and measures begin that no scene has."""
+"""First character of names of contributors and measures that no scene has."""
 
 NOTHING: Final = 1e-12
 """Displacement [mm] of an axis per mm, rad or K that is rounding."""
@@ -38,14 +38,14 @@ FLAT: Final = 1e-6
 """Displacement per deviation of one that raises it to both sides."""
 
 TURN: Final = 1e-2
-"""rad; a measure that it does not change hangs on no joint that turns by it."""
+"""rad; a measure that it does not change depends on no joint that turns by it."""
 
 STEP: Final = 1e-4
 """mm; over which the analytic method's slopes by displacements of bores are taken, to both sides."""
 
 
 def is_hidden(own: Contributor | Measure) -> bool:
-    """Whether nobody draws a contributor, or reads a measure: it stands between gears and assembly."""
+    """True if a contributor or measure only links gears and assembly: it is neither drawn nor read."""
     return own.name.startswith(HIDDEN)
 
 
@@ -57,10 +57,10 @@ class Joined:
         name: of the scene.
         contributors: of gears and of the assembly, in the scene's order.
         measures: likewise.
-        gears: whose last contributors are the displacements of the bores: two a shaft, x and y each, that nobody draws.
+        gears: whose last contributors are the displacements of the bores: two a shaft, x and y each, not drawn.
         poses: the assembly as the scene has it, by pose with the measures that are read there; the pose is "" where its
             moves have none.
-        bores: that of the first pose with what reads its bores.
+        bores: that of the first pose with the measures of its bores.
         worlds: by the first shaft of each train in bores, where its world lies in that of the parts (4, 4).
         off_shafts: warnings of bores beyond the ends of their shafts.
         drives: joints that trains turn.
@@ -90,22 +90,22 @@ class Joined:
 
     @cached_property
     def assembly(self) -> AssemblySystem:
-        """The assembly's system, with what reads the bores."""
+        """The assembly's system, with the measures of the bores."""
         return replace(self.drawn, assembly=self.bores.assembly)
 
     def joints_of(self, name: str) -> tuple[JointDrive, ...]:
-        """The drives on whose joints a measure of the assembly hangs."""
+        """The drives on whose joints a measure of the assembly depends."""
         return tuple(drive for drive in self.drives if drive.joint in self.reaches_of(name))
 
     def reaches_of(self, name: str) -> Mapping[str, float]:
-        """By joint on which a measure hangs, how far a turn of it moves that, per rad, in a build like others."""
+        """Movement of a measure per turn of each joint that it depends on, per rad, in a build like others."""
         if name not in self._known_reaches:
             self._known_reaches[name] = dict(self._reaches(name)) if self.drives else {}
         return self._known_reaches[name]
 
     @cached_property
     def _known_reaches(self) -> dict[str, Mapping[str, float]]:
-        """By measure, as far as they were asked for."""
+        """Known reaches by measure, as far as they were asked for."""
         return {}
 
     def _reaches(self, name: str) -> Iterator[tuple[str, float]]:
@@ -126,7 +126,7 @@ class Joined:
                 yield drive.joint, moved / TURN
 
     def lever_of(self, name: str, drive: JointDrive) -> float:
-        """How far a measure of the assembly moves per turn of a joint nominally, to first order [mm/rad]."""
+        """Nominal change of a measure of the assembly per turn of a joint, to first order [mm/rad]."""
         own = self.poses[self.pose_of[name]].assembly
         rows = np.zeros((2, own.width))
         rows[1, component_slices(self.drawn)[drive.turn].start] = TURN
@@ -140,17 +140,17 @@ class Joined:
 
     @cached_property
     def gear_places(self) -> NDArray[np.intp]:
-        """Where the columns of the gears' own contributors lie among all."""
+        """Indices of the columns of the gears' own contributors."""
         return self._places(self.drawn_by_gears)
 
     @cached_property
     def assembly_places(self) -> NDArray[np.intp]:
-        """Where the columns of the assembly's contributors lie among all, those that somebody draws."""
+        """Indices of the columns of the assembly's contributors, of those that are drawn."""
         return self._places([own for own in self.drawn.contributors if not is_hidden(own)])
 
     @cached_property
     def _drawn_columns(self) -> NDArray[np.intp]:
-        """Which columns of the assembly somebody draws."""
+        """Columns of the assembly that are drawn."""
         slices = component_slices(self.drawn)
         ranges = [
             np.arange(*slices[own.name].indices(1 << 30)) for own in self.drawn.contributors if not is_hidden(own)
@@ -158,7 +158,7 @@ class Joined:
         return np.concatenate([*ranges, np.zeros(0)]).astype(np.intp)
 
     def of_assembly(self, deviations: Array) -> Array:
-        """Deviations (trials, columns) as the assembly has them; 0 of what nobody draws."""
+        """Deviations (trials, columns) as the assembly has them; 0 for those not drawn."""
         own = np.asarray(deviations[:, self.assembly_places])
         if len(self._drawn_columns) == self.drawn.assembly.width:
             return own
@@ -184,7 +184,7 @@ class Joined:
 
     @cached_property
     def _slopes(self) -> Sequence[Slopes]:
-        """Of the displacements of the bores, in their order."""
+        """Slopes of the displacements of the bores, in their order."""
         return [self.assembly.slopes_of(name) for name in self.bores.lateral_names]
 
     @cached_property
@@ -195,24 +195,24 @@ class Joined:
 
     @cached_property
     def bending(self) -> Bools:
-        """Which displacements depend on which deviations otherwise than by a slope, (shafts * 4, columns)."""
+        """True where a displacement depends on a deviation otherwise than by a slope, (shafts * 4, columns)."""
         found = np.zeros(self.displacing.shape, dtype=bool)
         for row, own in zip(found, self._slopes, strict=True):
             row[list(own.bent)] = True
         return found
 
     def bends(self, measure: GearMeasure) -> bool:
-        """Whether a backlash depends on displacements of bores that are no sum of effects."""
+        """True if a backlash depends on displacements of bores that are no sum of effects."""
         return bool(self.bending[self.reading(measure)].any())
 
     def reading(self, measure: GearMeasure) -> Bools:
-        """Which displacements of the bores a backlash depends on (shafts * 4,)."""
+        """True for displacements of the bores that a backlash depends on (shafts * 4,)."""
         own = {each.name for each in self.gears.acting(measure)}
         return np.array([each.name in own for each in self.displacements for _ in "xy"], dtype=bool)
 
     @cached_property
     def link_shafts(self) -> Mapping[str, frozenset[str]]:
-        """By link, the shafts whose bores move its parts."""
+        """Shafts whose bores move a link's parts, by link."""
         shaft_of = {own.name: self.bores.shafts[k // 2].shaft for k, own in enumerate(self.displacements)}
         links = self.gears.model.links
         return {link.name: frozenset(shaft_of[own.contributor] for own in link.moved) for link in links}

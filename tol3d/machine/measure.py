@@ -1,4 +1,4 @@
-"""What is read of a machine besides what is read of its gears and of its parts."""
+"""Measures of a machine, besides those of its gears and of its parts."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

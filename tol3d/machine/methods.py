@@ -35,7 +35,7 @@ ROWS: Final = 16384
 """Builds that are placed at once where joints lie on several flanks."""
 
 NOT_TURNED: Final = int(FROM_ASSEMBLIES[NO_BUILD])
-"""The status of what a joint carries whose train jams or finds no contact."""
+"""The status of parts on a joint whose train jams or finds no contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +46,8 @@ class MachineMethod:
         system: whose.
         gears: the gears' own method.
         exact: whether parts are placed by finite poses; else by torsors.
-        solids: by pose, what reads clearances of whole parts; none where there are none.
-        chords: by clearance, what chord errors of a witness and of what it checks explain [mm]; else empty.
+        solids: by pose, the reader of clearances of whole parts; empty if there are none.
+        chords: by clearance, the part explained by chord errors of witness and checked method [mm]; else empty.
     """
 
     system: Joined
@@ -78,7 +78,7 @@ class MachineMethod:
         return by_facets * measure.per_internal, by_all_else * measure.per_internal
 
     def _joint_bounds(self, name: str, witness: Any) -> tuple[float, float]:
-        """By what trains are off, as it moves a measure of the assembly, with the clearance's own [mm or rad]."""
+        """Errors of trains, as they move a measure of the assembly, with the clearance's own [mm or rad]."""
         found = np.array([self.chords.get(name, 0.0), 0.0])
         for drive in self.system.joints_of(name):
             reading = drive.readings[self.system.pose_of[name]]
@@ -117,7 +117,7 @@ class MachineMethod:
         return _joined(gears, found) if of_gears else found
 
     def gear_trials(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
-        """Trials as the gears see them, and by shaft what became of its bores (trials,), codes of this system."""
+        """Trials as the gears see them, and by shaft the status of its bores (trials,), codes of this system."""
         values, codes, _ = self._read(trials, self.system.bores.names)
         return self._seen(trials, values, codes)
 
@@ -132,14 +132,14 @@ class MachineMethod:
     # joints -----------------------------------------------------------------------------------------
 
     def _turning(self, names: Iterable[str], worst: Sequence[WorstMeasure]) -> list[tuple[JointDrive, str]]:
-        """The drives, each with a pose, that some measures hang on."""
+        """The drives, each with a pose, on which some measures depend."""
         system = self.system
         wanted = [(drive, system.pose_of[name]) for name in names for drive in system.joints_of(name)]
         wanted += [(drive, pose) for own in worst for pose, name in own.sizes for drive in system.joints_of(name)]
         return list({(drive.joint, pose): (drive, pose) for drive, pose in wanted}.values())
 
     def _turned_by(self, seen: Trials, readings: Sequence[GearMeasure], failed: Mapping[str, Codes]) -> Turned:
-        """What trains leave free; nothing is known of one whose axes are not where they should be."""
+        """Free motion of trains; unknown for one whose axes are misplaced."""
         found = self.turning.turned(seen, readings)
         lost = {
             own.name: found.failed[own.name] | np.any([failed[shaft] != 0 for shaft in self._shafts(own)], axis=0)
@@ -150,7 +150,7 @@ class MachineMethod:
 
     @cached_property
     def turning(self) -> Turning:
-        """What trains turn joints by."""
+        """Turns of joints by the trains."""
         return Turning(self.system, self.gears)
 
     def _with_poses(self, answers: Answers, trials: Trials, names: Sequence[str], turned: Turned) -> Answers:
@@ -236,7 +236,7 @@ class MachineMethod:
     def _placed(
         self, deviations: Array, names: Sequence[str], pose: str
     ) -> tuple[Mapping[str, Array], Mapping[str, Codes], Mapping[str, NDArray[np.generic]]]:
-        """Measures of the assembly, what became of them in its own codes, empty where all are built, and details."""
+        """Measures of the assembly, their statuses in its own codes, empty if all are built, and details."""
         first = next(iter(self.system.poses))
         its_bores = not pose or pose == first
         assembly = self.system.bores.assembly if its_bores else self.system.poses[pose].assembly
@@ -262,7 +262,7 @@ class MachineMethod:
         return {name: FROM_ASSEMBLIES[codes[name]] for name in names} if codes else {}
 
     def _without_axes(self, answers: Answers, measures: Sequence[GearMeasure], failed: Mapping[str, Codes]) -> Answers:
-        """Answers of gears; one whose bores are not where they should be has none."""
+        """Answers of gears; none for a gear with misplaced bores."""
         if not any(codes.any() for codes in failed.values()):
             return answers
         values, status = dict(answers.values), dict(answers.status)
@@ -283,7 +283,7 @@ class MachineMethod:
 
 
 def batched(items: Iterator[Mapping[str, float] | None], size: int) -> Iterator[list[Mapping[str, float] | None]]:
-    """Items, so many at a time."""
+    """Items, in groups."""
     while batch := list(islice(items, size)):
         yield batch
 

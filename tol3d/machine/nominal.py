@@ -1,4 +1,4 @@
-"""Where shafts lie in their bores nominally, and the centre distances and azimuths that follow."""
+"""Nominal positions of shafts in their bores, and the centre distances and azimuths that follow."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -20,11 +20,11 @@ from tol3d.scene.place import KeyPath
 from tol3d.units import Quantity
 
 SAME_PLACE: Final = 1e-6
-"""mm; what a scene says twice agrees to within this."""
+"""mm; values that a scene states twice agree to within this."""
 SAME_DIRECTION: Final = 1e-9
 """Sine of the angle between axes that are parallel."""
 AZIMUTH_AS_WRITTEN: Final = 1e-6
-"""rad; of an azimuth that a scene says though it follows."""
+"""rad; the same for a redundant azimuth."""
 SHORTEST: Final = 1e-3
 """mm; bores that are nearer to each other hold no shaft."""
 
@@ -45,7 +45,7 @@ class Bore:
 
     @property
     def words(self) -> str:
-        """Which point it is."""
+        """Name of the point."""
         return self.feature if self.end is None else f"{self.feature} {('start', 'end')[self.end]}"
 
 
@@ -59,7 +59,7 @@ class HousedShaft:
         bores: two points of its axis.
         frame: the frame of the shaft at rest, in the world of the parts (4, 4).
         host: the part that carries the first bore of its train: shafts lie off their places as it sees them.
-        lies: what it is to the parts of its bores, in words.
+        lies: its relation to the parts of its bores, in words.
     """
 
     move: str
@@ -70,12 +70,12 @@ class HousedShaft:
     lies: str = "shaft in bores of"
 
     def along(self, bore: Bore) -> float:
-        """Where a point of it lies along the shaft's z [mm]."""
+        """Position of a point of the bore along the shaft's z [mm]."""
         return float((bore.place - self.frame[:3, 3]) @ self.frame[:3, 2])
 
 
 def lines_of(scene: Scene, assembly: Assembly) -> Mapping[str, tuple[str, tuple[Bore, Bore]]]:
-    """By shaft, the move that lays it and the points of its axis.
+    """Move that lays each shaft and the points of its axis, by shaft.
 
     Raises:
         SceneError: bores that hold no straight shaft.
@@ -105,7 +105,7 @@ def _line(scene: Scene, name: str, move: ShaftInBoresSpec, assembly: Assembly) -
 
 @dataclass(frozen=True, eq=False)
 class _Axes:
-    """Where a train puts the axes of its shafts, and of what no shaft turns with: a held ring, a carrier of planets.
+    """Axes of a train's shafts, and those of parts that turn with no shaft: a held ring, a carrier of planets.
 
     Args:
         layout: of the shafts.
@@ -128,7 +128,7 @@ class _Axes:
         return np.asarray(world @ along) if height else world
 
     def order(self, name: str) -> tuple[bool, int]:
-        """By which the first of a train is told: shafts in the order in which they turn, then the others."""
+        """Sort key that finds the first shaft of a train: shafts in the order in which they turn, then the others."""
         return name in self.others, len(self.layout.upstream(name))
 
 
@@ -164,7 +164,7 @@ def housed(scene: Scene, gears: Scene, assembly: Assembly) -> Housed:
     Args:
         scene: all of it.
         gears: its entries that are of gears.
-        assembly: its parts, where they are placed nominally.
+        assembly: its parts, in their nominal poses.
 
     Raises:
         SceneError: bores that do not fit the meshes on their shafts.
@@ -251,7 +251,7 @@ def _with_move(scene: Scene, name: str, move: Any) -> Scene:
 def _worlds(
     scene: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bore]]], axes: _Axes
 ) -> Iterator[tuple[str, Array]]:
-    """By first shaft of a train, where its world lies: as the first of its shafts that lies in bores."""
+    """Pose of each train's world, by its first shaft: from the first of its shafts that lies in bores."""
     found: set[str] = set()
     for shaft in sorted(lines, key=axes.order):
         root = axes.root(shaft)
@@ -293,7 +293,7 @@ def _with_azimuth(gears: Scene, mesh: Mesh, bores: tuple[Bore, Bore], world: Arr
 
 
 def _refuse_misfit(scene: Scene, own: HousedShaft) -> None:
-    """Where other links than meshes between housed shafts place a shaft, or it is said to lie elsewhere along z."""
+    """Refuse a shaft that is placed by links other than meshes between housed shafts, or stated elsewhere along z."""
     for bore in own.bores:
         x, y, _ = own.frame[:3, :3].T @ (bore.place - own.frame[:3, 3])
         if math.hypot(x, y) > SAME_PLACE:

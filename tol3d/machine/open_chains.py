@@ -20,7 +20,7 @@ SAME_LINE: Final = 1e-6
 """mm, and sine of an angle; both axes of a joint are one to within this where parts are placed."""
 
 NO_TORQUE: Final = 1e-6
-"""Of mass times distance, summed up; less does not load a joint."""
+"""Limit of mass times distance, summed up; less does not load a joint."""
 
 
 def joints_of(
@@ -81,7 +81,7 @@ def _refuse_apart(scene: Scene, name: str, spec: "OpenChainSpec", drawing: Drawi
 
 
 def loaded_sides(scene: Scene, spec: "OpenChainSpec", pose: str) -> Mapping[str, int]:
-    """By joint, the end of its play at which gravity lays it in a pose: 1, -1, or 0 where nothing loads it.
+    """End of each joint's play at which gravity lays it in a pose: 1, -1, or 0 if nothing loads it.
 
     A link's torque about an axis is positive where it turns the link in the sense of positive inputs.
     """

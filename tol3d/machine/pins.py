@@ -1,4 +1,4 @@
-"""The pins of carriers that are drawn as features of parts: nominal places, and what their displacements do to links.
+"""The pins of carriers that are drawn as features of parts: nominal places, effects of displacements on links.
 
 Of each pin, and of the axis about which the part turns, both ends are read as those of a shaft in bores are, seen by
 their own part.
@@ -41,7 +41,7 @@ class Pins:
         return (self.axis, *self.pins)
 
     def moved(self) -> Iterator[Moved]:
-        """What displacements of the axis and of the pins do to the places of the pins."""
+        """Effects of displacements of the axis and of the pins on the places of the pins."""
         for k, pin in enumerate(self.pins):
             middle = (pin.bores[0].place + pin.bores[1].place) / 2
             for own, sign in ((pin, 1.0), (self.axis, -1.0)):

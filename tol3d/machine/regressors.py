@@ -1,4 +1,4 @@
-"""What a backlash sees of contributors that move bores: each of their components, over its sigma."""
+"""Regressors of a backlash by contributors that move bores: each of their components, over its sigma."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -45,13 +45,13 @@ def with_displacements(system: Joined, measure: Measure, columns: Columns) -> Co
 def parts_by_links(
     system: Joined, measure: Measure, contributors: Sequence[Contributor], columns: Columns
 ) -> Mapping[str, Array]:
-    """What contributors that displace bores of a link's parts do to a measure (trials,), by name, in its unit.
+    """Effects on a measure of contributors that displace bores of a link's parts (trials,), by name, in its unit.
 
-    By the contacts that the link meets in each trial; with what they do to meshes on the way, by its slopes at the
-    means.
+    By the contacts that the link meets in each trial; effects on meshes of the load path, by its slopes at the
+    means, are included.
 
     Args:
-        system: whose.
+        system: the machine.
         measure: of its gears.
         contributors: of the assembly.
         columns: of the trials, those of the displacements too.

@@ -1,4 +1,4 @@
-"""What may become of gears in a housing: what may become of gears, or of an assembly."""
+"""Statuses of gears in a housing: those of gears, or of an assembly."""
 
 from typing import Final
 
@@ -28,7 +28,7 @@ WITH_CLEARANCES: Final = _with_those_of(OF_CLEARANCES)
 """The same, and parts that overlap: of gearboxes with clearances of whole parts."""
 
 WITH_LOOPS: Final = _with_those_of(OF_LOOPS)
-"""Further what may become of closed loops."""
+"""Further statuses of closed loops."""
 
 FROM_ASSEMBLIES: Final[NDArray[np.int8]] = np.array(
     [WITH_LOOPS.texts.index(text) for text in OF_LOOPS.texts], dtype=np.int8

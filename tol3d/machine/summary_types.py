@@ -1,4 +1,4 @@
-"""What summary.json holds of machines: worst errors over poses."""
+"""Keys of summary.json for machines: worst errors over poses."""
 
 from typing import Annotated, Final, Literal
 

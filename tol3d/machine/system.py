@@ -47,7 +47,7 @@ class MachineSystem(Joined):
 
     @property
     def _is_clearing(self) -> bool:
-        """Whether clearances of whole parts are asked."""
+        """True if clearances of whole parts are asked."""
         return any(isinstance(system, ClearanceSystem) for system in self.poses.values())
 
     @property
@@ -79,7 +79,7 @@ class MachineSystem(Joined):
         yield from self.gears.problems()
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System: of gears also by which laws the bores lie in their zones."""
+        """See System: for gears, also the laws of the bores in their zones."""
         if isinstance(measure, WorstMeasure):
             return {
                 "kind": measure.kind,
@@ -125,7 +125,7 @@ class MachineSystem(Joined):
         return frozenset(own.name for own in self.drawn_by_gears)
 
     def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
-        """Trials as the gears see them, on the axes that placed bores give; and what became of these (trials,)."""
+        """Trials as the gears see them, on the axes that placed bores give; and their statuses (trials,)."""
         return MachineMethod(self, self.gears.method(ANALYTIC_METHOD, {}), exact=True).gear_trials(trials)
 
     def in_pose(self, trials: Trials, pose: str) -> Array:
@@ -146,7 +146,7 @@ class MachineSystem(Joined):
         return own, {pose: system.materials(method) for pose, system in self.poses.items()}
 
     def method(self, name: str, materials: Any) -> Method:
-        """See System: each system's own, gears by what the assembly's says of the bores."""
+        """See System: each system's own, that of gears by the assembly's results for the bores."""
         exact = name != ANALYTIC_METHOD
         if not self._is_clearing or not exact:
             return MachineMethod(self, self.gears.method(name, materials), exact)
@@ -175,11 +175,11 @@ class MachineSystem(Joined):
         return (self.gears.cost(gears) if gears else 0) + placed + len(measures) - len(own)
 
     def _readings(self, measure: Measure) -> Mapping[str, GearMeasure]:
-        """The lost motions of trains that a measure of the assembly hangs on, by name."""
+        """The lost motions of trains on which a measure of the assembly depends, by name."""
         return {drive.readings[pose].name: drive.readings[pose] for drive, pose in self._turning(measure)}
 
     def _turning(self, measure: Measure) -> Sequence[tuple[JointDrive, str]]:
-        """The drives that a measure hangs on, each in a pose in which it is read."""
+        """The drives on which a measure depends, each in a pose in which it is read."""
         if isinstance(measure, GearMeasure):
             return ()
         names = [name for _, name in measure.sizes] if isinstance(measure, WorstMeasure) else [measure.name]
@@ -204,7 +204,7 @@ class MachineSystem(Joined):
     # what acts on a measure -------------------------------------------------------------------------
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """See System: of a backlash also what moves the bores of its shafts; of a part what turns its joints too."""
+        """See System: for a backlash also what moves its shafts' bores; for a part also what turns its joints."""
         if isinstance(measure, WorstMeasure):
             names = {own.name for size in self._sizes(measure) for own in self.acting(size)}
         elif not isinstance(measure, GearMeasure):
@@ -271,7 +271,7 @@ class MachineSystem(Joined):
     def _regress_part(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
-        """What trains do to a part is regressed as it is for the lost motion by which they do."""
+        """Regress the effect of trains on a part as is done for the lost motion that causes it."""
         known = {own.name: own for own in self.drawn.contributors if not is_hidden(own)}
         behind = {name: by for name, by in self._behind_joints(measure).items() if by is not None}
         its = [known[own.name] for own in contributors if own.name in known and own.name not in behind]
@@ -342,7 +342,7 @@ class MachineSystem(Joined):
         return self.gears.neglected(measure, self.linear_gear_trials(trials))
 
     def _with_joints(self, measure: Measure, found: Mapping[str, Array], trials: Trials) -> Mapping[str, Array]:
-        """With what is left out of the plays that turn a part, as they move what is read."""
+        """Neglected terms with those of the plays that turn a part, as they move the measure."""
         added = dict(found)
         for drive, pose in self._turning(measure):
             reading = drive.readings[pose]

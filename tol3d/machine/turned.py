@@ -1,7 +1,7 @@
-"""How far trains turn joints: each joint is solved once for each build of its own train and each position.
+"""Turns of joints by trains: each joint is solved once for each build of its own train and each position.
 
 Builds that differ in other trains alone, such as those of slopes, ends and second looks, share what is found; so do all
-measures and poses that read a joint where it stands alike.
+measures and poses that read a joint in the same position.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
 MOST_KEPT: Final = 200_000
-"""Builds of all joints that are remembered; then none is, and it begins anew."""
+"""Largest number of cached builds of all joints; the cache is then emptied."""
 
 
 _KNOWN: Final[WeakKeyDictionary[Joined, dict[str, dict[tuple[str, bytes], float]]]] = WeakKeyDictionary()
@@ -43,10 +43,10 @@ class Turned:
 
 @dataclass(eq=False)
 class Turning:
-    """What trains of a system leave free, by one of its methods.
+    """Free motion of a system's trains, by one of its methods.
 
     Args:
-        system: whose trains; what is solved of it is known to all methods of a kind in this process.
+        system: that has the trains; its solutions are shared by all methods of a kind in this process.
         method: of its gears.
     """
 

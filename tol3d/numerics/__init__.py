@@ -1,1 +1,1 @@
-"""Numbers: poses of many trials, compiled kernels and where they are kept, what decides a last bit."""
+"""Numbers: poses of many trials, compiled kernels and their cache, the causes of last bits."""

@@ -1,6 +1,6 @@
-"""The cache on disk: whole entries in a folder that nobody but its user may write to.
+"""The cache on disk: whole entries in a folder to which only its user may write.
 
-Compiled kernels are among them, and loading one runs it: who may write there may run what he likes as whoever starts
+Compiled kernels are among them, and loading one runs it: anyone with write access can run code as the user who starts
 tol3d next. An entry is a file, its bytes followed by their SHA-256: a torn or damaged one counts as none. It is written
 aside and renamed, so processes that make the same thing at once end with a whole one; what takes long is made by one
 of them while the others wait. The folder may be deleted at any time.
@@ -31,14 +31,14 @@ LOCK_POLL = 0.05  # s between attempts to take a lock
 
 
 class CacheError(InputError):
-    """The cache's folder belongs to somebody else, or others may write to it."""
+    """The cache's folder belongs to another user, or others may write to it."""
 
 
 def cache_folder() -> Path:
-    """Where entries are kept: TOL3D_CACHE, or the user's cache folder; it need not be there.
+    """Folder of the entries: TOL3D_CACHE, or the user's cache folder; it need not exist.
 
     Raises:
-        CacheError: others could have put something there. Systems without POSIX's owners and modes are not asked.
+        CacheError: others could write there. Systems without POSIX's owners and modes are not checked.
     """
     stated = os.environ.get(FOLDER_VARIABLE)
     folder = Path(stated) if stated else platformdirs.user_cache_path("tol3d", appauthor=False)
@@ -135,7 +135,7 @@ def _made_folder() -> Path:
 
 
 def packed(files: Sequence[Path]) -> bytes:
-    """Files as an archive, by their names: what an entry of several is."""
+    """Files as an archive, by their names: the form of an entry of several."""
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w") as entries:
         for path in files:

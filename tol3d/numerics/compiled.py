@@ -48,7 +48,7 @@ LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest 
 
 
 class PartCompiler(NumbaCompiler):
-    """Compiles a part for kernels to be linked with: nothing by which Python could call it, no machine code of its own.
+    """Compiles a part for kernels to be linked with: without an entry for Python, no machine code of its own.
 
     numba by itself makes both for each part, in a fifth to two fifths of the time of compiling.
     """
@@ -88,7 +88,7 @@ def _left_as_it_is() -> None:
 
 
 class Part(CPUDispatcher):
-    """What kernels are made of; Python that calls it runs it as Python."""
+    """Function that kernels are made of; called from Python, it runs as Python."""
 
     def __call__(self, *arguments: Any) -> Any:
         """Do what its lines say."""
@@ -102,7 +102,7 @@ class Part(CPUDispatcher):
 
 
 def part(function: Function) -> Function:
-    """A function that kernels are made of: compiled into them, for whatever they hand it."""
+    """A function that kernels are made of: compiled into them, for any arguments."""
     return _part(function, PartCompiler)
 
 
@@ -134,7 +134,7 @@ _VARIANTS_IN: dict[type, set[str]] = {}  # modules of the variants for a kind
 
 
 def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function]:
-    """What a function does for a first argument of some kind, a NamedTuple; chosen as kernels compile."""
+    """Variant of a function for a first argument of some kind, a NamedTuple; chosen as kernels compile."""
 
     def register(function: Function) -> Function:
         _VARIANTS_IN.setdefault(kind, set()).add(function.__module__)
@@ -166,7 +166,7 @@ class Kernel:
     """A compiled function of arrays; it holds no lock while it runs, so that threads run several at once.
 
     Args:
-        function: what it does, in the words of Python.
+        function: its definition in Python.
         tuples: kinds of its first arguments, NamedTuples of floats.
         arrays: types of the others in numba's words. It is compiled for these only.
         reassociated: whether sums may be taken in another order than they are written, for speed; on one machine that
@@ -201,12 +201,12 @@ class Kernel:
 
     @property
     def kept(self) -> bool:
-        """Whether this machine has compiled it before: whether using it takes no more than loading it."""
+        """True if this machine has compiled it before, so that using it takes no more than loading it."""
         return self._read() is not None
 
     @cached_property
     def name(self) -> str | None:
-        """Of its entry in the cache: changes with all that it is made of. None where that is unknown."""
+        """Name of its entry in the cache: changes with all that it is made of. None if that is unknown."""
         try:
             made_of = _made_of(self._function, self._tuples)
         except OSError:
@@ -227,7 +227,7 @@ class Kernel:
             return self._loaded(signature, kept) or self._compiled_once(signature, kept)
 
     def _compiled_once(self, signature: tuple[Any, ...], useless: bytes | None) -> Callable[..., None]:
-        """It compiled, or loaded when another process has compiled it since the cache held something useless."""
+        """Kernel compiled, or loaded when another process has compiled it since the cache held something useless."""
         if self.name is None:
             return self._compiled_now(signature)
         with sole_maker(self.name, LONGEST_WAIT):
@@ -236,7 +236,7 @@ class Kernel:
             return made or self._compiled_now(signature)
 
     def _loaded(self, signature: tuple[Any, ...], content: bytes | None) -> Callable[..., None] | None:
-        """It from an entry of the cache; None where that is none, or cannot be used."""
+        """Kernel from an entry of the cache; None if there is none, or it cannot be used."""
         if content is None:
             return None
         try:
@@ -252,7 +252,7 @@ class Kernel:
         return used
 
     def _compiled_now(self, signature: tuple[Any, ...]) -> Callable[..., None]:
-        """It compiled, and kept where that can be."""
+        """Kernel compiled, and kept where that is possible."""
         with contextlib.ExitStack() as stack:
             try:
                 folder = stack.enter_context(_numbas_folder())
@@ -299,7 +299,7 @@ def kernel(
 
 @contextmanager
 def _optimizing(level: int) -> Iterator[None]:
-    """While it is open, what numba compiles is optimized so much."""
+    """Set numba's optimisation level while it is open."""
     config: Any = numba.config
     before = config.OPT
     config.OPT = type(before)(level)  # an integer of numba's own
@@ -311,7 +311,7 @@ def _optimizing(level: int) -> Iterator[None]:
 
 @contextmanager
 def _loading_only() -> Iterator[None]:
-    """Within it numba loads what is kept without all that it compiles with: 0.06 s instead of 0.6 s for the first one.
+    """Let numba load cached kernels without its compiler: 0.06 s instead of 0.6 s for the first one.
 
     To load a function, numba has its target refreshed, of which only the runtime is needed. It compiles where there is
     nothing to load, and has it refreshed again: that is refused.
@@ -335,7 +335,7 @@ def _loading_only() -> Iterator[None]:
 
 @contextmanager
 def _numbas_folder() -> Iterator[Path]:
-    """A folder for what numba reads and writes while it is open, and nobody else does."""
+    """A private folder for numba's files while it is open."""
     config: Any = numba.config
     with tempfile.TemporaryDirectory(prefix="tol3d-kernel-") as name:
         before, config.CACHE_DIR = config.CACHE_DIR, name

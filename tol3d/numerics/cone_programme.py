@@ -1,7 +1,7 @@
-"""How far one coordinate can go between straight and round gaps: a second-order cone programme a trial, batched.
+"""Range of one coordinate between straight and round gaps: a second-order cone programme per trial, batched.
 
-Unknowns y have the coordinate first and last what all gaps may be widened by, at a price. Newton's method on logarithms
-of all that is left finds where weight / gap balance each other; the weight then shrinks. Source: S. Boyd, L.
+The first unknown of y is the coordinate, the last a widening of all gaps, at a price. Newton's method on logarithms
+of the remaining gaps finds the balance of weight / gap; the weight then shrinks. Source: S. Boyd, L.
 Vandenberghe, Convex Optimization, Cambridge 2004, chapter 11. A trial's result does not depend on the others.
 """
 
@@ -96,7 +96,7 @@ def farthest_between(given: ConeProgramme, sense: float) -> Solved:
 
 
 def _newton(given: ConeProgramme, y: Array, wanted: Array) -> tuple[Array, Array]:
-    """Step (trials, unknowns) and decrement (trials,) of what is wanted over the weight, less all logarithms."""
+    """Step (trials, unknowns) and decrement (trials,) of the objective over the weight, less all logarithms."""
     straight, moved, left = given.left(y)
     reach = given.radii + y[:, -1:]
     along = -2 * (moved[:, :, None] @ given.planes)[:, :, 0]
@@ -115,7 +115,7 @@ def _newton(given: ConeProgramme, y: Array, wanted: Array) -> tuple[Array, Array
 
 
 def _length(given: ConeProgramme, y: Array, step: Array) -> Array:
-    """How much of a step (trials,) leaves every gap open."""
+    """Largest fraction of a step (trials,) that leaves every gap open."""
     straight, moved, left = given.left(y)
     by = (given.rows @ step[:, :, None])[..., 0] + step[:, -1:]
     turned = (given.planes @ step[:, None, :, None])[..., 0]

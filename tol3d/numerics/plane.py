@@ -18,12 +18,12 @@ def as_points(values: Complex) -> Array:
 
 
 def evenly(count: int) -> Array:
-    """Azimuths of so many, evenly around from 0 on (count,) [rad]."""
+    """Azimuths spaced evenly around from 0 on (count,) [rad]."""
     return 2 * np.pi * np.arange(count) / count
 
 
 def turned(vectors: Array, turns: Array) -> Array:
-    """Vectors (trials, ..., 2) turned by so many turns (trials, ...)."""
+    """Vectors (trials, ..., 2) turned by angles (trials, ...)."""
     angles = 2 * np.pi * (turns - np.round(turns))
     cos, sin = np.cos(angles), np.sin(angles)
     x, y = vectors[..., 0], vectors[..., 1]

@@ -1,4 +1,4 @@
-"""What this machine's processor and mathematical library add to the last bits of a result.
+"""Influence of this machine's processor and mathematical library on the last bits of a result.
 
 Three choose their instructions by the processor they find: the compiler of the kernels, NumPy's loops, and the C
 library's sines and logarithms. One build read with another choice of any of them differs by 4e-9 um at most, so runs
@@ -14,8 +14,8 @@ import llvmlite.binding
 import numpy as np
 
 ARITHMETIC_OF_X86 = ("sse", "ssse", "avx", "fma", "xop", "f16c", "amx")
-"""How the names of x86 features begin that widen, fuse or replace floating-point instructions; the others add none.
-Of another architecture all features count."""
+"""Prefixes of x86 feature names that widen, fuse or replace floating-point instructions; the others add none.
+On other architectures all features count."""
 X86 = ("x86", "amd64", "i386", "i686")
 
 COMPILER_SETTINGS = ("NUMBA_OPT", "NUMBA_LOOP_VECTORIZE", "NUMBA_SLP_VECTORIZE", "NUMBA_ENABLE_AVX")
@@ -24,7 +24,7 @@ COMPILER_SETTINGS = ("NUMBA_OPT", "NUMBA_LOOP_VECTORIZE", "NUMBA_SLP_VECTORIZE",
 
 @cache
 def processor() -> Mapping[str, str]:
-    """What decides the last bits here, by name; lists have commas."""
+    """Properties that decide the last bits here, by name; lists have commas."""
     settings = [f"{name}={os.environ[name]}" for name in COMPILER_SETTINGS if os.environ.get(name)]
     return {
         "processor": ",".join([os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name(), *settings]),
@@ -40,7 +40,7 @@ def target() -> list[str]:
 
 
 def unlike(there: object, here: object) -> tuple[object, object]:
-    """Two values that differ, of two lists such as `processor` has only what the other one lacks."""
+    """Two values that differ, of two lists such as those of `processor` only the entries that the other one lacks."""
     if not (isinstance(there, str) and isinstance(here, str) and ("," in there or "," in here)):
         return there, here
     others, own = there.split(","), here.split(",")
@@ -52,7 +52,7 @@ def _without(names: list[str], known: list[str]) -> str:
 
 
 def _instructions() -> list[str]:
-    """What the compiler may use, as far as it decides results."""
+    """Instructions that the compiler may use, as far as they decide results."""
     used = sorted(name.removeprefix("+") for name in _features().split(",") if name.startswith("+"))
     if not platform.machine().lower().startswith(X86):
         return used
@@ -60,7 +60,7 @@ def _instructions() -> list[str]:
 
 
 def _features() -> str:
-    """What the processor has (+) and has not (-), as the compiler gets it."""
+    """Features that the processor has (+) and has not (-), in the compiler's form."""
     generic = os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
     stated = os.environ.get("NUMBA_CPU_FEATURES", "" if generic else None)
     return str(llvmlite.binding.get_host_cpu_features().flatten()) if stated is None else stated

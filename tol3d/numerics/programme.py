@@ -1,4 +1,4 @@
-"""How far one coordinate can go where contacts hold it: a linear programme a trial, by a compiled dual simplex method.
+"""Range of one coordinate held by contacts: a linear programme per trial, by a compiled dual simplex method.
 
 Every contact pair is a row of two sides, lower <= row @ x <= upper: the flanks of one mesh. As each row has both sides,
 any independent rows can be the first basis: the sign of its multiplier says at which side a row is met. Of the rows
@@ -73,7 +73,7 @@ def met(lower: Any, upper: Any, basis: Any, inverse: Any, sides: Any, x: Any) ->
 
 @part
 def entering(rows: Any, lower: Any, upper: Any, x: Any, first: bool) -> tuple[int, float]:
-    """The row that is exceeded most, or the first one; by how much, above 0 beyond its upper side; -1 where none is."""
+    """The row that is violated most, or the first one; its excess, above 0 beyond its upper side; -1 if none is."""
     found, excess = -1, KEPT
     beyond = 0.0
     for r in range(rows.shape[0]):
@@ -118,7 +118,7 @@ def farthest(
 
     Args:
         rows, lower, upper: of the contacts.
-        objective: what is made largest.
+        objective: that is maximised.
         basis: rows that are met; from those of the start to those of the end.
         rooms: matrix, inverse, sides, loads, shares to write in; where no multiplier says at which side a row of the
             basis is met, it is the one that stands in sides.
@@ -180,11 +180,11 @@ def ranges(
         rows: of the contacts (rows, unknowns), the same in all trials [mm a rad].
         lower, upper: of the rows (trials, rows) [mm].
         turn: the coordinate (unknowns,).
-        wanted: what is made largest (2, unknowns) where the coordinate is smallest, and where it is largest.
+        wanted: objectives (2, unknowns) for the smallest and for the largest coordinate.
         begun: rows of the first basis (unknowns,).
         ends: smallest and largest value (trials, 2), written.
-        status: what became of each trial (trials,), written.
-        decided, amount: the row that contradicts others (trials,), -1 for none, and by how much [mm]; written.
+        status: of each trial (trials,), written.
+        decided, amount: the row that contradicts others (trials,), -1 for none, and its excess [mm]; written.
     """
     count = rows.shape[1]
     rooms = (
@@ -207,7 +207,7 @@ def ranges(
 
 
 def first_basis(rows: Array) -> Rows:
-    """Independent rows (unknowns,) among some (rows, unknowns); fewer where there are not so many.
+    """Independent rows (unknowns,) among some (rows, unknowns); fewer if there are not enough.
 
     Each is the one that lies farthest off the span of those before it.
     """

@@ -1,4 +1,4 @@
-"""Cosine and sine of one angle together, for kernels: a library's two calls are most of what a short formula takes."""
+"""Cosine and sine of one angle together, for kernels: a library's two calls are most of the time of a short formula."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Sources of modules and of all that they import: what decides what they do, of this package."""
+"""Sources of modules and of all modules of this package that they import, which decide their results."""
 
 import ast
 import importlib.util
@@ -82,7 +82,7 @@ def _named(module: str, tree: ast.Module) -> Iterator[str]:
 
 
 def _origin(module: str, node: ast.ImportFrom) -> str:
-    """From where is imported, without leading dots."""
+    """Module of an import, without leading dots."""
     stated = "." * node.level + (node.module or "")
     return importlib.util.resolve_name(stated, module if _is_package(module) else module.rpartition(".")[0])
 

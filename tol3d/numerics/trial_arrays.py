@@ -8,7 +8,7 @@ class TrialArrays:
     """A frozen dataclass of arrays, or of others such, with the trials on axis 0: trials are taken and put in all."""
 
     def __getitem__(self, trials: Any) -> Self:
-        """Those of some trials."""
+        """Values of some trials."""
         return type(self)(*(getattr(self, own.name)[trials] for own in fields(self)))  # type: ignore[arg-type]
 
     def __setitem__(self, trials: Any, part: Self) -> None:

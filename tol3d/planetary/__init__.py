@@ -1,6 +1,6 @@
 """Planetary gear sets: central gears on one axis, planets on a carrier; simple, compound and 3K (Wolfrom) by one code.
 
-`model/tooth_set.py` is what all of it shares: tooth numbers, ratios, which numbers of planets can be assembled.
+`model/tooth_set.py` is shared by all of it: tooth numbers, ratios, numbers of planets that can be assembled.
 `design/` finds sets and their efficiencies.
 """
 

@@ -1,4 +1,4 @@
-"""From a scene to a planetary set, its deviations and what is read of it, with what is most likely a slip."""
+"""A planetary set from a scene, with its deviations and measures, and warnings of probable slips."""
 
 import math
 from collections.abc import Iterator
@@ -87,10 +87,10 @@ def _reach(scene: Scene, spec: PlanetPinSpec | BorePositionSpec) -> tuple[float,
 
 
 def planetary_system(scene: Scene) -> PlanetarySystem:
-    """What a scene of a planetary set means.
+    """System of a planetary set, from its scene.
 
     Raises:
-        SceneError: kinds that do not act on such a set, or a set that nobody can build, with its numbers.
+        SceneError: kinds that do not act on such a set, or a set that cannot be built, with its numbers.
     """
     own = planetary_set(scene)
     for name in scene.tolerances:
@@ -117,7 +117,7 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
 
 
 def _leaf_spring(carrier: Any) -> LeafSpring | None:
-    """What presses planets apart, where it is given."""
+    """Leaf spring that presses planets apart, if given."""
     if not isinstance(carrier, FlexibleCarrierSpec) or carrier.force is None:
         return None
     others = (0.0 if own is None else own.internal for own in (carrier.stiffness, carrier.friction))

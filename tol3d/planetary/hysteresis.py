@@ -18,10 +18,10 @@ ARCMIN: Final = math.radians(1 / 60)
 
 @dataclass(frozen=True)
 class Hysteresis:
-    """From no torque to the peak, to the same backwards, and to the peak again.
+    """Hysteresis from no torque to the peak, to the same backwards, and to the peak again.
 
     Args:
-        shaft: that is turned, the opposite one held.
+        shaft: the one that is turned, the opposite one held.
         torques: on it (steps,) [N mm], positive is counter-clockwise.
         turns: its turn (steps,) [rad].
         breakaway: torques from which it turns, clockwise and counter-clockwise [N mm].
@@ -36,7 +36,7 @@ class Hysteresis:
 
     @property
     def lost_motion(self) -> float:
-        """Turn between the last ways through no torque, back and on [rad]: what springs and friction leave."""
+        """Turn between the last ways through no torque, back and on [rad]: the remainder by springs and friction."""
         quarter = len(self.torques) // 5
         return float(self.turns[2 * quarter] - self.turns[4 * quarter])
 
@@ -68,7 +68,7 @@ def crossing(ends: DisplacedEnds, spring: LeafSpring) -> float:
 def hysteresis(
     own: PlanetarySet, deviated: Deviated, shaft: str, spring: LeafSpring, peak: float, steps: int = 100
 ) -> Hysteresis:
-    """That of one trial, at the first position of the gears; see spring_curve.turns_under.
+    """Hysteresis of one trial, at the first position of the gears; see spring_curve.turns_under.
 
     Args:
         own: a set with one spring.

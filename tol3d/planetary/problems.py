@@ -1,4 +1,4 @@
-"""Why a set cannot be studied: its mean build jams."""
+"""Reason why a set cannot be studied: its mean build jams."""
 
 from collections.abc import Iterator
 

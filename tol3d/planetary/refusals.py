@@ -1,4 +1,4 @@
-"""The set that a scene means, or why nobody can build it: conditions with their numbers."""
+"""The set that a scene means, or the reasons why it cannot be built: conditions with their numbers."""
 
 import math
 from dataclasses import replace
@@ -129,7 +129,7 @@ def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> N
 
 
 def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:
-    """Those of a flexible carrier."""
+    """Springs of a flexible carrier."""
     carrier = scene.parts[spec.carrier]
     if not isinstance(carrier, FlexibleCarrierSpec):
         return ()

@@ -1,4 +1,4 @@
-"""What a measure of a set sees of contributors: the part that each has in it, trial by trial.
+"""Regressors of a measure of a set: the part of each contributor in it, trial by trial.
 
 A free turn is the optimum of a linear programme: the multipliers of the contacts that are met in a trial times their
 sides. Sides are linear in the deviations, so with the contacts of that trial the turn is a sum of parts, one of each

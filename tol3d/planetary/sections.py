@@ -47,14 +47,14 @@ def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> M
 
 
 def set_efficiency(own: PlanetarySet, friction: float) -> Efficiencies:
-    """By equilibrium of the torques; pairs of teeth in contact carry alike."""
+    """Efficiencies by equilibrium of the torques; pairs of teeth in contact carry alike."""
     drive = Drive(*(CARRIER if shaft == own.carrier else shaft for shaft in (own.input, own.output, own.held)))
     meshes = mesh_efficiencies(own, friction, "equal shares")
     return Efficiencies(efficiency(own.teeth, meshes, drive), efficiency(own.teeth, meshes, drive.reversed))
 
 
 def formula_efficiency(own: PlanetarySet, friction: float) -> Efficiencies | None:
-    """By the published closed form of a 3K set, with the published E; None of any other set."""
+    """Efficiencies by the published closed form of a 3K set, with the published E; None for any other set."""
     central = {mesh.central.name: mesh for mesh in own.meshes}
     if len(central) != 3 or own.carrier in (own.held, own.input, own.output):
         return None
@@ -78,7 +78,7 @@ def set_sections(
 
     Args:
         friction: coefficient of friction of the teeth.
-        spring: what that of a flexible carrier holds.
+        spring: data of that of a flexible carrier.
     """
     if friction is None and spring is None:
         return {}

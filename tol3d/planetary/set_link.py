@@ -84,7 +84,7 @@ class SetLink(OutputLink):
         return FreeTurn(play, np.where(jams, 0.0, ends.mean(axis=-1)), jams)
 
     def deviated(self, seen: LinkTrials, turns: Array) -> Deviated:
-        """What its gears and pins deviate by where the output has made so many turns (trials,)."""
+        """Deviations of the set's gears and pins at turns of the output (trials,)."""
         own, found = self.own, Deviated.nothing(self.own, len(seen))
         for contributor in seen.contributors:
             if contributor.name in self.acts:
@@ -174,7 +174,7 @@ def sets_as_links(scene: Scene) -> Brought:
     """The sets of a scene as links of a train.
 
     Raises:
-        SceneError: what nobody can build, or what such a train cannot have, with its place.
+        SceneError: it cannot be built, or such a train cannot have it; with its place.
     """
     specs = {str(name): spec for name, spec in scene.of(PlanetarySpec).items()}
     sets = {name: set_of(scene, name, spec) for name, spec in specs.items()}

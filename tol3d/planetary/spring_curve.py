@@ -37,7 +37,7 @@ class Straights:
 
     @property
     def slopes(self) -> Array:
-        """Of the pieces [rad/mm]."""
+        """Slopes of the pieces [rad/mm]."""
         return np.asarray(np.diff(self.values) / np.diff(self.knots))
 
     def at(self, displacement: float) -> float:
@@ -72,7 +72,7 @@ class DisplacedEnds:
 
 
 def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: float = 0.0) -> DisplacedEnds:
-    """Those of a set with one spring, by first-order gaps; the opposite shaft stands.
+    """Ends of a set with one spring, by first-order gaps; the opposite shaft stands.
 
     Args:
         deviated: of one trial.
@@ -93,7 +93,7 @@ def displaced_ends(own: PlanetarySet, deviated: Deviated, shaft: str, turns: flo
 
 @dataclass(frozen=True)
 class _Programme:
-    """That of one trial: sides of its contacts (1, rows) [mm]."""
+    """Programme of one trial: sides of its contacts (1, rows) [mm]."""
 
     own: PlanetarySet
     shaft: str
@@ -125,7 +125,7 @@ class _Programme:
 
 
 def _straights(programme: _Programme, end: int, least: float, closed: float) -> Straights:
-    """Pieces of one end: what is bent is halved until its knots are known."""
+    """Pieces of one end: bent pieces are halved until their knots are known."""
     knots = np.array([least, closed])
     values = programme.ends(knots)[:, end]
     bent = np.ones(1, bool)
@@ -158,7 +158,7 @@ def _bends(knots: Array, values: Array, first: int, last: int) -> list[int]:
 
 @dataclass(frozen=True)
 class LeafSpring:
-    """What presses planets apart, by the displacement S of each along the circle of the pins.
+    """Leaf spring that presses planets apart, by the displacement S of each along the circle of the pins.
 
     Args:
         force: Q0 against S where contacts stop the planets [N], its work being Q0 S.

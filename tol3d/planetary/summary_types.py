@@ -1,4 +1,4 @@
-"""What summary.json holds of planetary sets besides what every run has."""
+"""Keys of summary.json for planetary sets, besides those of every run."""
 
 from collections.abc import Mapping
 from typing import Final, Literal, Self
@@ -39,7 +39,7 @@ class PlanetaryMeasureSummary(OutputMeasureSummary):
 
 
 class EfficiencySummary(Section):
-    """Of a set [%]; at most 0 where it locks itself."""
+    """Efficiency of a set [%]; at most 0 if it is self-locking."""
 
     forward_percent: Number = Field(description="driven at the input")
     backward_percent: Number = Field(description="driven at the output")
@@ -64,7 +64,7 @@ class TorqueCurve(Section):
 
 
 class SpringSummary(Section):
-    """What the spring of a flexible carrier holds, of the build with all deviations at their means."""
+    """Data of the spring of a flexible carrier, in the build with all deviations at their means."""
 
     force_n: Number = Field(description="against the displacement of each planet, where contacts stop it")
     stiffness_n_per_mm: Number
@@ -77,7 +77,7 @@ class SpringSummary(Section):
 
 
 class PlanetarySetSummary(Section):
-    """A planetary set, what the friction of its teeth takes of the power, and what the spring of its carrier holds."""
+    """A planetary set, power lost to the friction of its teeth, and data of the spring of its carrier."""
 
     input: Label
     output: Label
@@ -97,7 +97,7 @@ class PlanetarySetSummary(Section):
 
 
 class PlanetaryOfRun(RunSummary):
-    """The planetary sets of a run of which friction or a spring is given."""
+    """The planetary sets of a run with a stated friction or spring."""
 
     planetary_sets: Maybe[Mapping[Label, PlanetarySetSummary]] = LEFT_OUT
 

@@ -110,7 +110,7 @@ class PlanetarySystem(SetTrials):
 
     @cached_property
     def summaries(self) -> Mapping[str, PlanetarySetSummary]:
-        """Efficiencies, and what a spring of the carrier holds, by the set's name; nothing where neither is given."""
+        """Efficiencies, and data of a spring of the carrier, by the set's name; empty if neither is given."""
         if self.spring is None:
             return set_sections(self.own, self.friction)
         mean = self.deviated(mean_build(self, self.measures[0]))

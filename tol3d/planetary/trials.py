@@ -31,7 +31,7 @@ class PlanetaryMeasure(PlainMeasure):
     """A measure of one set.
 
     Args:
-        reading: the whole free turn of a shaft, what it turns against springs alone, or where the output rests while
+        reading: the whole free turn of a shaft, its turn against springs alone, or the output's rest position while
             its load resists (lag) or drives it.
         shaft: that turns.
     """
@@ -41,7 +41,7 @@ class PlanetaryMeasure(PlainMeasure):
 
     @property
     def is_free_turn(self) -> bool:
-        """Whether it is a free turn of a shaft at one position, or a part of it."""
+        """True if it is a free turn of a shaft at one position, or a part of it."""
         return self.reading in ("lost motion", "low stiffness")
 
     @property
@@ -54,7 +54,7 @@ class PlanetaryMeasure(PlainMeasure):
         return 1.0 if own.ratio > 0 else -1.0
 
     def end(self, own: PlanetarySet) -> int:
-        """Which end of its free turn the output rests at: the lower (0) or the upper one (1)."""
+        """End of its free turn at which the output rests: the lower (0) or the upper one (1)."""
         return 0 if (self.reading == "lag") == (self.sense(own) > 0.0) else 1
 
 
@@ -64,15 +64,15 @@ STATUSES: Final = Statuses(
     words={"interferes": "jam", "singular": "cannot be solved"},
     states={"interferes": "jammed"},
 )
-"""By the codes of tol3d.numerics.programme; a set interferes where contacts of a closed loop lack room."""
+"""Statuses by the codes of tol3d.numerics.programme; a set interferes if contacts of a closed loop lack room."""
 
 
 @dataclass(frozen=True)
 class SetTrials(OutputSystem):
-    """What a System of a planetary set says of trials.
+    """Trial part of the System of a planetary set.
 
     Args:
-        acts: what each contributor acts on, by its name.
+        acts: effect of each contributor, by its name.
     """
 
     own: PlanetarySet
@@ -88,14 +88,14 @@ class SetTrials(OutputSystem):
         return positions.over == "random" and self.acts[contributor.name].effect == "offset"
 
     def deviated(self, trials: Trials) -> Deviated:
-        """What trials deviate by, by gear and planet."""
+        """Deviations of trials, by gear and planet."""
         found = Deviated.nothing(self.own, len(trials))
         for name, own in component_slices(self).items():
             found.add(self.own, self.acts[name], trials.deviations[:, own])
         return found
 
     def gap_bound(self, measure: Measure, errors: Sequence[float]) -> float:
-        """What errors of the gaps of each mesh [mm] may make of a measure, in its unit.
+        """Bound on the effect of errors of the gaps of each mesh [mm] on a measure, in its unit.
 
         Of a lost motion both ends may be off, of a transmission error the position and the first one; of a region of
         low stiffness both ends twice.
@@ -110,10 +110,10 @@ class SetTrials(OutputSystem):
 
 
 class Turning(Protocol):
-    """How far a shaft of a set turns, by one method."""
+    """Turn of a shaft of a set, by one method."""
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
-        """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
+        """Free turn of a shaft while another one and the held one stand, at turns (trials,) of the output."""
         ...
 
     def followed(self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int) -> Free:
@@ -160,9 +160,9 @@ class PlanetaryMethod:
         return Answers(values, details=details, status=status)
 
     def _lost(self, measure: PlanetaryMeasure, deviated: Deviated, turns: Array) -> tuple[Array, Free]:
-        """Free turn (trials, 1), and what it comes from; a set that jams has what it lacks as a negative one.
+        """Free turn (trials, 1), and its sources; a set that jams has its shortfall as a negative one.
 
-        Of the region of low stiffness what contacts alone leave, less the lost motion.
+        For the region of low stiffness: the free turn by contacts alone, less the lost motion.
         """
         own = self.system.own
         free = self.turning.free(deviated, turns, measure.shaft, own.opposite(measure.shaft))
@@ -178,7 +178,7 @@ class PlanetaryMethod:
         return width[:, None], replace(free, status=status)
 
     def _error(self, measure: PlanetaryMeasure, deviated: Deviated) -> tuple[Array, Free]:
-        """Transmission error (trials, positions), 0 at the first, and what it comes from."""
+        """Transmission error (trials, positions), 0 at the first, and its sources."""
         own = self.system.own
         turns = np.array(measure.positions.fixed) / (2 * np.pi)
         found = self.turning.followed(deviated, turns, measure.shaft, own.opposite(measure.shaft), measure.end(own))

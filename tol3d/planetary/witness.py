@@ -141,7 +141,7 @@ def _in_mesh(central: PlacedGear, planet: PlacedGear, other: Flank, flank: Flank
 
 
 def _flank_azimuth(gear: PlacedGear, flank: Flank, inv: float) -> float:
-    """Where a flank of tooth 0 crosses the working pitch circle [rad], from its inv alpha."""
+    """Azimuth at which a flank of tooth 0 crosses the working pitch circle [rad], from its inv alpha."""
     own = gear.gear
     assert isinstance(own, SpurGear | InternalGear)
     narrowing = -inv if isinstance(own, SpurGear) else inv
@@ -150,7 +150,7 @@ def _flank_azimuth(gear: PlacedGear, flank: Flank, inv: float) -> float:
 
 
 def _flank_pose(gear: PlacedGear, tooth: int, flank: Flank) -> Array:
-    """Of the flank of a tooth, (4, 4), from where the strip of tooth 0 lies; a thicker tooth turns its flanks apart."""
+    """Pose of the flank of a tooth, (4, 4), from the strip of tooth 0; a thicker tooth turns its flanks apart."""
     angle = gear.gear.angular_pitch * tooth - flank * gear.flank_turn
     return gear.world_from_gear @ upright_pose(angle)
 
@@ -161,7 +161,7 @@ MOST_STEPS: Final = 25
 
 @dataclass(frozen=True, eq=False)
 class StripContact:
-    """How far shafts turn by FCL's gaps, with slopes of the first order; see Contact.
+    """Turns of shafts from FCL's gaps, with first-order slopes; see Contact.
 
     Args:
         made: its gears by name, nominal.
@@ -172,7 +172,7 @@ class StripContact:
     engine: StripGaps
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
-        """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
+        """Free turn of a shaft while another one and the held one stand, at turns (trials,) of the output."""
         found = Free.of(len(turns))
         for trial, own in enumerate(deviated[trial : trial + 1] for trial in range(len(deviated.pins))):
             for end in (0, 1):
@@ -204,7 +204,7 @@ class StripContact:
     def _seated(
         self, deviated: Deviated, turns: float, asked: tuple[str, str, int], begun_at: Array
     ) -> tuple[Array, int, int, float]:
-        """Turns [rad] and displacements by springs [mm] at an end, what became of the set, and where it lacks room.
+        """Turns [rad] and displacements by springs [mm] at an end, status of the set, and the place that lacks room.
 
         Args:
             deviated: of one trial.
@@ -238,7 +238,7 @@ class StripContact:
 
 
 MOST_POSITIONS: Final = 24
-"""Of a measure that a witness reads: a turn of 360 would take it ten seconds a trial."""
+"""Largest number of positions of a measure that a witness reads: a turn of 360 would take it ten seconds a trial."""
 
 
 @dataclass(frozen=True)

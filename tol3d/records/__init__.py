@@ -1,4 +1,4 @@
-"""Measured data and what is identified from it: gears on a transmission error rig, and the rig itself, synthetic.
+"""Measured data and its identification: gears on a transmission error rig, and the rig itself, synthetic.
 
     files        rows, block by block       csv_file.py                 blocks_of
     reading      rows -> position bins      reading.py                  read_side
@@ -6,10 +6,10 @@
     fit          both sides together        fit.py                      fitted
     prediction   the whole long period      prediction.py               predicted
     findings     all of it                  identify.py                 identify         (findings.py: Identified)
-    cautions     what may spoil them        cautions.py                 cautions
+    cautions     possible errors of them    cautions.py                 cautions
 
 `pair.py` is the geometry, without the assumption of small eccentricities; `rig.py` makes measured files of it,
-`planning.py` predicts how well a rig of that kind identifies.
+`planning.py` predicts the accuracy of a rig of that kind.
 """
 
 from tol3d.records.findings import Identified, Settings

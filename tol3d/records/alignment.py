@@ -1,4 +1,4 @@
-"""Where in the long period each pass was measured.
+"""Place of each measured pass in the long period.
 
 A driver's angle is known up to whole turns where an encoder counts within one turn, or was counted from another start.
 Both encoders together know more: a driver that is n turns further on leaves phi2 - phi1 z1/z2 larger by n z1/z2 turns,
@@ -73,7 +73,7 @@ def mean_error(bins: Bins) -> float:
 
 
 def _inverse(pair: RigPair) -> int:
-    """Turns of the driver that leave one step, whole turns of the driven gear aside."""
+    """Turns of the driver that leave one step, whole turns of the driven gear apart."""
     if pair.long_period_turns == 1:
         return 0
     return pow(pair.driver_teeth // pair.common_factor, -1, pair.long_period_turns)
@@ -81,13 +81,13 @@ def _inverse(pair: RigPair) -> int:
 
 @dataclass(frozen=True)
 class HiddenShift:
-    """What the encoders' once-per-turn part would be if the back side lay elsewhere in the long period.
+    """The encoders' once-per-turn part if the back side lay elsewhere in the long period.
 
     Args:
         own: the part of the driven gear's turn as measured [rad].
         turns: of the driver by which the back side would have to be shifted for the smallest such part.
         least: that part [rad].
-        moved: by how much the backlash would change at most [rad].
+        moved: largest change of the backlash [rad].
     """
 
     own: float
@@ -120,7 +120,7 @@ def hidden_shift(pair: RigPair, drive: complex, back: complex) -> HiddenShift:
 
 
 class SidePool:
-    """The rows of one side, by torque: what is kept does not grow with the number of passes.
+    """The rows of one side, by torque: the kept data does not grow with the number of passes.
 
     Passes of one torque are gathered in the same bins, with travel counted from the middle of each, so that a fit,
     which is linear in travel and torque, finds the same of them as of all passes one by one.

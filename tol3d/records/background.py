@@ -36,12 +36,12 @@ FAR_LOW: Final = 2.0  # standard errors from which that counts as stronger than 
 
 @dataclass(frozen=True, eq=False)
 class Background:
-    """What deviating teeth add to a fit's covariance.
+    """Contribution of deviating teeth to a fit's covariance.
 
     Args:
         hidden: by their own part at the fitted orders (terms, terms).
         leaked: by higher orders that the rows do not tell apart from the fitted ones (terms, terms).
-        low_orders: strength of what is left below LOW_ORDERS over that of white noise; 1 where it is not stronger.
+        low_orders: strength of the residual below LOW_ORDERS over that of white noise; 1 if it is not stronger.
     """
 
     hidden: Array
@@ -60,7 +60,7 @@ class Cells:
 
 @dataclass(frozen=True, eq=False)
 class _Effects:
-    """Random effects of one gear: what both sides share, or what the drive side has more by and the back side less."""
+    """Random effects of one gear: the part that both sides share, or the one with opposite signs on them."""
 
     gear: int
     kind: Kind
@@ -111,7 +111,7 @@ def background_of(
 
 
 def gathered(at: Points, rows: Array, left: Array, places: int) -> Cells:
-    """Means at so many places a turn of the driver, of those that have rows."""
+    """Means at evenly spaced places of the driver's turn, of those that have rows."""
     index = (at.phi1 * (places / TURN)).astype(np.int64)
     count = np.bincount(index, rows).astype(np.float64)
     used = count > 0.0
@@ -144,7 +144,7 @@ def expected_variance(powers: Array, orders: NDArray[np.int64], weights: Array, 
     Args:
         powers, orders: see likely_slopes, of one spectrum.
         weights: of SLOPES.
-        order: where it is wanted.
+        order: the wanted one.
     """
     scale = np.sqrt(_sums(powers, orders) / (2 * len(powers)) * float(order) ** -SLOPES)
     own = stats.t(2 * len(powers))
@@ -169,7 +169,7 @@ def _effects(terms: Terms, top: Sequence[int]) -> list[_Effects]:
 
 
 class _Mixed:
-    """The mixed model of what a fit leaves: its own columns as fixed effects, orders as random ones.
+    """The mixed model of a fit's residual: its own columns as fixed effects, orders as random ones.
 
     Columns are those of rows over the standard deviation of one.
     """
@@ -238,7 +238,7 @@ class _Mixed:
         return np.asarray(np.concatenate(every) * self._root[:, None])
 
     def _stands_out(self, block: Array) -> bool:
-        """Whether columns explain more of what is left than they would of white noise."""
+        """True if columns explain more of the residual than they would of white noise."""
         own = block - self._fixed @ (self._inverse @ _product(self._fixed, block))
         square = _product(own, own)
         length = np.sqrt(np.maximum(np.diagonal(square), 1e-12 * np.einsum("ni,ni->i", block, block)))
@@ -252,7 +252,7 @@ def _product(first: Array, second: Array) -> Array:
 
 
 def _inverse(normal: Array) -> Array:
-    """By columns of length one."""
+    """Inverse by columns of length one."""
     length = np.sqrt(np.diagonal(normal))
     return np.asarray(np.linalg.inv(normal / np.outer(length, length)) / np.outer(length, length))
 
@@ -264,7 +264,7 @@ def _low_orders(
     turned: Mapping[Side, float],
     variance: float,
 ) -> float:
-    """How much stronger than white noise the rest is below LOW_ORDERS; 1 where it may be white."""
+    """Strength of the residual below LOW_ORDERS over that of white noise; 1 if it may be white."""
     power = np.concatenate([_powers(pair, own, left[side], turned[side], variance) for side, own in cells.items()])
     if not len(power):
         return 1.0
@@ -273,7 +273,7 @@ def _low_orders(
 
 
 def _powers(pair: RigPair, cells: Cells, left: Array, turns: float, variance: float) -> Array:
-    """Of orders that are not fitted, over that of white noise: each of mean 1 and standard deviation 1."""
+    """Powers of orders that are not fitted, over those of white noise: each of mean 1 and standard deviation 1."""
     orders = np.arange(1, int(LOW_ORDERS * turns) + 1) / turns
     fitted_orders = np.array([0.0, 1.0, pair.rate])
     free = np.abs(orders[:, None] - fitted_orders).min(axis=1) > 0.75 / turns

@@ -25,11 +25,11 @@ class Bins:
     """Means of the rows of one pass in each bin that has any; arrays (bins,).
 
     Args:
-        rows: how many, as floats.
+        rows: their number, as floats.
         phi1: driver's angle in the long period [rad].
         travel: driver's angle as it was counted on [rad].
         error: phi2 - phi1 z1/z2 [rad].
-        torque: [N m]; zeros where none was measured.
+        torque: [N m]; zeros if none was measured.
         spread_phi1, spread_both, spread_error: sums of products of the deviations of phi1 and error from their means.
     """
 
@@ -43,7 +43,7 @@ class Bins:
     spread_error: Array
 
     def shifted(self, pair: RigPair, turns: int, error: float) -> "Bins":
-        """The same rows so many turns of the driver further on in the long period, their errors shifted [rad]."""
+        """The same rows shifted by turns of the driver in the long period, their errors shifted [rad]."""
         return replace(self, phi1=np.mod(self.phi1 + TURN * turns, pair.long_period), error=self.error + error)
 
     def where(self, kept: NDArray[np.bool_]) -> "Bins":
@@ -153,7 +153,7 @@ class EndSums:
                 sums.add(phi1[own], error[own], None if torque is None else torque[own])
 
     def ends(self, start: float, travel: float, error: float) -> Ends | None:
-        """Of all rows; windows are shorter where the pass ends within a quarter turn after the long period.
+        """Ends of all rows; windows are shorter if the pass ends within a quarter turn after the long period.
 
         Args:
             start: driver's angle at the first row [rad].

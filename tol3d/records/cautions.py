@@ -1,4 +1,4 @@
-"""What makes rows useless and is refused, and what may spoil findings and is warned of."""
+"""Refusal of useless rows, and warnings of conditions that may spoil findings."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -17,14 +17,14 @@ from tol3d.records.reading import Pass
 
 LARGEST_CONDITION: Final = 10.0  # of the columns once per turn of either gear and the constant; 19 at one turn of 27/48
 OTHER_UNITS: Final = (("radians", "degrees", "deg", math.pi / 180), ("degrees", "radians", "rad", 180 / math.pi))
-"""What angles may be read as, what they may be, its unit, and by what they would then have to be multiplied."""
+"""Mistaken units of angles: the unit read, the likely one, its symbol, and the factor that corrects them."""
 EXPLAINED: Final = 0.5  # of the scatter, by which another unit must fit better
 MOST_OF_A_TURN: Final = 0.8 * TURN
 FEWEST_ROWS: Final = 20
 
 
 def refuse_wrong_units(own: Pass, pair: RigPair) -> None:
-    """Refuse angles in degrees that are said to be radians, or the other way round.
+    """Refuse angles in degrees that are stated as radians, or the reverse.
 
     Raises:
         InputError: such angles repeat themselves once per turn only in the other unit.
@@ -43,7 +43,7 @@ def refuse_wrong_units(own: Pass, pair: RigPair) -> None:
 
 
 def _unexplained(pair: RigPair, phi1: Array, phi2: Array) -> float:
-    """Root mean square of what once-per-turn parts leave of the transmission error [rad]."""
+    """Root mean square of the transmission error without its once-per-turn parts [rad]."""
     wanted = phi2 - pair.rate * phi1
     at = [phi1, phi2]
     matrix = np.stack([*map(np.sin, at), *map(np.cos, at), np.ones_like(phi1)], axis=1)
@@ -123,7 +123,7 @@ def refuse_impossible_backlash(pair: RigPair, low: float, high: float, half_widt
     """Refuse a backlash [rad] below zero or over half a pitch somewhere in the long period.
 
     Raises:
-        InputError: with what that means.
+        InputError: with the consequence.
     """
     if low >= -half_width and high < pair.driven_pitch / 2:
         return
@@ -199,7 +199,7 @@ def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
 
 
 def _teeth_warnings(found: Identified) -> Iterator[str]:
-    """What deviating pitches do to eccentricities, where orders beside theirs show any."""
+    """Warnings of the effect of deviating pitches on eccentricities, where orders beside theirs show any."""
     wide = [1e3 * found.model.quantile * found.fit.hidden_eccentricity(gear) for gear in (1, 2)]
     if any(wide):
         yield (
@@ -226,7 +226,7 @@ def _stray_rows(found: Identified) -> Iterator[str]:
 
 
 def _closure_warnings(found: Identified, settings: Settings) -> tuple[str, ...]:
-    """Of what a linear drift, where one is fitted along, does not explain."""
+    """Warnings of closure errors that a linear drift, where one is fitted along, does not explain."""
     if not settings.drift:
         return tuple(what_is_open(found.closure, found.fit))
     return tuple(what_is_open(closures(found.fit, found.specimen, found.passes, but_drift=True), found.fit))

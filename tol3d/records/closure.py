@@ -1,4 +1,4 @@
-"""Whether a side closes: its transmission error a long period later, where the same teeth touch as at its start.
+"""Closure of a side: its transmission error a long period later, where the same teeth touch as at its start.
 
 Gears cannot differ by then; what does is drift, or an encoder or coupling that has slipped. The rows of the quarter
 turn after the long period lie where those of the first one do, so that their difference, place by place, knows no
@@ -35,7 +35,7 @@ def closures(
 
     Args:
         fit: the joint one.
-        specimen: what it found.
+        specimen: as the fit found it.
         passes: by side.
         but_drift: less the linear drift that was fitted along.
 
@@ -84,14 +84,14 @@ def _closure(fit: Fit, specimen: Specimen, side: Side, passes: Sequence[Aligned]
 
 
 class _Change(NamedTuple):
-    """From one window to the other [rad], and its variance [rad^2]."""
+    """Change from one window to the other [rad], and its variance [rad^2]."""
 
     value: float
     variance: float
 
 
 def _at_the_same_places(ends: Ends, left: Sequence[Array], period: float) -> _Change | None:
-    """By pairs of rows at the same places, so that no shape of the curve is in it; None where there are too few."""
+    """Change by pairs of rows at the same places, so that no shape of the curve is in it; None if there are too few."""
     windows = (ends.start, ends.end)
     cells = min(MOST_CELLS, int(min(own.rows.sum() for own in windows)) // 2)
     if cells <= FEWEST:
@@ -115,9 +115,9 @@ def _at_the_same_places(ends: Ends, left: Sequence[Array], period: float) -> _Ch
 
 
 def _across_the_end(fit: Fit, ends: Ends, left: Sequence[Array], passes: int) -> _Change:
-    """By the means of windows beside each other, as far apart as those of other quarter turns are in the median.
+    """Change by the means of adjacent windows, as far apart as those of other quarter turns are in the median.
 
-    That has noise and the fit's lack in it, and nothing of a single slip. Passes share it.
+    It contains noise and the misfit, and nothing of a single slip. Passes share it.
     """
     (first, start), (last, end) = (
         (float(own.rows.sum()), float(own.rows @ each) / float(own.rows.sum()))
@@ -130,7 +130,7 @@ def _across_the_end(fit: Fit, ends: Ends, left: Sequence[Array], passes: int) ->
 
 
 def _steps(fit: Fit, side: Side) -> Array:
-    """Magnitudes of the steps of what is left from one quarter turn of a side to the next [rad]."""
+    """Magnitudes of the steps of the residual from one quarter turn of a side to the next [rad]."""
     rows = fit.measured.rows[side]
     index = (fit.measured.points[side].phi1 / WINDOW).astype(np.int64)
     count = np.bincount(index, rows)
@@ -140,7 +140,7 @@ def _steps(fit: Fit, side: Side) -> Array:
 
 
 def _left(fit: Fit, specimen: Specimen, side: Side, bins: Bins, *, but_drift: bool) -> Array:
-    """What the fit leaves of some rows [rad], off a constant of the side."""
+    """Residual of the fit in some rows [rad], off a constant of the side."""
     pair = fit.measured.pair
     travel = bins.travel if but_drift else np.zeros_like(bins.travel)
     at = Points(bins.phi1, pair.rate * bins.phi1 + bins.error, travel, bins.torque)

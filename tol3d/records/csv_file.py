@@ -34,7 +34,7 @@ class Block:
     """Consecutive rows of a file.
 
     Args:
-        first: how many rows of data stand before it.
+        first: number of data rows before it.
         phi1, phi2: encoder angles [rad], as they stand in the file.
         torque: [N m], or None.
         repeat: its number, or None.
@@ -54,7 +54,7 @@ class Header:
     Args:
         path: the file.
         names: of all columns.
-        factors: of the columns that are read: name to (index, what one of its unit is in rad or N m).
+        factors: of the columns that are read: name to (index, one of its unit in rad or N m).
         delimiter: between cells.
         comments: lines before it that begin with #.
         decimal_comma: whether numbers have one.
@@ -149,7 +149,7 @@ def _header(path: Path, unit: str | None) -> Header:
 
 
 def _first_lines(path: Path) -> tuple[int, str, str]:
-    """How many comments a file begins with, its header, and the line below."""
+    """Number of comment lines that a file begins with, its header, and the line below."""
     try:
         if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():  # a pipe would be waited for
             raise InputError(f"{path}: expected a file, got a pipe or a device; the file is read more than once")

@@ -1,4 +1,4 @@
-"""What is found of a measured pair, and how its measurement is read."""
+"""Findings for a measured pair, and settings for reading its measurement."""
 
 import math
 from collections.abc import Mapping
@@ -21,14 +21,14 @@ ENCODER_ERROR: Final = 20 * ARCSEC  # once per turn, that a rig's encoders and c
 
 @dataclass(frozen=True)
 class Settings:
-    """How a measurement is read.
+    """Settings for reading a measurement.
 
     Args:
         unit: of angles whose column has none.
         j0: backlash at phi1 = 0 [rad], where encoders were set to zero between the sides.
         j0_half_width: of its 95 % interval [rad].
-        encoder_error: once per turn, that is believed of either encoder [rad].
-        drift: fit a linear drift of each side along.
+        encoder_error: assumed error of either encoder once per turn [rad].
+        drift: fit a linear drift of each side as well.
     """
 
     unit: str | None = None
@@ -40,21 +40,21 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """What was found.
+    """Results of an identification.
 
     Args:
         pair: nominal numbers.
         senses: of the encoders.
-        passes: as they were aligned, by side.
-        read: the same as they were read, by side.
+        passes: as aligned, by side.
+        read: the same as read, by side.
         fit: of both sides together.
         model: the backlash of the eccentricities.
-        teeth: what deviating teeth add to it.
+        teeth: contribution of deviating teeth to it.
         whole: the backlash with both.
         alone: of each side.
-        shift: where the back side might lie instead.
-        spectrum: of what is left.
-        warnings: what may spoil it.
+        shift: alternative position of the back side.
+        spectrum: of the residual.
+        warnings: conditions that may spoil it.
     """
 
     pair: RigPair
@@ -100,7 +100,7 @@ class Identified:
 
     @cached_property
     def largest(self) -> Extreme:
-        """The largest, likewise."""
+        """The largest, in the same way."""
         return self.model.extreme(+1)
 
     @cached_property
@@ -110,7 +110,7 @@ class Identified:
 
     @cached_property
     def encoders_twice(self) -> Mapping[str, Figure]:
-        """The same twice per turn, of encoders of which the rows tell it."""
+        """The same twice per turn, for encoders whose rows determine it."""
         return {f"encoder {encoder}": self._encoder(encoder, 2) for encoder in self.fit.terms.twice}
 
     def _encoder(self, encoder: int, order: int) -> Figure:
@@ -126,7 +126,7 @@ class Identified:
 
     @property
     def winding(self) -> Figure | None:
-        """1/k of B_0(T) = j_0 + T/k [rad/(N m)]; None where torques tell nothing of it."""
+        """1/k of B_0(T) = j_0 + T/k [rad/(N m)]; None if torques do not determine it."""
         if not self.fit.terms.winding:
             return None
         value, covariance = self.fit.of(("winding",))

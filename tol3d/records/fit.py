@@ -74,15 +74,15 @@ def _joined(bins: Sequence[Bins]) -> Mapping[str, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What was fitted.
+    """Result of a fit.
 
     Args:
-        measured: to what.
+        measured: data of the fit.
         terms: its columns.
         values: of the terms (terms,) [mm or rad].
-        residual: what is left, by side (n,) [rad].
+        residual: by side (n,) [rad].
         variance: of one row about the curve [rad^2].
-        background: what deviating teeth add to the covariance.
+        background: contribution of deviating teeth to the covariance.
         unscaled: inverse of the normal matrix (terms, terms).
     """
 
@@ -96,7 +96,7 @@ class Fit:
 
     @cached_property
     def covariance(self) -> Array:
-        """Of the values (terms, terms)."""
+        """Covariance of the values (terms, terms)."""
         return np.asarray(self.told_apart + self.background.hidden)
 
     @property
@@ -105,13 +105,13 @@ class Fit:
         return np.asarray(self.unscaled * (self.variance * self.low_orders) + self.background.leaked)
 
     def hidden_eccentricity(self, gear: int) -> float:
-        """Standard deviation of either component of what pitches of a gear do to its eccentricity [mm]."""
+        """Standard deviation of either component of the effect of a gear's pitches on its eccentricity [mm]."""
         place = self.terms.index(ECCENTRIC[2 * gear - 2 : 2 * gear])
         return math.sqrt(float(np.diagonal(self.background.hidden)[place].mean()))
 
     @property
     def low_orders(self) -> float:
-        """Strength of what is left at low orders over that of white noise; 1 where it is not stronger."""
+        """Strength of the residual at low orders over that of white noise; 1 where it is not stronger."""
         return self.background.low_orders
 
     def of(self, names: Sequence[str]) -> tuple[Array, Array]:
@@ -157,12 +157,12 @@ def inverse_normal(matrix: Array) -> Array:
 
 
 def times(matrix: Array, vector: Array) -> Array:
-    """Product of a matrix (n, m) and a vector (m,), likewise."""
+    """Product of a matrix (n, m) and a vector (m,), in the same way."""
     return np.asarray(np.einsum("nm,m->n", matrix, vector))
 
 
 def with_drift(fit: Fit) -> tuple[Array, Array]:
-    """Linear drift of each side [rad per rad of the driver] and its standard error, from what a fit leaves.
+    """Linear drift of each side [rad per rad of the driver] and its standard error, from a fit's residual.
 
     The residual is fitted to first order by the fit's own columns and the drifts.
     """
@@ -178,7 +178,7 @@ def with_drift(fit: Fit) -> tuple[Array, Array]:
 
 
 def fitted(measured: Measured, terms: Terms, *, constant_part: float | None = None) -> Fit:
-    """Fit the terms to what was measured.
+    """Fit the terms to the measurement.
 
     Args:
         measured: both sides.
@@ -227,7 +227,7 @@ def _model(measured: Measured, terms: Terms, values: Array, matrix: Array, const
 
 
 def _variance(measured: Measured, terms: Terms, values: Array, residual: Mapping[Side, Array]) -> float:
-    """Of one row's noise [rad^2]: between bins and within them, the curve's slope within a bin taken away."""
+    """Variance of one row's noise [rad^2]: between bins and within them, the curve's slope within a bin taken away."""
     total = 0.0
     for side in terms.sides:
         at, rows = measured.points[side], measured.rows[side]
@@ -238,7 +238,7 @@ def _variance(measured: Measured, terms: Terms, values: Array, residual: Mapping
 
 
 def _slope(pair: RigPair, terms: Terms, side: Side, at: Points, values: Array) -> Array:
-    """Of the fitted curve over phi1 [rad/rad]."""
+    """Slope of the fitted curve over phi1 [rad/rad]."""
     step = 1e-4  # rad, of a curve whose orders lie below a few hundred
     ends = []
     for sign in (-1.0, 1.0):

@@ -51,7 +51,7 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def begins_with(path: Path, text: str) -> bool:
-    """Whether a file does."""
+    """True if a file begins with a text."""
     try:
         with path.open("rb") as file:
             return path.is_file() and file.read(len(text.encode())) == text.encode()

@@ -1,4 +1,4 @@
-"""Between scenes and rigs: a mesh's nominal numbers, the build at all means, and a scene of what was identified.
+"""Between scenes and rigs: a mesh's nominal numbers, the build at all means, and a scene of the identified pair.
 
 A rig counts each gear in its own sense of rotation; tol3d counts about +z. The driver turns counter-clockwise about +z
 where its left flank works (sigma = -1) and clockwise where its right one does (sigma = +1), so its azimuth is
@@ -73,7 +73,7 @@ def _is_external(mesh: Mesh) -> bool:
 def specimen_of_build(model: Model, mesh: Mesh, deviations: Array) -> Specimen:
     """The pair of one build, its axes as far apart as there.
 
-    Axes' tilts, temperatures and what single flanks deviate by are left out.
+    Axes' tilts, temperatures and deviations of single flanks are left out.
 
     Args:
         model, mesh: which gears.
@@ -112,7 +112,7 @@ def scene_text(specimen: Specimen, mesh: Mesh, name: str) -> str:
     """A scene of the specimen with constant deviations, read over its long period.
 
     Args:
-        specimen: what was identified.
+        specimen: the identified one.
         mesh: its gears.
         name: of the scene.
     """

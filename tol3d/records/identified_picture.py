@@ -1,4 +1,4 @@
-"""Pictures of what was identified: the backlash over the long period, and what the fit leaves."""
+"""Pictures of an identification: the backlash over the long period, and the residual of the fit."""
 
 import csv
 import io
@@ -19,7 +19,7 @@ from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, legend_be
 
 @dataclass(frozen=True, eq=False)
 class BacklashCurve:
-    """Over positions of the driver.
+    """Backlash over positions of the driver.
 
     Args:
         phi1: (n,) [rad], over the long period, its end included.
@@ -33,7 +33,7 @@ class BacklashCurve:
     measured: Array
 
     def csv(self) -> str:
-        """Comma-separated values in degrees and arc seconds; nothing where nothing was measured."""
+        """Comma-separated values in degrees and arc seconds; empty where nothing was measured."""
         stream = io.StringIO()
         writer = csv.writer(stream, lineterminator="\n")
         columns = ("predicted", "lower 95 %", "upper 95 %", "measured")
@@ -59,7 +59,7 @@ def curve_of(found: Identified) -> BacklashCurve:
 
 
 def _left(fit: Fit, side: Side, positions: int) -> Array:
-    """Mean of what eccentricities leave of the rows about each position (positions,) [rad]; nan where none are."""
+    """Mean residual of eccentricities in the rows about each position (positions,) [rad]; nan where none are."""
     step = fit.measured.pair.long_period / positions
     index = np.round(fit.measured.points[side].phi1 / step).astype(np.int64) % positions
     rows = np.bincount(index, fit.measured.rows[side], minlength=positions)
@@ -102,7 +102,7 @@ def draw_backlash(found: Identified, curve: BacklashCurve, path: Path) -> None:
 
 
 def draw_residual(found: Identified, path: Path) -> None:
-    """What the fit leaves over the long period, and its spectrum.
+    """Draw the residual of the fit over the long period, and its spectrum.
 
     Raises:
         InputError: the picture cannot be written there.

@@ -1,4 +1,4 @@
-"""Both sides of a rig's measurement to the eccentricities, the play and the backlash over the whole long period."""
+"""Identification from both sides of a rig's measurement: eccentricities, play and backlash over the long period."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -46,11 +46,11 @@ def identify(
     Args:
         pair: nominal numbers, by the scene.
         drive, back: files of either side.
-        settings: how they are read.
-        tell: callback that gets what goes on, in words.
+        settings: for reading them.
+        tell: callback that gets the current activity, in words.
 
     Raises:
-        InputError: a file cannot be read, or cannot be what it is said to be; with file and row or reason.
+        InputError: a file cannot be read, or cannot be what its name states; with file and row or reason.
     """
     senses = senses_of(drive[0], settings.unit)
     rows = 0
@@ -69,14 +69,14 @@ def identify(
 
 
 def _checked(own: Pass, pair: RigPair) -> Pass:
-    """A pass that is of this pair, in the unit that was said."""
+    """A pass of this pair, in the stated unit."""
     refuse_wrong_units(own, pair)
     refuse_other_gear(own, pair)
     return own
 
 
 def identified(pair: RigPair, sides: Mapping[Side, Iterable[Pass]], senses: Senses, settings: Settings) -> Identified:
-    """The same of passes, each of which is read when its turn comes.
+    """The same for passes, each of which is read when its turn comes.
 
     Raises:
         InputError: they cannot be what they are said to be.
@@ -139,7 +139,7 @@ def told_apart_twice(pair: RigPair, sides: Sequence[tuple[Array, Array]]) -> tup
 
 
 def _fits(measured: Measured, terms: Terms, settings: Settings) -> tuple[Fit, BacklashModel, ToothPart]:
-    """The joint fit, the backlash of the eccentricities by it, and what teeth do besides."""
+    """The joint fit, the backlash of the eccentricities by it, and the additional effect of teeth."""
     pair = measured.pair
     fit = fitted(measured, terms, constant_part=settings.j0)
     quantile, teeth = quantile_of(fit.freedom), tooth_part(fit)
@@ -172,7 +172,7 @@ def _refuse_reset(read: Mapping[Side, tuple[Pass, ...]], settings: Settings, not
 
 
 def _shift(fit: Fit) -> HiddenShift:
-    """Where the back side might lie instead, by each side's part of the driven gear's turn."""
+    """Alternative position of the back side, from each side's part of the driven gear's turn."""
     eccentric, encoder = fit.of(ECCENTRIC)[0], fit.of(ENCODERS)[0]
     alpha, arm = fit.measured.pair.working_angle, fit.measured.pair.driven_base_radius
     own, common = complex(eccentric[2], eccentric[3]) / arm, complex(encoder[2], encoder[3])

@@ -17,7 +17,7 @@ NAMES: Final = ("identified.json", "identified.csv", "backlash.csv", "identified
 
 
 def refuse_others(folder: Path) -> None:
-    """Refuse a folder that has files of these names without findings of ours: they are somebody's.
+    """Refuse a folder that has files of these names without findings of ours: they belong to the user.
 
     Raises:
         InputError: it names them.
@@ -36,12 +36,12 @@ def _is_ours(path: Path) -> bool:
 
 
 def write_identified(found: Identified, report: Page, own: SceneMesh, folder: Path) -> tuple[Path, ...]:
-    """Write what was identified; files of an earlier time are replaced.
+    """Write the identification; earlier files are replaced.
 
     Args:
-        found: what was identified.
+        found: identification to write.
         report: its tables.
-        own: of which gears.
+        own: the gears.
         folder: where to; made if it is not there.
 
     Raises:

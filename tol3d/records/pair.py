@@ -1,4 +1,4 @@
-"""A spur pair on a rig: what its scene says of it, and one specimen of it with its own eccentricities.
+"""A spur pair on a rig: its data in a scene, and one specimen of it with its own eccentricities.
 
 Convention of every formula here: phi1 and phi2 are the turns of driver and driven gear, each positive in its OWN sense
 of rotation in the drive run, and theta1, theta2 the phases of the eccentricities in the same senses. The teeth's
@@ -167,5 +167,5 @@ def transmission_error(specimen: Specimen, phi1: Array, side: Side) -> Array:
 
 
 def angular_backlash(specimen: Specimen, phi1: Array) -> Array:
-    """j [rad]: how far the driven gear is free to turn with the driver held at phi1."""
+    """j [rad]: free turn of the driven gear with the driver held at phi1."""
     return np.asarray(driven_angle(specimen, phi1, "back") - driven_angle(specimen, phi1, "drive"))

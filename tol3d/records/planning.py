@@ -1,4 +1,4 @@
-"""How well a rig would identify: half-widths of 95 % intervals from the design matrix, before anything is measured.
+"""Expected accuracy of a rig: half-widths of 95 % intervals from the design matrix, before anything is measured.
 
 Noise of a row is that of both encoders, sigma^2 (1 + (z1/z2)^2), with steps q of the encoders as q^2/12 more of each,
 which holds where the noise is not much smaller than the steps, or the rows do not fall in time with them.
@@ -24,7 +24,7 @@ SIDES: tuple[Side, ...] = ("drive", "back")
 
 @dataclass(frozen=True)
 class RigPlan:
-    """What a rig of so many turns would find.
+    """Expected findings of a rig with a number of turns.
 
     Args:
         turns: of the driver on each side.
@@ -41,7 +41,7 @@ class RigPlan:
 
     @property
     def suffices(self) -> bool:
-        """Whether driver and driven gear are told apart."""
+        """True if driver and driven gear can be told apart."""
         return self.condition <= LARGEST_CONDITION
 
 
@@ -49,8 +49,8 @@ def plan_rig(specimen: Specimen, rig: Rig, turns: Sequence[float], *, drift: boo
     """Plans for several numbers of turns.
 
     Args:
-        specimen: what will be measured, as far as it is known; phases matter little.
-        rig: how it would be measured, its turns aside.
+        specimen: to be measured, as far as it is known; phases matter little.
+        rig: for the measurement, apart from its turns.
         turns: of the driver.
         drift: whether a linear drift of each side would be fitted along.
     """
@@ -58,7 +58,7 @@ def plan_rig(specimen: Specimen, rig: Rig, turns: Sequence[float], *, drift: boo
 
 
 def row_variance(pair: RigPair, rig: Rig) -> float:
-    """Of phi2 - phi1 z1/z2 in one row [rad^2]."""
+    """Variance of phi2 - phi1 z1/z2 in one row [rad^2]."""
     return (rig.noise**2 + rig.resolution**2 / 12) * (1 + pair.rate**2)
 
 

@@ -85,13 +85,13 @@ class BacklashModel:
         return own
 
     def half_width(self, phi1: Array) -> Array:
-        """Of the 95 % interval at single positions [rad]."""
+        """Half-width of the 95 % interval at single positions [rad]."""
         rates = self.rates(phi1)
         return np.asarray(self.quantile * np.sqrt(np.einsum("ni,ij,nj->n", rates, self.covariance, rates)))
 
     @property
     def constant_half_width(self) -> float:
-        """Of the 95 % interval of the constant part [rad]."""
+        """Half-width of the 95 % interval of the constant part [rad]."""
         rates = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
         if self.anchored is not None:
             rates[:4] = self.rates(np.zeros(1))[0, :4] - replace(self, anchored=None).rates(np.zeros(1))[0, :4]
@@ -146,7 +146,7 @@ def quantile_of(freedom: float) -> float:
 
 
 def length_and_phase(vector: Array, covariance: Array, quantile: float) -> tuple[Figure, Figure]:
-    """Of x, y: the length, and the phase [rad]; the phase is not known where the length may be zero."""
+    """Length and phase [rad] of x, y; the phase is not known where the length may be zero."""
     x, y = (float(value) for value in vector)
     length = float(np.hypot(x, y))
     if length == 0.0:
@@ -166,7 +166,7 @@ DISAGREEING = 3.0  # standard errors of the difference
 
 @dataclass(frozen=True)
 class OneSided:
-    """What one side alone would say.
+    """Findings from one side alone.
 
     Args:
         figures: e1, theta1, e2, theta2 [mm, rad].
@@ -181,7 +181,7 @@ class OneSided:
 
     @property
     def disagrees(self) -> bool:
-        """Whether it cannot be the same eccentricities."""
+        """True if its eccentricities cannot be the same."""
         return self.apart > DISAGREEING
 
 

@@ -19,11 +19,11 @@ ANGLES: Final[Mapping[str, float]] = {
     "arcsec": math.pi / 648000,
     "rev": 2 * math.pi,
 }
-"""What one of each unit is in rad."""
+"""One of each unit in rad."""
 TORQUES: Final[Mapping[str, float]] = {"N m": 1.0, "Nm": 1.0, "N·m": 1.0, "mN m": 1e-3, "mNm": 1e-3, "kN m": 1e3}
-"""What one of each unit is in N m."""
+"""One of each unit in N m."""
 LENGTHS: Final[Mapping[str, float]] = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "nm": 1e-6, "m": 1e3}
-"""What one of each unit is in mm."""
+"""One of each unit in mm."""
 UNITS: Final[Mapping[Kind, Mapping[str, float]]] = {"angle": ANGLES, "torque": TORQUES, "length": LENGTHS}
 EXAMPLES: Final[Mapping[Kind, str]] = {"angle": "6 arcsec", "torque": "2 N m", "length": "18 um"}
 
@@ -33,10 +33,10 @@ STATED: Final = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([
 
 
 def stated(option: str, text: str, kind: Kind) -> float:
-    """What an option says with its unit [rad, N m or mm].
+    """Value of an option with its unit [rad, N m or mm].
 
     Raises:
-        InputError: it says something else.
+        InputError: it is something else.
 
     >>> round(stated("--e1", "18 um", "length"), 9)
     0.018

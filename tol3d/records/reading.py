@@ -40,10 +40,10 @@ class Pass:
 
     Args:
         path: the file.
-        repeat: its number there, 0 where there is no such column.
-        rows: how many.
-        travel: how far the driver turned [rad].
-        torques: smallest and largest torque [N m], magnitudes; None where none was measured.
+        repeat: its number there, 0 without such a column.
+        rows: their number.
+        travel: turn of the driver [rad].
+        torques: smallest and largest torque [N m], magnitudes; None if not measured.
         first: error at the first row [rad] and the driver's angle there.
         bins: the rows, gathered.
         ends: those of the start and of a long period later; None of a shorter pass.
@@ -63,7 +63,7 @@ class Pass:
     raw: Array
 
     def without_rows(self) -> "Pass":
-        """The same without its rows, of which others keep what they need."""
+        """The same without its rows, which are kept elsewhere as far as needed."""
         nothing = np.zeros((2, 0))
         return replace(
             self, bins=self.bins.where(np.zeros(len(self.bins.rows), dtype=bool)), ends=None, trace=nothing, raw=nothing
@@ -71,7 +71,7 @@ class Pass:
 
 
 def senses_of(path: Path, unit: str | None) -> Senses:
-    """In which sense the encoders count, by the first degree that the driver turns in the drive run.
+    """Senses in which the encoders count, by the first degree that the driver turns in the drive run.
 
     Raises:
         InputError: it does not turn.
@@ -170,7 +170,7 @@ def turns_taken(steps: Array) -> Array:
 
 
 def _begins_below_zero(values: Array, turns: Array) -> bool:
-    """Whether an encoder that begins anew each turn stands less than a degree before that: its first row is below 0."""
+    """True if an encoder that restarts each turn begins less than a degree before that: its first row is below 0."""
     begun = np.flatnonzero(turns)
     return bool(len(begun) and turns[begun[0]] < 0 and values[0] > TURN - SETTLED)
 

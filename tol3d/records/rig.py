@@ -1,4 +1,4 @@
-"""A synthetic rig: what encoders would read of a specimen, with the errors that rigs have."""
+"""A synthetic rig: encoder readings of a specimen, with the errors that rigs have."""
 
 import os
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from tol3d.records.pair import ARCSEC, TURN, ClosedForm, Side, Specimen, Unit
 
 @dataclass(frozen=True)
 class Rig:
-    """How a rig measures and errs; angles of encoders in rad, amplitudes of sinusoids.
+    """Rig: its measurement and its errors; angles of encoders in rad, amplitudes of sinusoids.
 
     Args:
         turns: of the driver on each side.
@@ -25,13 +25,13 @@ class Rig:
         encoder1, encoder2: errors once per turn, each encoder's own.
         tooth_mesh: amplitude of the tooth-mesh order of the transmission error, other phases on either side.
         drift: of the driven encoder over one side.
-        torques: [N m] of the passes in turn; () where none is measured and none acts.
+        torques: [N m] of the passes in turn; () if none is measured and none acts.
         winding: 1/k [rad/(N m)] of the backlash under load, B = j + T/k.
         start: driver's angle at which each side begins.
         hidden_turns: whole turns of the driver by which the back side lies further on, of which the encoders know
             nothing.
-        zeroed: whether each side's encoders were set to zero where it begins.
-        seed: of all that is random.
+        zeroed: True if each side's encoders were set to zero at its start.
+        seed: of all random numbers.
     """
 
     turns: float = 16.0
@@ -53,7 +53,7 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class Readings:
-    """Rows of one side: encoder angles [rad], torque [N m] and repeat, each (rows,); None where there is none."""
+    """Rows of one side: encoder angles [rad], torque [N m] and repeat, each (rows,); None if there is none."""
 
     phi1: Array
     phi2: Array
@@ -65,7 +65,7 @@ def measured(unit: Specimen | Unit, rig: Rig, side: Side) -> Readings:
     """One side's rows. Sides differ in where between two steps they are sampled, and in their noise.
 
     Args:
-        unit: what is measured; of a specimen the flanks touch by closed form.
+        unit: under test; flanks of a specimen touch by closed form.
         rig: how.
         side: which flanks touch.
 

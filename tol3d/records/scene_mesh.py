@@ -67,7 +67,7 @@ class SimulatedUnit:
         return (self.pair.rate * flat + turned + self.specimen.constant_part / 2).reshape(phi1.shape)
 
     def _beside(self, phi1: Array, side: Side) -> Array:
-        """By how much the driven gear is ahead of its nominal angle, in the sense in which it is driven [rad]."""
+        """Angle of the driven gear ahead of its nominal one, in the sense in which it is driven [rad]."""
         sense = float(self.mesh.working_flank)
         angles = -sense * phi1
         both = self.engine.rests(self.build, self.mesh, READING, angles)
@@ -114,7 +114,7 @@ class SceneMesh:
 
     @property
     def teeth_deviate(self) -> bool:
-        """Whether single flanks of its gears deviate, which the closed form does not know."""
+        """True if single flanks of its gears deviate, which the closed form does not know."""
         return deviates(self.model, self.mesh)
 
     @property
@@ -144,7 +144,7 @@ class SceneMesh:
         return SimulatedUnit(specimen, self.mesh, engine.build(deviations), engine)
 
     def _deviations(self, trial: int | None) -> Array:
-        """Of the gears (1, components) [mm, rad, K]."""
+        """Deviations of the gears (1, components) [mm, rad, K]."""
         system, trials = self.simulation.system, self.simulation.study.trials
         if trial is not None and not 0 <= trial < trials:
             raise InputError(f"--trial: expected 0 … {trials - 1}, which the scene's study has, got {trial}")

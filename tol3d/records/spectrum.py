@@ -1,4 +1,4 @@
-"""What eccentricities leave, by orders of the driver's turn."""
+"""Residual of the eccentricities, by orders of the driver's turn."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Order:
 
     Args:
         order: per turn of the driver.
-        words: what it is.
+        words: its name.
         amplitude: [rad], by side.
         noise: amplitude that white noise alone exceeds in one case of twenty [rad], by side.
     """
@@ -32,7 +32,7 @@ class Order:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Amplitudes of what is left, tooth mesh included.
+    """Amplitudes of the residual, tooth mesh included.
 
     Args:
         orders: of one side (lines,), per turn of the driver.
@@ -46,7 +46,7 @@ class Spectrum:
 
 
 def spectrum_of(fit: Fit) -> Spectrum:
-    """The spectrum over the long period of what the fit leaves and of the tooth-mesh orders that it took along."""
+    """The spectrum over the long period of the fit's residual and of its tooth-mesh orders."""
     pair, sides = fit.measured.pair, fit.terms.sides
     left = {side: with_tooth_mesh(fit, side) for side in sides}
     amplitudes = {side: _amplitudes(fit.measured, side, own) for side, own in left.items()}
@@ -68,7 +68,7 @@ def spectrum_of(fit: Fit) -> Spectrum:
 
 
 def with_tooth_mesh(fit: Fit, side: Side) -> Array:
-    """What eccentricities and encoders leave of the rows: the fit's residual with tooth mesh [rad]."""
+    """Residual of eccentricities and encoders: that of the fit, with tooth mesh [rad]."""
     first = len(fit.terms.names) - len(fit.terms.tooth_columns)
     own = columns(fit.measured.pair, fit.terms, side, fit.measured.points[side])
     return np.asarray(fit.residual[side] + own[:, first:] @ fit.values[first:])
@@ -80,7 +80,7 @@ def _one(measured: Measured, side: Side, left: Array, order: float) -> float:
 
 
 def _amplitudes(measured: Measured, side: Side, left: Array) -> Array:
-    """Of orders k over the turns of the long period, up to a little over twice the tooth mesh."""
+    """Amplitudes of orders k over the turns of the long period, up to a little over twice the tooth mesh."""
     pair = measured.pair
     count = bins_a_turn(pair) * pair.long_period_turns
     index = np.minimum((measured.points[side].phi1 * (count / pair.long_period)).astype(np.int64), count - 1)

@@ -1,4 +1,4 @@
-"""What `identify` keeps as identified.json: documented keys with their units."""
+"""Contents of identified.json, as `identify` writes it: documented keys with their units."""
 
 import math
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ UNITS: Mapping[str, tuple[Unit, float]] = {
     "jmax eccentric": ("arcsec", ARCSEC),
     "jmax eccentric at": ("deg", math.pi / 180),
 }
-"""Unit of each figure, and what one of it is in mm or rad."""
+"""Unit of each figure, and one of it in mm or rad."""
 
 
 class Kept(BaseModel):
@@ -73,7 +73,7 @@ class PassSummary(Kept):
 
 
 class SideSummary(Kept):
-    """One side, and what it alone would say."""
+    """One side, and the findings from it alone."""
 
     passes: list[PassSummary]
     alone: dict[str, FigureSummary]
@@ -82,7 +82,7 @@ class SideSummary(Kept):
 
 
 class OrderSummary(Kept):
-    """A line of the spectrum of what is left, tooth mesh included; amplitudes by side."""
+    """A line of the spectrum of the residual, tooth mesh included; amplitudes by side."""
 
     order: str = Field(description="per turn of the driver, as a fraction")
     words: str
@@ -91,7 +91,7 @@ class OrderSummary(Kept):
 
 
 class ResidualSummary(Kept):
-    """What the fit leaves."""
+    """Residual of the fit."""
 
     sigma_arcsec: float = Field(description="standard deviation of one row about the fit")
     noise_arcsec: float = Field(description="the same about its neighbours: teeth aside")
@@ -126,7 +126,7 @@ class IdentifiedSummary(Kept):
 
 
 def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
-    """What was found, as it is kept."""
+    """Findings in the form in which they are kept."""
     pair = found.pair
     return IdentifiedSummary(
         pair=PairSummary(

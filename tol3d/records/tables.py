@@ -1,4 +1,4 @@
-"""What was identified, and how well a rig would identify, as tables."""
+"""Tables of an identification, and of a rig's expected accuracy."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -36,7 +36,7 @@ DIGITS: Final = {"um": 3, "deg": 3, "arcsec": 3}
 
 
 def identified_report(found: Identified, own: SceneMesh) -> Page:
-    """Figures, encoders, what is held as the scene has it, what is left, warnings."""
+    """Figures, encoders, values held as in the scene, residual, warnings."""
     title = _title(found, own.model.name, own.mesh.name)
     blocks: list[PageItem] = [title, *_read_lines(found), BLANK, _figures(found)]
     blocks += [

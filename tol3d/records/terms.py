@@ -26,7 +26,7 @@ DRIFTS = ("drift drive", "drift back")  # [rad per rad of the driver]
 
 @dataclass(frozen=True)
 class Terms:
-    """Which columns a fit has besides eccentricities and constants.
+    """Columns of a fit besides eccentricities and constants.
 
     Args:
         sides: drive, back or both; one alone has no constant part of its own.
@@ -46,7 +46,7 @@ class Terms:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the columns."""
+        """Names of the columns."""
         both = len(self.sides) == 2
         names = [*ECCENTRIC, *(CONSTANTS if both else CONSTANTS[:1])]
         names += ENCODERS if self.encoders else ()
@@ -67,19 +67,19 @@ class Terms:
 
 
 def encoder_names(encoder: int, order: int) -> tuple[str, str]:
-    """Of the columns of one encoder's part once (order 1) or twice (2) per turn."""
+    """Names of the columns of one encoder's part once (order 1) or twice (2) per turn."""
     sin, cos = (ENCODERS, TWICE)[order - 1][2 * encoder - 2 : 2 * encoder]
     return sin, cos
 
 
 def tooth_names(side: Side, order: int) -> tuple[str, str]:
-    """Of the columns of one order of tooth mesh on one side."""
+    """Names of the columns of one order of tooth mesh on one side."""
     return f"{side} sin {order}", f"{side} cos {order}"
 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Where one side was measured: arrays (n,) of phi1, phi2, travel [rad] and torque [N m]."""
+    """Points at which one side was measured: arrays (n,) of phi1, phi2, travel [rad] and torque [N m]."""
 
     phi1: Array
     phi2: Array

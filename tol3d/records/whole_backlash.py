@@ -33,13 +33,13 @@ MEDIAN: Final = 0.6745  # magnitude that half of all normal values exceed, in st
 
 @dataclass(frozen=True, eq=False)
 class ToothPart:
-    """What the backlash is besides that of eccentricities, over the long period.
+    """Part of the backlash besides that of eccentricities, over the long period.
 
     Args:
         phi1: (n,) places [rad], from 0 on.
-        measured: (n,) whether both sides have rows there.
-        mean: (n,) tooth mesh as fitted, and what is left of the rows less their noise [rad].
-        known: (lines,) strength of what the rows leave open where there are some, by lines of the spectrum [rad^2].
+        measured: (n,) True where both sides have rows.
+        mean: (n,) tooth mesh as fitted, and the residual of the rows less their noise [rad].
+        known: (lines,) strength of the uncertainty where there are rows, by lines of the spectrum [rad^2].
         unknown: the same where there are none.
         noise: standard deviation of a row about its neighbours [rad].
     """
@@ -53,7 +53,7 @@ class ToothPart:
 
     @property
     def covered(self) -> bool:
-        """Whether the whole long period was measured."""
+        """True if the whole long period was measured."""
         return bool(self.measured.all())
 
     @property
@@ -81,7 +81,7 @@ class WholeBacklash:
 
 
 def tooth_part(fit: Fit) -> ToothPart:
-    """Split what a fit leaves into teeth and noise."""
+    """Split a fit's residual into teeth and noise."""
     pair, sides = fit.measured.pair, fit.terms.sides
     count, noise = _cells(fit), _noise(fit)
     step = pair.long_period / count
@@ -113,7 +113,7 @@ def whole_backlash(fit: Fit, model: BacklashModel, teeth: ToothPart) -> WholeBac
     Args:
         fit: of both sides.
         model: the backlash of the eccentricities.
-        teeth: what there is besides.
+        teeth: the rest.
     """
     mean = model.backlash(teeth.phi1) + teeth.mean
     start: list[Array] = []
@@ -148,7 +148,7 @@ def _cells(fit: Fit) -> int:
 
 
 def _noise(fit: Fit) -> float:
-    """Standard deviation of a row, by the median of what neighbours differ by: teeth step seldom.
+    """Standard deviation of a row, by the median difference of neighbours: teeth step seldom.
 
     From neighbour to neighbour, and from each to the middle of both its neighbours, which slopes do not move; teeth add
     to either.
@@ -165,7 +165,7 @@ def _noise(fit: Fit) -> float:
 
 
 def _bridged(seen: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
-    """The same with gaps of so many places closed; the last place has the first as its neighbour."""
+    """The same with gaps of a few places closed; the last place has the first as its neighbour."""
     used = np.flatnonzero(seen)
     bridged = seen.copy()
     for low, high in zip(used, np.append(used[1:], used[0] + len(seen)), strict=True):
@@ -178,7 +178,7 @@ def _teeth(power: Array, noise: float, turns: int, share: float) -> Array:
     """Strength of teeth, line by line, from means over neighbouring lines; none where noise alone may be there.
 
     Args:
-        power: of each line [rad^2]; `noise` where nothing but noise is.
+        power: of each line [rad^2]; `noise` where there is only noise.
         noise: variance of a place's mean [rad^2].
         turns: of the long period: lines of one order of the driver.
         share: of the long period that was measured, and of its lines that are independent.

@@ -1,1 +1,1 @@
-"""A run on disk: its blocks of trials, what is kept of them, and who may replace it."""
+"""A run on disk: its blocks of trials, their storage, and the conditions of replacing it."""

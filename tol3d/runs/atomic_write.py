@@ -17,7 +17,7 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
 
 
 def write_by(path: Path, write: Callable[[BufferedRandom], object]) -> None:
-    """Write beside the file's place, bring it to the disk and rename it there; nothing is left of a failure.
+    """Write beside the file's place, bring it to the disk and rename it there; a failure leaves nothing behind.
 
     Args:
         path: the file.
@@ -50,5 +50,5 @@ def named_in_errors(path: Path) -> Iterator[None]:
 
 
 def lacks_space(error: OSError) -> bool:
-    """Whether a write failed because the disk, or the user's share of it, is full."""
+    """True if a write failed because the disk, or the user's share of it, is full."""
     return error.errno in NO_SPACE

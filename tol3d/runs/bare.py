@@ -1,4 +1,4 @@
-"""A run of a mechanism that is not installed here: what every summary holds of it, for reports."""
+"""A run of a mechanism that is not installed here: the common part of its summary, for reports."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,11 +14,11 @@ from tol3d.runs.summary.text import missing_mechanism, parsed
 
 
 class MissingMechanismWarning(UserWarning):
-    """A run is shown without what its mechanism would add, for that is not installed."""
+    """A run is shown without the additions of its mechanism, which is not installed."""
 
 
 def open_even_bare(path: Path | str) -> tuple[Run, str]:
-    """Open a run, one of an unknown mechanism without what that added; what is missing in words, "" for nothing.
+    """Open a run, one of an unknown mechanism without its additions; the missing parts in words, "" for none.
 
     Raises:
         RunError: not a run, damaged, or changed since it was made.

@@ -37,7 +37,7 @@ class BlockFiles:
     """The files of a folder, by their names without suffix.
 
     Args:
-        folder: where they are.
+        folder: of the files.
         units: unit of each column, kept in the files' metadata.
         shape: of each file, where that is known; another one is damage, found before anything is unpacked.
     """
@@ -66,7 +66,7 @@ class BlockFiles:
         return sorted(there | self._sums.keys())
 
     def __contains__(self, name: object) -> bool:
-        """Whether a file was finished; it may be damaged or gone since."""
+        """True if a file was finished; it may be damaged or gone since."""
         return name in self._sums
 
     @property
@@ -133,7 +133,7 @@ class BlockFiles:
             self.folder.rmdir()
 
     def _remove_unfinished(self) -> None:
-        """Take away what a kill left of files that were being written."""
+        """Delete remains of files that were being written when a process was killed."""
         for path in self.folder.glob(f"*{UNFINISHED}"):
             if path.name == CHECKSUMS + UNFINISHED or NAME.fullmatch(path.name.removesuffix(SUFFIX + UNFINISHED)):
                 path.unlink(missing_ok=True)

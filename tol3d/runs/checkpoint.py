@@ -58,7 +58,7 @@ class Checkpoint(Generic[T]):
         write_by(self.path, write)
 
     def read(self) -> tuple[int, T] | None:
-        """How many blocks, and their statistics; None where there is none. A damaged one is warned of and not used."""
+        """Number of blocks and their statistics; None if there is none. A damaged one is reported and not used."""
         try:
             content = self.path.read_bytes()
         except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""What makes the blocks of an interrupted run its own: the fingerprint that it keeps while it is written."""
+"""Fingerprint that identifies the blocks of an interrupted run, kept while the run is written."""
 
 import json
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ Fingerprint = Mapping[str, Any]
 
 
 def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
-    """In what a run that is there differs from the one that is asked for, in words."""
+    """Differences of an existing run from the one that is asked for, in words."""
     found = []
     for key in {**there, **asked}:
         old, new = there.get(key), asked.get(key)
@@ -29,7 +29,7 @@ def differences(there: Fingerprint, asked: Fingerprint) -> list[str]:
 
 
 def another_study(there: Fingerprint, asked: Fingerprint) -> list[str]:
-    """In what a run that is there is of another study than the one that is asked for, in words."""
+    """Differences of an existing run's study from the one that is asked for, in words."""
     found = differences(*({key: print_.get(key) for key in STUDY} for print_ in (there, asked)))
     if _keeps(there) and not _keeps(asked):
         found.append("it holds the trials, too, and this would keep statistics only")
@@ -41,7 +41,7 @@ def _keeps(fingerprint: Fingerprint) -> bool:
 
 
 def interrupted(partial: Path) -> Fingerprint | None:
-    """The fingerprint of the interrupted run in a folder; None where there is none, {} where it was being cleared."""
+    """The fingerprint of the interrupted run in a folder; None if there is none, {} if it was being cleared."""
     try:
         read: Any = json.loads(read_contained(partial / FINGERPRINT, partial, LARGEST_FINGERPRINT))
     except (UnreadableFileError, ValueError, RecursionError):

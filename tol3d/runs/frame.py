@@ -18,7 +18,7 @@ Curves = Literal["split", "drop"]
 
 
 class MissingPackageError(InputError, ImportError):
-    """A package that tol3d does without until it is asked for what needs it."""
+    """An optional package, loaded on demand."""
 
 
 def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: Curves = "split") -> "pd.DataFrame":

@@ -1,4 +1,4 @@
-"""Which files are a run's own: SHA256SUMS in its folder, which `sha256sum --check` reads.
+"""Files that are a run's own: SHA256SUMS in its folder, which `sha256sum --check` reads.
 
 It shows that nothing was changed since it was written (integrity), not who wrote it (authenticity): whoever changes a
 file can write a new list. The files of the trials have a list of their own beside them; here stands the sum of that.
@@ -88,9 +88,9 @@ class Manifest:
         return frozenset((*self.sums, *listed, MANIFEST))
 
     def foreign(self) -> list[str]:
-        """What lies in the folder and is not the run's: other files, changed ones, links, folders.
+        """Contents of the folder that are not the run's: other files, changed ones, links, folders.
 
-        Blocks of trials count by their names, for nobody works in those.
+        Blocks of trials are recognised by their names, as nobody edits those.
         """
         own = self.paths
         folders = {str(folder) for name in own for folder in PurePosixPath(name).parents}
@@ -139,7 +139,7 @@ def _is_folder(path: Path) -> bool:
 
 
 def _sum_of(folder: Path, name: str) -> str:
-    """SHA-256 of a file; empty where it cannot be read, which is no file's."""
+    """SHA-256 of a file; empty if it cannot be read."""
     try:
         return hashlib.sha256(read_contained(folder / name, folder, LARGEST_OWN_FILE)).hexdigest()
     except UnreadableFileError:
@@ -147,5 +147,5 @@ def _sum_of(folder: Path, name: str) -> str:
 
 
 def own_paths_of_trials(kept: bool) -> tuple[str, ...]:
-    """What the list says of the trials."""
+    """Paths of the trials in the list."""
     return (f"{TRIALS}/{CHECKSUMS}",) if kept else ()

@@ -40,9 +40,9 @@ class Occupant:
     """A run that lies where another is to go.
 
     Args:
-        run: what is there.
-        others: in what its study differs from the one that is to go there, in words.
-        foreign: what lies in its folder and is not its own.
+        run: the existing one.
+        others: differences of its study from the new one, in words.
+        foreign: files in its folder that are not its own.
     """
 
     run: Run
@@ -51,7 +51,7 @@ class Occupant:
 
     @property
     def reason(self) -> str:
-        """Why it is not simply replaced; empty where it is."""
+        """Reason why it is not simply replaced; empty if it is."""
         if self.others:
             return f"holds another study ({'; '.join(self.others)})"
         return f"holds what is not of the run ({_some(self.foreign)})" if self.foreign else ""
@@ -59,12 +59,12 @@ class Occupant:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a run is to go.
+    """Destination of a run.
 
     Args:
-        path: its folder to be.
-        fingerprint: what makes the blocks of an interrupted run its own.
-        kinds: what a summary may hold; by default what this package's mechanisms add.
+        path: its future folder.
+        fingerprint: identity of the blocks of an interrupted run.
+        kinds: contents that a summary may have; by default those of this package's mechanisms.
     """
 
     path: Path
@@ -77,7 +77,7 @@ class Place:
         return partial_of(self.path)
 
     def occupant(self) -> Occupant | None:
-        """The run that lies there; None where nothing does.
+        """The run that lies there; None if there is none.
 
         Raises:
             RunError: something lies there that is not a run, or cannot be recognised as one; nothing may replace it.
@@ -94,10 +94,10 @@ class Place:
             raise RunError(f"{words}; choose another folder with --out") from None
 
     def refuse_taken(self, *, force: bool) -> None:
-        """Raise unless a new run may take the place, or move aside what is there.
+        """Raise unless a new run may take the place, or move aside the existing folder.
 
         Raises:
-            RunError: it says the way out.
+            RunError: with the remedy.
         """
         occupant = self.occupant()
         if occupant is None or force or not occupant.reason:
@@ -131,7 +131,7 @@ class Place:
             raise RunError(f"{path / changed[0]}: was changed since the run was made; move it away first")
 
     def begun(self) -> Fingerprint | None:
-        """The fingerprint of the interrupted run there; None where there is none, {} where it was being cleared.
+        """The fingerprint of the interrupted run there; None if there is none, {} if it was being cleared.
 
         Raises:
             RunError: something else is in the folder of an unfinished run.
@@ -142,10 +142,10 @@ class Place:
         return there
 
     def goes_on(self, there: Fingerprint | None, *, resume: bool, force: bool) -> bool:
-        """Whether this run goes on with what was begun; else that is to be cleared.
+        """True if this run continues the one that was begun; else that one is to be cleared.
 
         Raises:
-            RunError: it is another one, which is not thrown away.
+            RunError: it is another run, which is not thrown away.
         """
         if there is None or there == self.fingerprint:
             return True
@@ -165,7 +165,7 @@ class Place:
             )
 
     def taken(self, *, resume: bool) -> str | None:
-        """Why a folder will not do; None where this study is there, "" where nothing is."""
+        """Reason why a folder will not do; None if this study is there, "" if nothing is."""
         begun = self.partial.exists()
         if begun:
             there = interrupted(self.partial)
@@ -183,7 +183,7 @@ class Place:
         return reason or None
 
     def put_in_place(self, *, force: bool) -> None:
-        """Rename the written folder; what lies there is deleted where it may be replaced, else moved aside."""
+        """Rename the written folder; an existing one is deleted if it may be replaced, else moved aside."""
         path = self.path
         old = self._moved_away(force=force) if path.exists() else None
         self.partial.replace(path)
@@ -195,7 +195,7 @@ class Place:
                 self._remove_left(left)
 
     def _remove_left(self, folder: Path) -> None:
-        """Delete what a kill left of a run that was replaced; with anything else in it, it is moved aside."""
+        """Delete the remains of a replaced run after a kill; with anything else in it, it is moved aside."""
         with suppress(OSError):
             folder.rmdir()  # its list goes last: without one there is only the folder
         with suppress(RunError):
@@ -233,7 +233,7 @@ def partial_of(path: Path) -> Path:
 def free_folder(
     wanted: Path, fingerprint: Fingerprint, *, resume: bool = False, kinds: SummaryKinds | None = None
 ) -> tuple[Path, str]:
-    """Where a run goes by default.
+    """Default folder of a run.
 
     The wanted folder, or the first of `<name>-2`, `<name>-3` ... that another study has not taken. A study finds its
     own folder again.
@@ -241,11 +241,11 @@ def free_folder(
     Args:
         wanted: the folder.
         fingerprint: of the run.
-        resume: only a folder with this very study will do; the wanted one where there is none.
-        kinds: what a summary may hold; by default what this package's mechanisms add.
+        resume: only a folder with this very study will do; the wanted one if there is none.
+        kinds: contents that a summary may have; by default those of this package's mechanisms.
 
     Returns:
-        the folder, and what is in the wanted one where it is another.
+        the folder, and the contents of the wanted one if it is another.
     """
     taken = ""
     for path in numbered(wanted):
@@ -259,7 +259,7 @@ def free_folder(
 
 
 def numbered(wanted: Path) -> Iterator[Path]:
-    """Where runs of a scene go by default: its folder, then `<name>-2`, `<name>-3` ..."""
+    """Default folders of a scene's runs: its folder, then `<name>-2`, `<name>-3` ..."""
     yield wanted
     yield from (wanted.with_name(f"{wanted.name}-{number}") for number in itertools.count(2))
 
@@ -270,10 +270,10 @@ def refuse_changed(folders: Iterable[Path], scene: str, files: Mapping[str, str]
     Args:
         folders: where a run may go on.
         scene: SHA-256 of its text.
-        files: SHA-256 of the files that it names; what else a run keeps is not looked at.
+        files: SHA-256 of the files that it names; other kept files are ignored.
 
     Raises:
-        RunError: in what the first run differs.
+        RunError: with the differences of the first run.
     """
     reasons = []
     for path in folders:
@@ -295,14 +295,14 @@ def refuse_changed(folders: Iterable[Path], scene: str, files: Mapping[str, str]
 
 
 def _begun_or_finished(path: Path) -> Fingerprint:
-    """The fingerprint of the run that a folder has, interrupted or not; empty where it has none."""
+    """The fingerprint of the run that a folder has, interrupted or not; empty if it has none."""
     if (partial := partial_of(path)).exists():
         return interrupted(partial) or {}
     return read_run(path).fingerprint if path.exists() else {}
 
 
 def _has_whole_blocks(run: Run) -> bool:
-    """Whether every block is as it was written; warns of each damaged one."""
+    """True if every block is as it was written; warns of each damaged one."""
     try:
         blocks = run.blocks
     except RunError as error:
@@ -313,14 +313,14 @@ def _has_whole_blocks(run: Run) -> bool:
 
 
 def _tidy_after_kill(run: Run) -> None:
-    """Take away what a kill between the end of a run and its tidying left; nothing that was not that run's."""
+    """Delete the remains of a kill between the end of a run and its tidying; only files of that run."""
     there = interrupted(run.path)
     if there and not differences({key: there.get(key) for key in STUDY}, {key: run.fingerprint[key] for key in STUDY}):
         _tidy(run.path)
 
 
 def _tidy(folder: Path) -> None:
-    """Take away what only an unfinished run needs; of a kill in here the finished run bears what was left."""
+    """Delete the files of an unfinished run alone; after a kill in here they remain in the finished run."""
     for name in (LOCK, CHECKPOINT, CHECKPOINT + UNFINISHED):
         (folder / name).unlink(missing_ok=True)
     BlockFiles(folder / PIECES).clear()

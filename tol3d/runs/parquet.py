@@ -1,4 +1,4 @@
-"""Columns as Parquet, in memory: what a block's file holds. The only place that knows Parquet."""
+"""Columns as Parquet, in memory: the content of a block's file. Only this module imports Parquet."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -45,11 +45,11 @@ def parquet_of(columns: Columns, units: Mapping[str, str]) -> memoryview:
 
 @dataclass(frozen=True)
 class Shape:
-    """What a block of trials should be, known before any of it is read.
+    """Expected shape of a block of trials, known before any of it is read.
 
     Args:
-        rows: how many trials it has.
-        width: how many positions a column has, 1 but for curves.
+        rows: number of trials.
+        width: number of positions of a column, 1 except for curves.
     """
 
     rows: int
@@ -62,10 +62,10 @@ def columns_of(content: bytes, names: Sequence[str] | None = None, shape: Shape 
     Args:
         content: of the file, which a stranger may have made.
         names: of the columns that are wanted.
-        shape: of the block, where it is known; nothing is unpacked of a file that states another.
+        shape: of the block, where it is known; a file that states another one is not unpacked.
 
     Raises:
-        ParquetError: it is damaged, has another shape, lacks a column, or holds what no column of a run is.
+        ParquetError: it is damaged, has another shape, lacks a column, or holds a column that no run has.
     """
     try:
         file = pq.ParquetFile(pa.BufferReader(content))
@@ -78,7 +78,7 @@ def columns_of(content: bytes, names: Sequence[str] | None = None, shape: Shape 
 
 
 def _refuse_surprises(file: pq.ParquetFile, wanted: Sequence[str], shape: Shape | None) -> None:
-    """Refuse what is not a block of trials before any of it is unpacked: a few MB may hold as many GB of zeros."""
+    """Refuse anything but a block of trials before unpacking it: a few MB may hold as many GB of zeros."""
     stated = file.metadata.num_rows
     if shape is not None and stated != shape.rows:
         raise ParquetError(f"{stated} trials where there should be {shape.rows}")
@@ -110,7 +110,7 @@ def _width_of(kind: pa.DataType) -> int:
 
 
 def _is_of_runs(kind: pa.DataType) -> bool:
-    """Whether a column of a run may be of a type: numbers, lists of as many numbers each, words."""
+    """True if a column of a run may be of a type: numbers, lists of as many numbers each, words."""
     if pa.types.is_fixed_size_list(kind):
         return bool(pa.types.is_floating(kind.value_type)) and 0 < kind.list_size <= MOST_POSITIONS
     if pa.types.is_dictionary(kind):

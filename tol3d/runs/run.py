@@ -56,8 +56,8 @@ class Run:
 
     Args:
         path: its folder.
-        summary: what summary.json holds: statistics of each measure, contributors, timing, versions.
-        kinds: what a summary may hold; by default what this package's mechanisms add.
+        summary: content of summary.json: statistics of each measure, contributors, timing, versions.
+        kinds: allowed contents of a summary; default: those of this package's mechanisms.
     """
 
     path: Path
@@ -65,7 +65,7 @@ class Run:
     kinds: SummaryKinds | None = None
 
     def __repr__(self) -> str:
-        """Which run it is, and where."""
+        """Scene and folder of the run."""
         found = self.found
         words = (found.scene, f"{self.trials} trials", f"seed {found.seed}", f"engine {found.engine}")
         return f"<Run {str(self.path)!r}: {', '.join(words)}>"
@@ -86,7 +86,7 @@ class Run:
         return typed(self.summary, fault, self.kinds)
 
     def _repr_html_(self) -> str:
-        """Which run it is and its verdict, for notebooks."""
+        """Name of the run and its verdict, for notebooks."""
         shown: str = import_module(SHOWN).run_html(self)
         return shown
 
@@ -101,7 +101,7 @@ class Run:
 
     @property
     def trials(self) -> int:
-        """How many trials were run."""
+        """Number of trials that were run."""
         return self.found.trials
 
     @property
@@ -111,7 +111,7 @@ class Run:
 
     @property
     def keeps_trials(self) -> bool:
-        """Whether it holds its trials one by one, not their statistics only."""
+        """True if it holds its trials one by one, not their statistics only."""
         return self.found.blocks.kept
 
     @property
@@ -142,12 +142,12 @@ class Run:
         return BlockFiles(self.path / TRIALS, shape=self._shape_of)
 
     def _shape_of(self, name: str) -> Shape | None:
-        """What the file of a block holds."""
+        """Shape of the file of a block."""
         rows = self._block_sizes.get(name)
         return None if rows is None else Shape(rows, self._width_of)
 
     def _width_of(self, column: str) -> int:
-        """How many positions a column has: 1, or those of a curve."""
+        """Number of positions of a column: 1, or those of a curve."""
         method, _, name = column.partition(":")
         measure = self.found.measures.get(name) if method in ("analytic", "geometric") else None
         return len(measure.position_deg or ()) if measure and measure.take == "curve" else 1
@@ -250,7 +250,7 @@ class Run:
 
     @property
     def fingerprint(self) -> Fingerprint:
-        """What makes its blocks its own: scene, files, study, versions and processor, blocks."""
+        """Identity of its blocks: scene, files, study, versions and processor, blocks."""
         files = dict(self.found.files)
         versions = {name: version for name, version in self.found.versions.items() if name != "python"}
         study, blocks = self.summary["study"], self.summary["blocks"]  # as they were written
@@ -265,7 +265,7 @@ def open_run(path: Path | str, kinds: SummaryKinds | None = None) -> Run:
 
     Args:
         path: the folder.
-        kinds: what a summary may hold; by default what this package's mechanisms add.
+        kinds: allowed contents of a summary; default: those of this package's mechanisms.
 
     Raises:
         RunError: not a run, damaged, or changed since it was made.
@@ -296,7 +296,7 @@ def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
 
 
 def whole_file(files: BlockFiles, name: str) -> bool:
-    """Whether a file is as it was written; warns of a damaged one."""
+    """True if a file is as it was written; warns of a damaged one."""
     try:
         files.verify(name)
     except RunError as error:
@@ -311,5 +311,5 @@ def warn_of_damage(error: RunError) -> None:
 
 
 def _is_words(name: str, values: NDArray[Any]) -> bool:
-    """Whether a column is a detail in words, such as which contacts carry: values and what has a unit are numbers."""
+    """True if a column is a detail in words, such as the contacts that carry; values and units mean numbers."""
     return values.dtype.kind == "U" and not name.startswith((ANALYTIC, GEOMETRIC)) and not name.endswith("]")

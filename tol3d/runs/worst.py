@@ -16,7 +16,7 @@ LACKS_BY = -1e9  # sigmas; no build that seats is so far beyond a limit
 
 
 class KeptTrials(Protocol):
-    """What is read of a run: its summary, and columns as numpy arrays with the trial on axis 0."""
+    """Interface of a run as it is read: its summary, and columns as numpy arrays with the trial on axis 0."""
 
     @property
     def path(self) -> Path:
@@ -30,7 +30,7 @@ class KeptTrials(Protocol):
 
     @property
     def trials(self) -> int:
-        """How many trials were run."""
+        """Number of trials that were run."""
         ...
 
     @property
@@ -54,7 +54,7 @@ def worst_trial(run: KeptTrials, measure: str | None = None, *, seated_only: boo
     Args:
         run: one that kept its trials.
         measure: the only one that is judged; all that have limits by default.
-        seated_only: leave out trials that lack what is measured.
+        seated_only: leave out trials with status "lacking".
 
     Raises:
         RunError: no such measure, or the run kept no trials.
@@ -72,7 +72,7 @@ def worst_trial(run: KeptTrials, measure: str | None = None, *, seated_only: boo
 
 
 def _seated(run: KeptTrials) -> NDArray[np.bool_]:
-    """Which trials have every measure (trials,)."""
+    """True for trials that have every measure (trials,)."""
     seated = np.ones(run.trials, dtype=bool)
     for column in {status_column(name) for name in run.found.measures} & {*run.column_names}:
         seated &= run.columns(column)[column] == SEATED
@@ -80,7 +80,7 @@ def _seated(run: KeptTrials) -> NDArray[np.bool_]:
 
 
 def _margin(run: KeptTrials, method: str, name: str, measure: MeasureSummary) -> Array:
-    """How far each trial is inside the limits, in sigmas; infinite where it gave no value, far below all if lacking."""
+    """Margin of each trial inside the limits, in sigmas; infinite if it gave no value, far below all if lacking."""
     wanted = (value_column(method, name), status_column(name))
     columns = run.columns(*(column for column in wanted if column in run.column_names))
     found = outcome_of(columns, method, name, run.found.lacking)

@@ -30,13 +30,13 @@ class RunWriter:
     """Writes a run: blocks as they come, the rest at the end. Implements execution.BlockStore.
 
     Args:
-        path: the run's folder to be; see `occupant` for what may be there.
-        fingerprint: what makes the blocks of an interrupted run this run's own.
+        path: the run's future folder; see `occupant` for its allowed contents.
+        fingerprint: identity of an interrupted run's blocks.
         units: unit of each column, kept in the files' metadata.
         keep_trials: False keeps no blocks.
         resume: there must be an interrupted run of this fingerprint, or a finished one with damaged blocks.
-        force: replace a run of another study; what holds anything else is moved aside.
-        kinds: what a summary may hold; by default what this package's mechanisms add.
+        force: replace a run of another study; a folder with other files is moved aside.
+        kinds: allowed contents of a summary; default: those of this package's mechanisms.
 
     Raises:
         RunError: the folder is something else, cannot be written, or is being written by another run.
@@ -109,7 +109,7 @@ class RunWriter:
     # blocks -------------------------------------------------------------------------------------------
 
     def checkpoint(self, kind: type[T]) -> Checkpoint[T]:
-        """Where the statistics of the first blocks are kept."""
+        """Checkpoint of the statistics of the first blocks."""
         return Checkpoint(self.partial / CHECKPOINT, kind)
 
     def read(self, index: int) -> Columns | None:
@@ -117,7 +117,7 @@ class RunWriter:
         return _read(self._blocks, block_name(index))
 
     def holds(self, index: int) -> bool:
-        """Whether a finished block need not be made again; warns of a damaged one."""
+        """True if a finished block need not be computed again; warns of a damaged one."""
         return not self._keep_trials or whole_file(self._blocks, block_name(index))
 
     def write(self, index: int, columns: Columns) -> None:
@@ -139,7 +139,7 @@ class RunWriter:
         self._blocks.remove([name for name in self._blocks.names if name >= block_name(index)])
 
     def kept_blocks(self, kind: type[Any]) -> int:
-        """How many blocks need not be made again; of a run without trials those in its statistics of type `kind`."""
+        """Number of blocks that need not be computed again; without trials, those in the statistics of type `kind`."""
         if self._keep_trials:
             return len(self._blocks.names)
         counted = self.checkpoint(kind).read()
@@ -220,7 +220,7 @@ def _read(files: BlockFiles, name: str) -> Columns | None:
 
 @contextmanager
 def refusals_explained(writer: RunWriter, kept: Callable[[], str]) -> Iterator[None]:
-    """Within it, a write that fails raises a RunError that says what is kept.
+    """Turn a failed write into a RunError that states what is kept.
 
     Args:
         writer: writes the run.
@@ -238,7 +238,7 @@ def refusals_explained(writer: RunWriter, kept: Callable[[], str]) -> Iterator[N
 
 
 def _why(error: OSError, writer: RunWriter) -> tuple[str, str]:
-    """What the disk refused, and what helps."""
+    """Error of the disk in words, and its remedy."""
     if lacks_space(error):
         return f"{writer.path}: no space left on the disk", "make room"
     return f"{error.filename or writer.partial}: cannot be written ({error.strerror})", "mend the disk or its limits"

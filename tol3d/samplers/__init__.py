@@ -1,4 +1,4 @@
-"""How uniforms are drawn: each sampler gives any trials of any stream, alone, as pure functions of its key."""
+"""Samplers of uniforms: each gives any trials of any stream, alone, as pure functions of its key."""
 
 from tol3d.samplers.latin_hypercube import LatinHypercube
 from tol3d.samplers.monte_carlo import MonteCarlo

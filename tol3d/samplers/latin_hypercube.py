@@ -23,7 +23,7 @@ class LatinHypercube:
 
     Args:
         seed: of the permutations and of the places inside the strata.
-        size: points of a replicate; part of what a value depends on.
+        size: points of a replicate; values depend on it.
     """
 
     seed: int
@@ -50,7 +50,7 @@ class LatinHypercube:
 
 
 def permuted(index: Words, size: int, keys: Words) -> Words:
-    """Where a keyed permutation of 0 ... size - 1 takes each index, same shape.
+    """Images of indices by a keyed permutation of 0 ... size - 1, same shape.
 
     A Feistel network permutes the next even power of two; what falls outside goes through it again until it is inside.
     Source: Black and Rogaway, Ciphers with arbitrary finite domains (CT-RSA 2002), 4.

@@ -57,6 +57,6 @@ def inside_unit(integers: Words) -> Array:
 
 
 def random_words(count: int, seed: int, name: str, *identity: str) -> Words:
-    """So many random 64-bit words, keyed."""
+    """Random 64-bit words, keyed."""
     words = np.random.Philox(key=stream_key(seed, name, *identity)).random_raw(count)
     return np.asarray(words, dtype=np.uint64)

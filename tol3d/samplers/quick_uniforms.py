@@ -40,7 +40,7 @@ class QuickMonteCarlo:
 
 
 def quick_uniforms(seed: int, name: str, component: str, first: int, count: int) -> Array:
-    """As monte_carlo.uniforms, bit for bit."""
+    """Same values as monte_carlo.uniforms, bit for bit."""
     values = np.empty(count)
     _draw(_words(stream_key(seed, name, component)), np.array([first + 1], dtype=np.uint64), values)
     return values

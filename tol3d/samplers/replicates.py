@@ -34,7 +34,7 @@ def pieces(size: int, first: int, count: int) -> Iterator[Piece]:
 
 
 def uneven(sampler: SamplerKind, trials: int, replicates: int) -> str:
-    """What a number of trials should be instead, for messages; nothing where it can be drawn in such replicates.
+    """Suitable number of trials, for messages; nothing where the given one can be drawn in such replicates.
 
     >>> uneven("sobol", 2000, 12), uneven("sobol", 5, 16), uneven("sobol", 2000, 16)
     ('a multiple of the 12 replicates, such as 1992 or 2004', 'a multiple of the 16 replicates, such as 16', '')
@@ -62,7 +62,7 @@ def balanced_trials(trials: int, replicates: int) -> str:
 
 
 def is_power_of_two(number: int) -> bool:
-    """Whether a number of points is one that Sobol' points are even in.
+    """True if a number of points is a power of two, at which Sobol' points are even.
 
     >>> [n for n in range(1, 20) if is_power_of_two(n)]
     [1, 2, 4, 8, 16]

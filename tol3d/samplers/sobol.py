@@ -32,7 +32,7 @@ class Sobol:
     Args:
         seed: of the scrambles.
         size: points of a replicate; a power of two is what they are even in.
-        dimensions: how many streams there are.
+        dimensions: number of streams.
     """
 
     seed: int
@@ -68,7 +68,7 @@ class LinearPoints:
 
     @classmethod
     def of(cls, jumps: Words, shift: int = 0) -> "LinearPoints":
-        """With a table for the low bits of the index, doubled from point 0 on."""
+        """Points with a table for the low bits of the index, doubled from point 0 on."""
         table = np.zeros(1, dtype=np.uint64)
         for jump in jumps[:TABLE_BITS]:
             table = np.concatenate([table, table ^ jump])

@@ -1,4 +1,4 @@
-"""A stream: one uniform a trial, and what every sampler offers for it."""
+"""A stream: one uniform a trial, and the interface of every sampler for it."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -14,7 +14,7 @@ class Stream:
     """One uniform of every trial: a component of a contributor, or a position of the system.
 
     Args:
-        name: of the contributor, or of what has the position.
+        name: of the contributor, or of the owner of the position.
         component: which of its uniforms.
         dimension: its place among all streams of the model, from 0.
     """

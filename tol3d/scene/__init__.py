@@ -1,4 +1,4 @@
-"""What the user wrote: a scene file, read strictly, with the place of everything in it.
+"""Scene file of the user, read strictly, with the place of everything in it.
 
 Names are loaded when they are first used: summaries read the classes of published figures alone.
 """

@@ -1,4 +1,4 @@
-"""The scenes that tol3d brings along, found by their names."""
+"""The bundled scenes, found by their names."""
 
 import os
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ PACKAGE: Final = "tol3d.scenes"
 
 
 def bundled_scenes() -> Mapping[str, Path]:
-    """The scenes that tol3d brings along, by name."""
+    """The bundled scenes, by name."""
     brought = (Path(str(file)) for file in files(PACKAGE).iterdir())
     return {path.stem: path for path in sorted(brought) if path.suffix == ".yaml"}
 

@@ -1,4 +1,4 @@
-"""The scenes that tol3d brings along, a line each, and copied for their user to edit."""
+"""The bundled scenes, a line each, and copied for their user to edit."""
 
 from pathlib import Path
 

@@ -11,7 +11,7 @@ from tol3d.strict import Strict, refused
 
 CORRELATIONS: Final = "correlations"
 LEAST_EIGENVALUE: Final = 1e-9
-"""Of a matrix of correlations that is positive definite; below it rounding decides."""
+"""Least eigenvalue of a positive definite matrix of correlations; below it rounding decides."""
 
 Correlation = Annotated[float, Field(gt=-1.0, lt=1.0)]
 Row = Annotated[tuple[float, ...], listed("numbers", 2)]
@@ -71,5 +71,5 @@ def least_eigenvalue(matrix: np.ndarray) -> float:
 
 
 def eigenvalue(least: float) -> str:
-    """What is said of a matrix that is not positive definite."""
+    """Message on a matrix that is not positive definite."""
     return f"one with the eigenvalue {least:.3g}"

@@ -1,4 +1,4 @@
-"""Which way a deviation points: a word, or `{at: angle}`. Positions of the driver are said the same way."""
+"""Direction of a deviation: a word, or `{at: angle}`. Positions of the driver are stated the same way."""
 
 from typing import Annotated, Any, Literal
 

@@ -1,4 +1,4 @@
-"""A scene's file with other tolerances in it: what is said otherwise stays as it was written, comments too."""
+"""A scene's file with other tolerances in it: the rest stays as it was written, comments too."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -58,7 +58,7 @@ def write_scene(scene: Scene, path: Path) -> None:
 
 
 def _edited(scene: Scene, changed: Tolerances) -> str:
-    """A scene's text with these tolerances: of one that is there only what changed is written anew.
+    """A scene's text with these tolerances: only changed keys of an existing one are rewritten.
 
     One of an included file is left out there, and written into the scene.
     """
@@ -94,7 +94,7 @@ def leave_out(includes: CommentedMap, name: str) -> None:
 
 
 def _plain(spec: ToleranceEntry) -> dict[str, Any]:
-    """What was said of it, the law last."""
+    """Fields of the entry as stated, the law last."""
     plain: dict[str, Any] = spec.model_dump(mode="json", exclude_unset=True)
     last = {key: plain.pop(key) for key in ("distribution",) if key in plain}
     return {**plain, **last}
@@ -125,7 +125,7 @@ def _yaml() -> YAML:
 
 
 def written(data: Any) -> str:
-    """The text of what `loaded_yaml` read."""
+    """The text that `loaded_yaml` read."""
     stream = StringIO()
     _yaml().dump(data, stream)
     return stream.getvalue()

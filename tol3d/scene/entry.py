@@ -1,4 +1,4 @@
-"""What every entry of a scene's sections has in common: a kind, the names and files that it uses."""
+"""Common base of the entries of a scene's sections: a kind, the names and files that it uses."""
 
 from abc import ABC
 from collections.abc import Iterator, Mapping
@@ -26,7 +26,7 @@ class Entry(Strict, ABC):
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
-        """What the kind names beside its words, such as code, and is not there: in words; a kind lacks nothing."""
+        """Missing requirements of the kind besides its words, such as code, in words; by default none."""
         return iter(())
 
     def references(self) -> tuple[Reference, ...]:
@@ -38,7 +38,7 @@ class Entry(Strict, ABC):
         return iter(())
 
     def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
-        """What does not fit the PartSpecs and MoveSpecs that it names; called only when every name exists."""
+        """Conflicts with the PartSpecs and MoveSpecs that it names; called only when every name exists."""
         return iter(())
 
 

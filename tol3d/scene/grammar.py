@@ -28,7 +28,7 @@ from tol3d.scene.schema import PUBLISHED_MEANS, SECTIONS, Scene, StudySpec, stud
 from tol3d.scene.tolerance import ToleranceEntry, laws_in
 
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
-"""What does not hold together across entries whose names all exist: key path and finished sentence."""
+"""Check across entries whose names all exist: gives key path and finished sentence of each inconsistency."""
 
 REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
 
@@ -47,18 +47,18 @@ class Vocabulary:
     Args:
         name: of them all, for messages and for others that build on it.
         parts, tolerances, moves, measures: the kinds of each section.
-        checks: what must hold across entries.
-        warnings: what is most likely a slip, and is warned of: numbers that could be built.
+        checks: conditions across entries.
+        warnings: of probable slips: numbers that could be built.
         includes: names of vocabularies whose kinds may stand beside these in one scene, which is then this one's.
         extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
         distributions: laws that tolerances of any scene may state besides those that tol3d ships.
         options: keys of `study` that scenes of its kinds may have besides.
         published: keys that columns of `published` may have besides measures: sections of summary.json.
-        engines: words of study.engine, besides "analytic"; the first is taken where nothing is said.
+        engines: words of study.engine, besides "analytic"; the first is the default.
         witness: the one of them that can check the others, if there is one.
-        settle: import path `package.module:name` of what finds out the numbers that a scene leaves to its solids, see
+        settle: import path `package.module:name` of the finder of numbers that a scene leaves to its solids, see
             tol3d.scene.load; "" where scenes say all themselves.
-        other_kinds: words of the field that are no kind here, each with what to write instead.
+        other_kinds: words of the field that are no kind here, each with its replacement.
         other_keys: the same of keys and choices.
 
     Raises:
@@ -107,20 +107,20 @@ class Vocabulary:
 
 
 class Kinds(Protocol):
-    """Kinds that scenes may have, of which those are loaded that a scene needs."""
+    """Kinds of scenes, loaded as a scene needs them."""
 
     def whole(self) -> "Grammar":
         """All of them."""
 
     def saying(self, words: Set[str]) -> "Grammar":
-        """Those of the vocabularies that have some words; all of them where that is not known."""
+        """Grammar of the vocabularies that have some words; of all of them if that is not known."""
 
 
 @dataclass(frozen=True)
 class Grammar:
-    """What scenes may say: the kinds of several vocabularies. Equal where these are; pickles.
+    """Grammar of scenes: the kinds of several vocabularies. Equal where these are; pickles.
 
-    A shared kind is one of each vocabulary that has it.
+    A shared kind belongs to each vocabulary that has it.
 
     Raises:
         InputError: a kind stands for two things or lacks a piece of its own, or a section has none.
@@ -161,7 +161,7 @@ class Grammar:
         return {str(kind_of(spec)): spec for each in self.vocabularies for spec in each.specs(section)}
 
     def instead_of_kind(self, word: object) -> str:
-        """What to write instead of a kind that is not known; "" where no vocabulary says it."""
+        """Replacement for a kind that is not known; "" where no vocabulary gives one."""
         return _said_of(word, (each.other_kinds for each in self.vocabularies))
 
     def instead_of_key(self, word: object) -> str:
@@ -175,7 +175,7 @@ class Grammar:
 
     @property
     def engines(self) -> Engines:
-        """What scenes of these kinds may be measured with."""
+        """Engines for scenes of these kinds."""
         names = dict.fromkeys(engine for each in self.vocabularies for engine in each.engines)
         return Engines(tuple(names), tuple(each.witness for each in self.vocabularies if each.witness))
 
@@ -190,17 +190,17 @@ class Grammar:
         return _scene_class(self, required=frozenset())
 
     def messages(self, error: ValidationError, data: Any, origin: Origin) -> list[str]:
-        """What pydantic finds wrong with the plain values of a scene, in the user's words, each with its place."""
+        """Errors of pydantic in the plain values of a scene, in the user's words, each with its place."""
         return messages(error, data, origin, self)
 
     def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-        """What the vocabularies find wrong across entries."""
+        """Errors that the vocabularies find across entries."""
         for vocabulary in self.vocabularies:
             for check in vocabulary.checks:
                 yield from check(scene)
 
     def warnings(self, scene: Scene) -> Iterator[str]:
-        """What the vocabularies warn of, each with its place; the files of the scene are read, its solids known."""
+        """Warnings of the vocabularies, each with its place; the files of the scene are read, its solids known."""
         for vocabulary in self.vocabularies:
             for check in vocabulary.warnings:
                 yield from (warned(path, sentence) for path, sentence in check(scene))
@@ -226,7 +226,7 @@ class Grammar:
         raise scene.refuse(used[odd], f"{words}; {advice}, or make two scenes")
 
     def understands(self, scene: Scene) -> bool:
-        """Whether a vocabulary understands all of a scene."""
+        """True if a vocabulary understands all of a scene."""
         return self._go_together(self._used(scene).keys())
 
     def _go_together(self, names: Set[str]) -> bool:
@@ -265,7 +265,7 @@ class Grammar:
     def _used(self, scene: Scene) -> Mapping[str, KeyPath]:
         """The vocabularies whose kinds a scene has, each with its first entry.
 
-        A shared kind is one of those whose other kinds the scene has; where it has none, of the first that has it.
+        A shared kind belongs to the vocabulary whose other kinds the scene has; without such, to the first that has it.
         """
         used: dict[str, KeyPath] = {}
         entries = [

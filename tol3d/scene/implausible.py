@@ -1,4 +1,4 @@
-"""Numbers that could be built and are most likely a slip: deviations that are a large part of what deviates."""
+"""Numbers that could be built and are most likely a slip: deviations that are a large part of a nominal size."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,11 @@ from tol3d.scene.place import KeyPath, path_text, printable
 
 @dataclass(frozen=True)
 class Implausible:
-    """From which part of a nominal size on a deviation is warned of.
+    """Limit of a plausible deviation, as a share of a nominal size, beyond which it causes a warning.
 
     Args:
         share: of the nominal size; that much is still plausible.
-        advice: what to do.
+        advice: remedy.
 
     >>> Implausible(0.5).sentence("the diameter of 'plate.hole'", 8.0, 200.0)
     "expected at most 50 % of the diameter of 'plate.hole' (8 mm), got 200 mm (2500 %); look at the unit"
@@ -22,12 +22,12 @@ class Implausible:
     advice: str = "look at the unit"
 
     def sentence(self, of: str, nominal: float, deviation: float) -> str:
-        """What is implausible of a deviation [mm]; "" where nothing is, or there is no nominal size.
+        """Sentence on an implausible deviation [mm]; "" for a plausible one, or without a nominal size.
 
         Args:
             of: the nominal size in words.
             nominal: that size [mm].
-            deviation: how far it goes at most, with its sign [mm].
+            deviation: the largest, with its sign [mm].
         """
         if not nominal > 0.0 or abs(deviation) <= self.share * nominal:
             return ""

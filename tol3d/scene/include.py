@@ -65,25 +65,25 @@ class Includes:
 
     Args:
         source: the scene's file.
-        kinds: what scenes may have.
-        known: the files' contents, where they are known; none is read then.
+        kinds: those of scenes.
+        known: the files' contents, if known; then none is read.
     """
 
     source: Path
     kinds: "Kinds"
     known: Files | None
     files: dict[str, FileContent] = field(default_factory=dict)
-    """What was read, by names from the scene's folder."""
+    """Files that were read, by names from the scene's folder."""
     _read: dict[str, _Read] = field(default_factory=dict)
     _law: Any = None
     """The default law that the scene itself states, which is that of its files too."""
 
     def expanded(self, top: Node, origin: Origin, chain: tuple[str, ...] = ()) -> Node:
-        """A scene's values, or those of a file that it includes, with the entries of what it includes.
+        """A scene's values, or those of a file that it includes, with the entries of its includes.
 
         Args:
             top: the values.
-            origin: where they come from.
+            origin: their source.
             chain: the files that include each other, the last one being `top`; none for the scene itself.
 
         Raises:
@@ -168,7 +168,7 @@ class Includes:
 
 
 def _refuse_other_law(part: Scene, origin: Origin, name: str) -> None:
-    """Refuse a file's own default law, for the scene has another or none, if it decides what a tolerance means."""
+    """Refuse a file's own default law, as the scene has another or none, if it decides the meaning of a tolerance."""
     for path, entry in part.entries().items():
         if any(law.by_default_law for law in laws_in(entry)):
             words = f"expected limits of {name} to be read by the scene's own {DEFAULT_LAW}, got another"
@@ -179,7 +179,7 @@ def _refuse_other_law(part: Scene, origin: Origin, name: str) -> None:
 
 
 def _together(several: Sequence[Mapping[str, Children]]) -> tuple[int, int]:
-    """How many parts there are, and how many values."""
+    """Number of parts, and number of values."""
     values = (child.size for own in several for entries in own.values() for _, child in entries.values())
     return sum(len(own["parts"]) for own in several), sum(values)
 
@@ -229,12 +229,12 @@ def _named(read: _Read, name: str, spec: IncludeSpec, origin: Origin) -> Section
 
 
 def _prefixing(name: str, used: str) -> Callable[[str], str]:
-    """What a field says that uses a name, or one of its features, under that of an include."""
+    """Function that puts the name of an include before a used name, or before one of its features."""
     return lambda text: f"{name} {text}" if text == used or text.startswith(f"{used}.") else text
 
 
 def _changed(node: Node, path: KeyPath, change: Callable[[str], str]) -> Node:
-    """With the text of a field changed; the same node where nothing changes."""
+    """Node with the text of a field changed; the same node if nothing changes."""
     if isinstance(node.value, str):
         text = change(node.value)
         return node if text == node.value else node._replace(value=text)
@@ -246,7 +246,7 @@ def _changed(node: Node, path: KeyPath, change: Callable[[str], str]) -> Node:
 
 
 def _rekeyed(node: Node, path: KeyPath, name: str) -> Node:
-    """With another key at a path."""
+    """Node with another key at a path."""
     children = dict(node.children)
     if path[0] in children and len(path) > 1:
         place, child = children[path[0]]
@@ -289,7 +289,7 @@ def _between(node: Node, name: str) -> Node:
 
 
 def _with_correlations(top: Node, included: Sequence[tuple[Place, Node]]) -> Node:
-    """With correlations of included files before its own."""
+    """Node with correlations of included files before its own."""
     if not included:
         return top
     place, own = top.children.get(CORRELATIONS, top.children[INCLUDE])

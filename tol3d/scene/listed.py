@@ -1,4 +1,4 @@
-"""Lists in scenes: how many items they hold, said in words."""
+"""Lists in scenes: their numbers of items, in words."""
 
 from typing import Any
 
@@ -12,8 +12,8 @@ def listed(items: str, least: int = 1, most: int | None = None) -> BeforeValidat
     """Mark of a field that is a list, each item checked by itself afterwards.
 
     Args:
-        items: what they are, in the plural, such as "pairs".
-        least, most: how many there may be; any number above `least` if `most` is not given.
+        items: their name in the plural, such as "pairs".
+        least, most: allowed numbers; any number above `least` if `most` is not given.
     """
     many = f"{least}" if least == most else f"{least} or more" if most is None else f"{least} to {most}"
 

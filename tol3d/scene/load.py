@@ -1,4 +1,4 @@
-"""From a scene's file to a checked Scene."""
+"""Checked Scene from a scene's file."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -19,32 +19,32 @@ from tol3d.scene.text import read_scene_text, scene_text
 
 
 class Settle(Protocol):
-    """Finds out what a scene leaves to the solids of its parts."""
+    """Finds the numbers that a scene leaves to the solids of its parts."""
 
     def __call__(self, scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Scene, Files]:
-        """The scene with all numbers, and what was found as files that a run keeps.
+        """The scene with all numbers, and the findings as files that a run keeps.
 
         Args:
             scene: checked field by field, and for names.
             run_builders: whether programs that the scene names may be run.
-            known: what was found before, among a run's files; nothing is built then.
+            known: earlier findings among a run's files; then nothing is built.
 
         Raises:
-            SceneError: a solid cannot be built, or is not what the scene says; one or several messages.
+            SceneError: a solid cannot be built, or contradicts the scene; one or several messages.
         """
         ...
 
 
 def is_settled(scene: Scene) -> bool:
-    """Whether all of it is known as it stands."""
+    """True if all of it is known as it stands."""
     return not any(part.has_solid for part in scene.parts.values())
 
 
 def settled(scene: Scene, *, run_builders: bool, known: Files | None) -> Scene:
-    """The scene with all numbers, what was found among its files.
+    """The scene with all numbers, the findings among its files.
 
     Raises:
-        SceneError: a solid cannot be built, or is not what the scene says.
+        SceneError: a solid cannot be built, or contradicts the scene.
     """
     origin = scene.origin
     for vocabulary in scene.grammar.vocabularies_of(scene):
@@ -74,12 +74,12 @@ def read_scene(
     only where that is allowed.
 
     Args:
-        path: the YAML file, or the name of a scene that tol3d brings along.
-        kinds: what it may have; a Grammar, or kinds of which those are loaded that it names.
+        path: the YAML file, or the name of a bundled scene.
+        kinds: allowed ones; a Grammar, or kinds that are loaded as it names them.
         trust_parts: whether the scene may name files outside its own folder.
         run_builders: whether programs that it names as builders of its parts may be run.
-        files: the contents of the files that it names, where they are known; none is read then, and nothing built.
-        settle: False leaves open what solids decide, for those that only list scenes.
+        files: the contents of the files that it names, if known; then none is read, and nothing built.
+        settle: False leaves open the numbers that solids decide, for lists of scenes.
         examine: is shown the scene with its files before anything is built, or any program run; it may raise.
 
     Raises:
@@ -102,7 +102,7 @@ def scene_of_text(
     """The same of a text that lies in no file yet.
 
     Args:
-        source: where it would lie, for messages and relative names.
+        source: its assumed path, for messages and relative names.
         content: the text.
         kinds, trust_parts, run_builders, files: see read_scene.
 
@@ -115,7 +115,7 @@ def scene_of_text(
 
 @dataclass(frozen=True)
 class _Asked:
-    """How a scene is read; see read_scene."""
+    """Options of reading a scene; see read_scene."""
 
     trust_parts: bool
     run_builders: bool

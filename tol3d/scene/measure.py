@@ -1,4 +1,4 @@
-"""What every kind of measure has in common: of what it is, how much of it is taken, its limits."""
+"""Common base of every kind of measure: its subject, the value taken, its limits."""
 
 from abc import abstractmethod
 from typing import Annotated, ClassVar, Literal, Self
@@ -31,12 +31,12 @@ class MeasureEntry(Entry):
     @property
     @abstractmethod
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
 
     @property
     @abstractmethod
     def several_positions(self) -> bool:
-        """Whether a trial is read at several positions."""
+        """True if a trial is read at several positions."""
 
     @abstractmethod
     def references(self) -> tuple[Reference, ...]:

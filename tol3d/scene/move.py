@@ -1,4 +1,4 @@
-"""What every kind of assembly move has in common."""
+"""Common base of every kind of assembly move."""
 
 from abc import abstractmethod
 

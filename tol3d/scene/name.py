@@ -48,4 +48,4 @@ def _one_line(text: str) -> str:
 
 
 Remark = Annotated[str, AfterValidator(_one_line), Field(json_schema_extra={"maxLength": LONGEST_REMARK})]
-"""Words that are printed below a table: up to 2000 characters in one line, whatever lines they were written in."""
+"""Words that are printed below a table: up to 2000 characters in one line, however they were wrapped."""

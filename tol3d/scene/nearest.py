@@ -1,4 +1,4 @@
-"""The known word nearest to one that nobody knows."""
+"""The known word nearest to an unknown one."""
 
 import difflib
 from collections.abc import Collection, Iterable

@@ -8,16 +8,16 @@ from tol3d.scene.place import KeyPath, Place
 
 Key = str | int
 Children = Mapping[Key, tuple[Place, "Node"]]
-"""What a mapping or a list holds, in order, by keys or by positions, each with the place of its key."""
+"""Contents of a mapping or a list, in order, by keys or by positions, each with the place of its key."""
 
 
 class Node(NamedTuple):
     """A value, the same node for every alias of it.
 
     Args:
-        value: text, number, truth or None; an empty dict or list where it has children.
-        place: where it begins.
-        children: what it holds; empty of a scalar.
+        value: text, number, truth or None; an empty dict or list if it has children.
+        place: of its start.
+        children: its contents; empty for a scalar.
         size, height: values and levels in it, aliases written out.
     """
 
@@ -28,11 +28,11 @@ class Node(NamedTuple):
     height: int = 1
 
     def held(self, key: str) -> Children:
-        """What the value of a key holds; nothing where there is no such key."""
+        """Contents of the value of a key; nothing where there is no such key."""
         return self.children[key][1].children if key in self.children else {}
 
     def held_value(self, key: str) -> Any:
-        """The value of a key without what it holds; None where there is no such key."""
+        """The value of a key without its contents; None if there is no such key."""
         return self.children[key][1].value if key in self.children else None
 
 
@@ -41,8 +41,8 @@ def branch(value: dict[Any, Any] | list[Any], place: Place, children: Children) 
 
     Args:
         value: an empty one of its type.
-        place: where it begins.
-        children: what it holds.
+        place: of its start.
+        children: its contents.
     """
     size, height = 1, 0
     for _, child in children.values():
@@ -62,12 +62,12 @@ def plain(node: Node) -> Any:
 
 @dataclass(frozen=True)
 class Places(Mapping[KeyPath, Place]):
-    """Where the key of each key path stands (the value, for an item of a list)."""
+    """Place of the key of each key path (of the value, for an item of a list)."""
 
     top: Node
 
     def __getitem__(self, path: KeyPath) -> Place:
-        """The place of a key path; KeyError where there is none."""
+        """The place of a key path; KeyError if there is none."""
         place, node = self.top.place, self.top
         if not path:
             raise KeyError(path)
@@ -80,7 +80,7 @@ class Places(Mapping[KeyPath, Place]):
         return _paths(self.top, ())
 
     def __len__(self) -> int:
-        """How many key paths there are."""
+        """Number of key paths."""
         return self.top.size - 1
 
 

@@ -1,4 +1,4 @@
-"""What a vocabulary adds to a scene's study."""
+"""Options that a vocabulary adds to a scene's study."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ THEORY: Final = "analytic"
 
 @dataclass(frozen=True)
 class Engines:
-    """What scenes of some kinds may be measured with.
+    """Engines for scenes of some kinds.
 
     Args:
-        names: words of study.engine, besides "analytic"; the first is taken where nothing is said.
+        names: words of study.engine, besides "analytic"; the first is the default.
         witnesses: those of them that check the others.
     """
 
@@ -36,11 +36,11 @@ class Engines:
 
     @property
     def unwitnessed(self) -> frozenset[str]:
-        """Those that have no witness."""
+        """Engines without a witness."""
         return frozenset((THEORY, *self.witnesses))
 
     def without_witness(self, engine: str) -> str:
-        """What is expected of the witness of an engine that has none; nothing for the others."""
+        """Expected witness of an engine that has none, in words; empty for the others."""
         if engine == THEORY:
             return f"none for {engine}, which has no 3D simulation to check; an {self.names[0]} study may have one"
         itself = f"none for {engine}, which is the witness itself; an {self.names[0]} study may have one"

@@ -1,4 +1,4 @@
-"""What every kind of part has in common."""
+"""Common base of every kind of part."""
 
 from typing import Annotated, ClassVar
 
@@ -15,7 +15,7 @@ class PartSpec(Entry):
     """A part as a scene writes it."""
 
     origin_field: ClassVar[KeyPath] = ()
-    """The field that says where its origin lies in the world; () where nothing does."""
+    """The field that states the place of its origin in the world; () if there is none."""
 
     expansion: Annotated[Quantity, Of("expansion")] | None = Field(
         default=None, description="coefficient of linear thermal expansion"
@@ -23,11 +23,11 @@ class PartSpec(Entry):
 
     @property
     def has_solid(self) -> bool:
-        """Whether a solid has to be built before all that the scene says of it is known."""
+        """True if a solid has to be built before all that the scene says of it is known."""
         return False
 
 
 class GrowingSpec(PartSpec):
-    """A part that grows where it is warmer; kinds of part on whose size something depends are subclasses."""
+    """A part that grows with temperature; kinds of part with relevant sizes are subclasses."""
 
     words: ClassVar[str] = "a part that grows with temperature"

@@ -1,4 +1,4 @@
-"""Where in its file a value of a scene stands."""
+"""Place of a value of a scene in its file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -46,7 +46,7 @@ class Origin:
     included: tuple[str, ...] = ()
 
     def place(self, path: KeyPath) -> Place:
-        """Where the key path stands, or the nearest key above it; the top of the file at last."""
+        """Place of the key path, or of the nearest key above it; the top of the file at last."""
         for length in range(len(path), 0, -1):
             if path[:length] in self.places:
                 return self.places[path[:length]]
@@ -59,12 +59,12 @@ class Origin:
         return ": ".join(part for part in words if part)
 
     def order(self, path: KeyPath) -> tuple[str, int]:
-        """By which messages of key paths are sorted: those of the scene's own file first, by its lines."""
+        """Sort key of messages of key paths: those of the scene's own file first, by its lines."""
         place = self.place(path)
         return place.file, place.line
 
     def error(self, path: KeyPath, sentence: str, place: Place | None = None) -> SceneError:
-        """That message as the error to raise."""
+        """Error with that message."""
         return SceneError(self.message(path, sentence, place))
 
 

@@ -1,4 +1,4 @@
-"""What pydantic finds wrong, said in the user's words and with its place."""
+"""Errors that pydantic finds, in the user's words and with their place."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -30,7 +30,7 @@ def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Gramma
     Args:
         error: pydantic's findings.
         data: the plain values that it was given.
-        origin: where they stand.
+        origin: their place.
         grammar: the kinds that they may be of.
     """
     found: dict[str, tuple[str, int]] = {}
@@ -76,7 +76,7 @@ def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
 
 
 def _dimensions(path: KeyPath, data: Any, grammar: "Grammar") -> tuple[Dimension, ...]:
-    """What the quantities of a distribution measure, by the kind of the tolerance that holds it."""
+    """Dimensions of the quantities of a distribution, by the kind of the tolerance that holds it."""
     if len(path) < 2 or path[0] != "tolerances":
         return ()
     tolerance = data["tolerances"][path[1]]
@@ -89,11 +89,11 @@ def _dimensions(path: KeyPath, data: Any, grammar: "Grammar") -> tuple[Dimension
 
 
 def problem_sentence(details: ErrorDetails, dimensions: tuple[Dimension, ...] = ()) -> str:
-    """What was expected and what came, of one of pydantic's findings.
+    """Sentence on one of pydantic's findings: what was expected and what came.
 
     Args:
         details: the finding.
-        dimensions: what a quantity there measures.
+        dimensions: those of a quantity there.
     """
     if details["type"] == "quantity":
         return _quantity(details, dimensions)
@@ -130,7 +130,7 @@ def _missing_kind(details: ErrorDetails) -> str:
 
 
 def _other_word(details: ErrorDetails, grammar: "Grammar") -> str:
-    """The sentence of a word of the field that is said otherwise here, or not at all; "" of other findings."""
+    """The sentence for a word that is written otherwise here, or not at all; "" for other findings."""
     match details["type"]:
         case "union_tag_invalid":
             word = _tag(details)
@@ -201,7 +201,7 @@ def _too_few(details: ErrorDetails) -> str:
 
 
 def _unexpected(details: ErrorDetails) -> str:
-    """For what no scene has brought up yet: true, if plain."""
+    """Sentence for an error that no scene has caused yet: true, if plain."""
     return f"expected another value here, got {shown(details['input'])}"
 
 

@@ -1,4 +1,4 @@
-"""What one entry of a scene says about another: a name that must exist, and be of the right kind."""
+"""Reference of one entry of a scene to another: a name that must exist, and be of the right kind."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ Spec = type[Any]
 
 
 def any_of(specs: Collection[Spec]) -> str:
-    """What may stand there, in words: "a shaft or a housing"."""
+    """Kinds that may stand there, in words: "a shaft or a housing"."""
     return " or ".join(dict.fromkeys(spec.words for spec in specs))
 
 
@@ -20,7 +20,7 @@ class Taken:
     """Why an entry of the right kind will not do.
 
     Args:
-        why: what follows its name in the message, such as "which 'shaft' carries".
+        why: text after its name in the message, such as "which 'shaft' carries".
         instead: the name that would do.
     """
 
@@ -35,7 +35,7 @@ class Reference:
     Args:
         path: the field that holds it, from the entry on.
         name: the name.
-        specs: what it may be the name of: kinds, or what several kinds have in common.
+        specs: allowed kinds of the named entry, or common classes of several kinds.
     """
 
     path: KeyPath
@@ -44,7 +44,7 @@ class Reference:
 
     @property
     def expected(self) -> str:
-        """What it may be the name of, in words."""
+        """Expected kinds of the name, in words."""
         return any_of(self.specs)
 
     @classmethod
@@ -53,7 +53,7 @@ class Reference:
         return {}
 
     def advice(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> str:
-        """What to do where the name is not there, besides taking another; "" where nothing more is known.
+        """Remedy for a missing name, besides taking another; "" where nothing more is known.
 
         Args:
             parts, moves: the scene's; names that they use may be missing.
@@ -67,10 +67,10 @@ class Contradiction:
 
     Args:
         path: the field to mend, from the entry on.
-        expected: what would do.
-        got: what came.
+        expected: allowed value.
+        got: given value.
         known: words that would do, for the hint.
-        leads: whether others may follow from it, which are told once it is mended.
+        leads: True if others may follow from it, which are reported once it is mended.
     """
 
     path: KeyPath

@@ -31,7 +31,7 @@ def refuse(scene: Scene, problems: list[Problem]) -> None:
 
 
 def loose_ends(scene: Scene) -> list[Problem]:
-    """What does not hold together in a scene that is right field by field: names first, then what they mean."""
+    """Inconsistencies in a scene that is right field by field: names first, then their meaning."""
     problems = bad_names(scene)
     if not problems:
         contradicted = list(_contradicted(scene))
@@ -94,7 +94,7 @@ def _unknown(scene: Scene) -> Iterator[Problem]:
 
 
 def _found(scene: Scene, name: str) -> str:
-    """What there is of a name."""
+    """Place and kind of a name in the scene, in words."""
     section = next((section for section in SECTIONS if name in scene.section(section)), None)
     if section is None:
         return "is not in the scene"
@@ -103,7 +103,7 @@ def _found(scene: Scene, name: str) -> str:
 
 
 def _contradicted(scene: Scene) -> Iterator[tuple[Problem, bool]]:
-    """What entries find wrong in each other, and whether more may follow from it."""
+    """Conflicts between entries, each with whether more may follow from it."""
     for (section, name), entry in scene.entries().items():
         for it in entry.contradictions(scene.parts, scene.moves):
             near = hint(it.got.strip("'"), it.known)
@@ -111,7 +111,7 @@ def _contradicted(scene: Scene) -> Iterator[tuple[Problem, bool]]:
 
 
 def _unpublished(scene: Scene) -> Iterator[Problem]:
-    """What a published column says of measures and contributors that the scene does not have."""
+    """Measures and contributors of published columns that the scene does not have."""
     for column, measures in scene.published.items():
         for name, values in measures.items():
             path: KeyPath = ("published", column, name)
@@ -140,7 +140,7 @@ def _unpublished(scene: Scene) -> Iterator[Problem]:
 
 
 def _unstoppable(scene: Scene) -> Iterator[Problem]:
-    """What an automatic study waits for that no measure of the scene will reach."""
+    """Conditions of an automatic study that no measure of the scene will reach."""
     for name, errors in scene.study.until.items():
         path: KeyPath = ("study", "until", name)
         measure = scene.measures.get(name)
@@ -156,7 +156,7 @@ def _unstoppable(scene: Scene) -> Iterator[Problem]:
 
 
 def _file_problem(folder: Path, file: str, trust_parts: bool) -> str:
-    """Why the file cannot be read, or nothing."""
+    """Reason why the file cannot be read, or nothing."""
     try:
         path = (folder / file).resolve()
         inside = path.is_relative_to(folder.resolve())

@@ -62,7 +62,7 @@ Options = TypeVar("Options", bound=StudyOptions)
 
 
 class StandardErrors(Strict):
-    """How well a measure's mean and sigma are to be known, one standard error each, in its dimension."""
+    """Required standard errors of a measure's mean and sigma, one each, in its dimension."""
 
     mean: Annotated[Quantity, Positive()] | None = Field(default=None, description="standard error of the mean")
     sigma: Annotated[Quantity, Positive()] | None = Field(default=None, description="standard error of sigma")
@@ -85,7 +85,7 @@ def _trials_shape(value: Any) -> str:
 
 
 def _number_or_auto(value: Any) -> Any:
-    """As on the command line, `1e6` is a whole number, which YAML reads as a float."""
+    """Number as on the command line: `1e6` is a whole number, which YAML reads as a float."""
     if isinstance(value, float) and value.is_integer():
         return int(value)
     if isinstance(value, str | float) and value != "auto":
@@ -102,7 +102,7 @@ Trials = Annotated[
 
 
 class StudySpec(Strict):
-    """How many trials, from which seed, by which sampler and engine; with what its scene's vocabularies add."""
+    """Number of trials, seed, sampler and engine; with the options of its scene's vocabularies."""
 
     trials: Trials = Field(
         default=2000, description="number of virtual builds; auto: until the stated standard errors are reached"
@@ -135,7 +135,7 @@ class StudySpec(Strict):
 
     @property
     def parts(self) -> int:
-        """How many replicates there are, said or not."""
+        """Number of replicates, stated or not."""
         if self.sampler == "monte_carlo":
             return 1
         return REPLICATES if self.replicates is None else self.replicates
@@ -173,13 +173,13 @@ class StudySpec(Strict):
             )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by its engines and options: the class is made anew where it is read."""
+        """Pickled by its engines and options: the class is made anew on reading."""
         return _blank_study_spec, (self.engines, self.options), self.__getstate__()
 
 
 @lru_cache
 def study_spec_class(engines: Engines, options: tuple[type[StudyOptions], ...] = ()) -> type[StudySpec]:
-    """The class of studies by some engines, with what vocabularies add to it."""
+    """The class of studies by some engines, with the options of vocabularies."""
     field = StudySpec.model_fields["engine"]
     words = Literal[(*engines.names, THEORY)]  # type: ignore[valid-type]  # made at run time
     engine = (words, Field(default=engines.names[0], description=field.description))
@@ -197,7 +197,7 @@ def _blank_study_spec(engines: Engines, options: tuple[type[StudyOptions], ...])
 
 
 class Scene(Strict):
-    """A scene: parts, their tolerances, how they are assembled, what is measured, and the study.
+    """A scene: parts, their tolerances, their assembly, the measures, and the study.
 
     `tol3d.load_scene` makes one from a file, and checks the names that entries use of each other. Entries keep the
     order of the file.
@@ -226,7 +226,7 @@ class Scene(Strict):
     @model_validator(mode="wrap")
     @classmethod
     def _in_its_words(cls, data: Any, handler: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
-        """With the laws that its tolerances may have; what is wrong is said in the user's words, also from Python."""
+        """Scene with the laws that its tolerances may have; errors are stated in the user's words, also from Python."""
         origin = info.context if isinstance(info.context, Origin) else Origin()
         try:
             with stating(cls.laws), default_law(data.get(DEFAULT_LAW) if isinstance(data, Mapping) else None):
@@ -236,7 +236,7 @@ class Scene(Strict):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """With the laws that its tolerances may have, and files that it may include."""
+        """Schema with the laws that its tolerances may have, and files that it may include."""
         with stating(cls.laws):
             return with_include(handler(schema), handler)
 
@@ -257,7 +257,7 @@ class Scene(Strict):
 
     @property
     def text(self) -> str:
-        """That file's content."""
+        """Content of that file."""
         return self._origin.text
 
     @property
@@ -271,7 +271,7 @@ class Scene(Strict):
 
     @property
     def folder(self) -> Path:
-        """Where relative file names start."""
+        """Folder from which relative file names start."""
         return self.source.parent
 
     @property
@@ -292,7 +292,7 @@ class Scene(Strict):
         return scene
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy; one that says something else than its file, but for the study, has no text of it any more."""
+        """A copy; one that differs from its file, apart from the study, has no text any more."""
         if update and DEFAULT_LAW in update:
             raise InputError(f"expected {DEFAULT_LAW} to be changed by scene.with_, which reads the limits anew")
         copied = super().model_copy(update=update, deep=deep)
@@ -305,7 +305,7 @@ class Scene(Strict):
 
         Args:
             changes: new values by the names of their fields, as messages show them.
-            trust_parts, run_builders: see `tol3d.run_scene`; needed again where they were.
+            trust_parts, run_builders: see `tol3d.run_scene`; needed again if they were needed.
 
         Raises:
             InputError: no such entry. SceneError: a value that the scene may not have, or a part that cannot be built.
@@ -314,7 +314,7 @@ class Scene(Strict):
         return made
 
     def dump(self) -> str:
-        """A text that loads as this scene again: that of its file, or of what was said in Python."""
+        """A text that loads as this scene again: that of its file, or of the values given in Python."""
         text: str = named(DUMPED)(self)
         return text
 
@@ -340,7 +340,7 @@ class Scene(Strict):
         return {str(name): entry for name, entry in self.tolerances.items() if isinstance(entry, ToleranceSpec)}
 
     def options(self, kind: type[Options]) -> Options:
-        """What the study says of a vocabulary's options: their defaults where the scene's grammar has them not."""
+        """Study's options of a vocabulary: their defaults where the scene's grammar has them not."""
         return self.study if isinstance(self.study, kind) else kind()
 
     def refuse(self, path: KeyPath, sentence: str) -> SceneError:
@@ -348,7 +348,7 @@ class Scene(Strict):
         return self._origin.error(path, sentence)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by its grammar: the class is made anew where it is read."""
+        """Pickled by its grammar: the class is made anew on reading."""
         return _blank, (self.grammar,), self.__getstate__()
 
 

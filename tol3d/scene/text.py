@@ -1,9 +1,9 @@
-"""From a file to plain values with their places: the only module that reads YAML.
+"""Plain values of a file with their places: the only module that reads YAML.
 
 Grammar: YAML 1.2 by a parser's events, which are turned into values here in one pass, so that no
 input costs more than the limits below, and every key keeps its line. libyaml's parser, in PyYAML,
 reads most scenes, seven times as fast as ruamel.yaml's, which reads what libyaml stumbles over or
-takes for something else, and whose messages are told. Plain scalars follow the core
+misreads, and whose messages are shown. Plain scalars follow the core
 schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
 """
 
@@ -76,7 +76,7 @@ def read_scene_text(path: Path) -> tuple[Node, Origin]:
 
     Returns:
         The top-level mapping (keys are text; values dict, list, text, int, float, bool or None), and
-        where it came from.
+        its source.
 
     Raises:
         SceneError: it cannot be read, is no YAML 1.2, repeats a key or exceeds a limit above.
@@ -88,9 +88,9 @@ def scene_text(path: Path, content: bytes, *, included: bool = False) -> tuple[N
     """The same of a file that was read.
 
     Args:
-        path: where it lies, for messages.
+        path: its path, for messages.
         content: its bytes.
-        included: whether another file includes it, so that its places tell its name.
+        included: True if another file includes it, so that its places give its name.
 
     Raises:
         SceneError: as of read_scene_text.
@@ -156,7 +156,7 @@ def near_file(path: Path) -> str:
 
 
 class _OtherParserError(Exception):
-    """libyaml stumbles over a text: the other parser reads it, or says what is wrong."""
+    """libyaml stumbles over a text: the other parser reads it, or reports the error."""
 
 
 def _quick_events(text: str) -> Iterator[Any]:
@@ -175,7 +175,7 @@ def _quick_events(text: str) -> Iterator[Any]:
 
 
 def _events(origin: Origin, text: str) -> Iterator[Any]:
-    """The slower parser's events; whatever it trips over is one message."""
+    """The slower parser's events; any fault gives one message."""
     try:
         yield from YAML(typ="safe", pure=True).parse(text)
     except ReaderError as error:
@@ -194,7 +194,7 @@ def _events(origin: Origin, text: str) -> Iterator[Any]:
 
 @dataclass(frozen=True)
 class _Source:
-    """A text, the same wherever it lies; but for the name of an included file, which its places tell."""
+    """A text, the same in any folder; only for the name of an included file, which its places give."""
 
     text: str
     file: str
@@ -308,7 +308,7 @@ class _Composer:
         return branch({}, place, children)
 
     def _merged(self, node: Node, path: KeyPath, place: Place) -> Iterator[tuple[Key, tuple[Place, Node]]]:
-        """The keys that a merge key brings; of several mappings the first that has a key says its value."""
+        """The keys that a merge key brings; of several mappings the first that has a key gives its value."""
         mappings = [node] if isinstance(node.value, dict) else [own for _, own in node.children.values()]
         if not mappings or not all(isinstance(own.value, dict) for own in mappings):
             words = "expected a mapping beside <<, or a list of them, such as <<: *block"

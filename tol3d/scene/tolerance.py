@@ -1,4 +1,4 @@
-"""What every kind of tolerance has in common."""
+"""Common base of every kind of tolerance."""
 
 from abc import abstractmethod
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ from tol3d.units import Dimension, refuse_dimension
 
 
 def scaled_law(spec: DistributionSpec, factor: float, stays: Stays, files: Files) -> DistributionSpec:
-    """A stated law that is so many times as wide.
+    """A stated law of a multiple of the width.
 
     Raises:
         InputError: it cannot be scaled, or no numbers state it.
@@ -39,7 +39,7 @@ def laws_in(value: Any) -> Iterator[DistributionSpec]:
 
 
 class ToleranceEntry(Entry):
-    """A tolerance as a scene writes it: a contributor, or what limits one, such as a tighter zone for orientation."""
+    """A tolerance as a scene writes it: a contributor, or a limit of one, such as a tighter zone for orientation."""
 
     description: str = Field(default="", description="the user's own words, shown in reports")
 
@@ -48,7 +48,7 @@ class ToleranceEntry(Entry):
         """Every name that the tolerance uses."""
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
-        """The tolerance as a scene writes it that is so many times as wide.
+        """The tolerance as a scene writes it, of a multiple of the width.
 
         Args:
             factor: above 0.
@@ -69,7 +69,7 @@ class ToleranceSpec(ToleranceEntry):
     distribution: StatedDistribution = Field(description="the law of the deviation")
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """Those that its law reads."""
+        """Files that its law reads."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:

@@ -66,7 +66,7 @@ def _values(scene: Scene, text: str) -> Any:
 
 
 def dumped(scene: Scene) -> str:
-    """A text that loads as the scene: its own, or what was said in Python, as YAML."""
+    """A text that loads as the scene: its own, or the values given in Python, as YAML."""
     if scene.text:
         return scene.text
     data = scene.model_dump(mode="json", exclude_unset=True, by_alias=True)
@@ -103,7 +103,7 @@ def field_path(data: Mapping[str, Any], field: str) -> KeyPath:
 
 
 def _first(here: Any, rest: str) -> tuple[str, str]:
-    """The first key of a dotted name, the longest that is known there, and what is left."""
+    """The first key of a dotted name, the longest that is known there, and the rest."""
     known = [key for key in here if rest == key or rest.startswith((f"{key}.", f"{key}["))] if _is_map(here) else []
     if known:
         key = max(known, key=len)
@@ -134,7 +134,7 @@ def _inside(here: Any, key: str | int) -> Any:
 
 
 def _refuse_unknown(data: Mapping[str, Any], here: Any, path: KeyPath, key: str | int, field: str) -> None:
-    """Refuse what the grammar does not: sections, names of entries, and items of lists."""
+    """Refuse names unknown to the grammar: sections, names of entries, and items of lists."""
     if not path and key not in TOP:
         raise InputError(f"{field}: expected a section of a scene, got {key!r}{hint(str(key), TOP)}")
     if len(path) == 1 and path[0] in SECTIONS and key not in (here or {}):
@@ -191,7 +191,7 @@ def _forget_anchor(own: Any) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """As YAML writes it."""
+    """Value as YAML writes it."""
     if isinstance(value, Quantity):
         return str(value)
     if isinstance(value, Mapping):
@@ -210,14 +210,14 @@ def _known(scene: Scene) -> Any:
 
 
 def _keeps_solids(scene: Scene, paths: Any, values: Any) -> bool:
-    """Whether what was found at solids, and the files that the scene names, still hold."""
+    """True if the data found at solids, and the files that the scene names, still hold."""
     solid = {name for name, part in scene.parts.items() if part.has_solid}
     touched = any(path[0] == "parts" and (len(path) < 2 or path[1] in solid) for path in paths)
     return bool(scene.files) and not touched and all(_is_number(value) for value in values)
 
 
 def _is_number(value: Any) -> bool:
-    """Whether a value names no file."""
+    """True if a value names no file."""
     if isinstance(value, str):
         return bool(NUMBER_UNIT.fullmatch(value) or BARE_NUMBER.fullmatch(value))
     return isinstance(value, int | float | Quantity) or hasattr(value, "item")

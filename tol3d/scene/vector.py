@@ -16,7 +16,7 @@ def three(expected: str) -> BeforeValidator:
     """Mark of a field of three items, each checked by itself afterwards.
 
     Args:
-        expected: what would do, for the message.
+        expected: allowed values, for the message.
     """
 
     def checked(value: Any) -> tuple[Any, ...]:
@@ -44,4 +44,4 @@ Direction = Annotated[
     three("three numbers, such as [0, -1, 0]"),
     Field(json_schema_extra={"contains": {"not": {"const": 0}}}),
 ]
-"""Which way something points; its length means nothing."""
+"""Direction of something; its length is ignored."""

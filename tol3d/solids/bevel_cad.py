@@ -1,4 +1,4 @@
-"""What is read off the solid of a bevel gear: rays of its flanks, and the triangulations of all its faces."""
+"""Data read off the solid of a bevel gear: rays of its flanks, and the triangulations of all its faces."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""What is read off the solid of a shaft or an arm: the triangulations of all its faces."""
+"""Data read off the solid of a shaft or an arm: the triangulations of all its faces."""
 
 import cadquery as cq
 import numpy as np

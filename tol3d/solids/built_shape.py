@@ -1,4 +1,4 @@
-"""Shapes that come with a builder of their own: what a mechanism shows and exports that is no gear, shaft or arm."""
+"""Shapes that come with a builder of their own: shown and exported parts that are no gear, shaft or arm."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -14,11 +14,11 @@ class BuiltShape(ABC):
     """Numbers that a solid is built of [mm]; a subclass adds them as fields and names its builder.
 
     `display_mesh`, `export_step` and the cache take one as they take a gear. The solid may depend on nothing but the
-    fields, which is what it is cached under.
+    fields, which are its cache key.
     """
 
     builder: ClassVar[str]
-    """Import path `package.module:function` of what makes a `tol3d.parts.named_solid.NamedSolid` of the shape.
+    """Import path `package.module:function` of the maker of a `tol3d.parts.named_solid.NamedSolid` of the shape.
 
     Its module may import CadQuery: it is loaded when a solid is built, and never by opening a scene.
     """
@@ -49,7 +49,7 @@ class MeshedShape(BuiltShape):
 
     @abstractmethod
     def colours(self, deflection: float) -> Sequence[str]:
-        """The colour of each triangle of `mesh`, "#RRGGBB", empty where it has that of its part.
+        """The colour of each triangle of `mesh`, "#RRGGBB", empty for that of its part.
 
         Raises:
             InputError: the mesh cannot be made.

@@ -27,11 +27,11 @@ class CacheWarning(UserWarning):
 def cached(
     kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, float], build: Callable[[], Arrays]
 ) -> Arrays:
-    """The arrays of `build`, from the disk where they have been built before.
+    """The arrays of `build`, from the disk if they have been built before.
 
     Args:
-        kind: what they are; part of the key and the start of the file's name.
-        shape, settings: what `build` depends on besides the program itself.
+        kind: of the arrays; part of the key and the start of the file's name.
+        shape, settings: inputs of `build` besides the program itself.
         build: makes them.
 
     What a builder without source makes is not kept.
@@ -70,7 +70,7 @@ def _key(kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, floa
 
 
 def _made_in(shape: Gear | Body | BuiltShape) -> tuple[str, ...]:
-    """Modules besides this package's that decide what a shape is."""
+    """Modules besides this package's that determine a shape."""
     return (shape.builder.partition(":")[0],) if isinstance(shape, BuiltShape) else ()
 
 

@@ -1,6 +1,6 @@
 """The CAD side of every kind of gear and body, and STEP. Import it through tol3d.solids.lazy.
 
-A kind of gear registers here what its own file does; a BuiltShape, of whatever mechanism, brings its builder along.
+A kind of gear registers here what its own file does; a BuiltShape of any mechanism has its own builder.
 """
 
 import itertools

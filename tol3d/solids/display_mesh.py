@@ -25,7 +25,7 @@ class DisplayMesh:
         vertices: (n, 3) [mm].
         triangles: (m, 3) vertex numbers, turned outwards.
         side: (n,) which side of its tooth a vertex lies on (flank, radial line or fillet): RIGHT, LEFT
-            or 0 for neither (tip, root, bore, ends, whatever has no teeth).
+            or 0 for neither (tip, root, bore, ends, anything without teeth).
         chord_error: largest distance [mm] between the mesh and the solid's faces.
     """
 
@@ -53,7 +53,7 @@ def surface_of(shape: BuiltShape, deflection: float) -> tuple[Array, NDArray[np.
 
 
 def paint_of(shape: BuiltShape, deflection: float) -> Sequence[str]:
-    """The colour of each triangle of a shape's display mesh, "#RRGGBB", empty where it has none; () if none has one."""
+    """The colour of each triangle of a shape's display mesh, "#RRGGBB", empty if it has none; () if none has one."""
     return shape.colours(deflection) if isinstance(shape, MeshedShape) else ()
 
 

@@ -19,12 +19,12 @@ Surface: TypeAlias = fcl.CollisionObject
 
 
 class Nearest(NamedTuple):
-    """Where two surfaces are nearest to each other.
+    """Nearest points of two surfaces.
 
     Args:
         distance: [mm], 0 where they overlap.
         points: on the first and on the second, each (3,) [mm], in the world.
-        triangles: which ones of their meshes, -1 of a body without.
+        triangles: indices in their meshes, -1 for a body without one.
     """
 
     distance: float
@@ -63,12 +63,12 @@ class NearestPoints:
         self._request = fcl.DistanceRequest(enable_nearest_points=True)
 
     def of(self, first: Surface, second: Surface) -> Nearest:
-        """Of two surfaces where they stand."""
+        """Nearest points of two surfaces in their poses."""
         result = fcl.DistanceResult()
         distance = fcl.distance(first, second, self._request, result)
         return Nearest(distance, result.nearest_points, (result.b1, result.b2))
 
 
 def overlapping(first: Surface, second: Surface) -> bool:
-    """Whether two surfaces meet where they stand; one wholly inside the other does not meet it."""
+    """True if two surfaces meet in their poses; one wholly inside the other does not meet it."""
     return bool(fcl.collide(first, second, fcl.CollisionRequest(), fcl.CollisionResult()))

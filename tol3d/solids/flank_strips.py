@@ -63,7 +63,7 @@ def strip_mesh(
     """The strip of one flank as triangles: two a step, none across the face, which is ruled.
 
     The flank is scaled first (thermal growth about the gear's origin) and then pulled into the tooth
-    by `slack` [mm] along its normals, so that the slack stays what it is at any scale. The pulled
+    by `slack` [mm] along its normals, so that the slack is the same at any scale. The pulled
     polyline's own chord error is smaller than the strips', for its radius of curvature is. Within
     slack/r_b of roll 0 a flank that begins at the base circle folds over itself; contact never gets there.
 

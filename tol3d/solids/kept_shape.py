@@ -1,4 +1,4 @@
-"""Solids that a program of the user built, in a process of its own: what it made is kept, and it is never run again."""
+"""Solids that a program of the user built, in a process of its own: the result is kept, it never runs again."""
 
 import hashlib
 import json
@@ -17,10 +17,10 @@ from tol3d.solids.built_shape import BuiltShape
 
 PATIENCE_VARIABLE: Final = "TOL3D_BUILDER_SECONDS"
 PATIENCE: Final = 300.0
-"""s: in which a program of the user has made its solid, if the variable says nothing else."""
+"""s: default time limit of a program of the user, unless the variable states another."""
 
 PROGRAM: Final = "import os; answer = os.dup(1); os.dup2(2, 1); from tol3d.solids.own_program import main; main(answer)"
-"""Of the process: what anything prints goes to standard error, even before tol3d is imported."""
+"""Program of the process: anything printed goes to standard error, even before tol3d is imported."""
 
 made_here: set[str] = set()
 """SHA-256 of solids that were made for this process or tried by it, and need not be tried again."""
@@ -31,9 +31,9 @@ class KeptShape(BuiltShape):
     """A solid as OCC writes it.
 
     Args:
-        sha256: of what it writes, by which the shape is known.
+        sha256: of its output, which identifies the shape.
         faces: names in the order of the solid's faces.
-        brep: what it writes: data, which executes nothing when it is read.
+        brep: its output: data, which executes nothing when it is read.
     """
 
     builder: ClassVar[str] = "tol3d.solids.own_program:read"
@@ -49,7 +49,7 @@ class KeptShape(BuiltShape):
 
 
 def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> KeptShape:
-    """Run a builder of the user's in a process of its own and keep what it makes.
+    """Run a builder of the user's in a process of its own and keep its result.
 
     Args:
         file: a Python module.
@@ -58,7 +58,7 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
 
     Raises:
         GeometryError: it fails, makes no solid, ends its process, or takes longer than it may.
-        InputError: the variable that says how long it may take says no number.
+        InputError: the variable of its time limit is not a number.
     """
     patience = _patience()
     order = pickle.dumps(sys.path) + pickle.dumps((file, function, dict(dimensions)))

@@ -21,7 +21,7 @@ Arrays = dict[str, NDArray[np.generic]]
 
 
 class Cad(Protocol):
-    """What tol3d.solids.cad does."""
+    """Interface of tol3d.solids.cad."""
 
     def sample_flanks(self, gear: Gear, steps: int) -> Arrays:
         """Arrays of FlankStrips."""

@@ -1,4 +1,4 @@
-"""Builders of the user: programs that make the solid of a part, and what they made read again."""
+"""Builders of the user: programs that make the solid of a part, and the reading of their results."""
 
 import io
 import json
@@ -20,17 +20,17 @@ from tol3d.solids.kept_shape import KeptShape, made_here
 
 DAMAGED: Final = "the solid that was kept is damaged"
 PATIENCE: Final = 120.0
-"""s: in which what was kept is read by a process of its own."""
+"""s: time limit of the process that reads a kept solid."""
 
 
 def main(answer: int) -> None:
-    """Run the program that comes on standard input, pickled, and write what it makes; see kept_shape.
+    """Run the program that comes on standard input, pickled, and write its result; see kept_shape.
 
     That is a line of JSON, with the names of the faces and the number of bytes that follow, which are the solid; or
     with the reason why there is none.
 
     Args:
-        answer: the descriptor where it is written.
+        answer: descriptor to write to.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal interrupts both processes; the command says what is done
     order = io.BytesIO(sys.stdin.buffer.read())
@@ -46,7 +46,7 @@ def main(answer: int) -> None:
 
 
 def run_program(file: FileContent, function: str, dimensions: Mapping[str, float]) -> tuple[bytes, tuple[str, ...]]:
-    """What a function of a Python file makes: OCC's text of the solid, and names of its faces in their order.
+    """Solid that a function of a Python file makes: OCC's text of it, and names of its faces in their order.
 
     The function takes the dimensions as keyword arguments [mm, rad] and returns a `NamedSolid`, a `cadquery.Workplane`
     (faces are called by its tags) or a `cadquery.Solid`; faces without a name are "face 1" and so on.
@@ -85,7 +85,7 @@ def read(shape: KeptShape) -> NamedSolid:
     """The solid that was kept; of another process it is read in one of its own first, for it may be a stranger's.
 
     Raises:
-        GeometryError: it is none, or what reads it crashes or hangs.
+        GeometryError: it is none, or its reader crashes or hangs.
     """
     if shape.sha256 not in made_here:
         _try_apart(shape.brep)
@@ -107,7 +107,7 @@ def _read(brep: bytes) -> cq.Solid:
 
 
 def _try_apart(brep: bytes) -> None:
-    """Read a solid in a process of its own: one that crashes or hangs takes nothing with it."""
+    """Read a solid in a process of its own: a crash or a hang does no harm."""
     program = f"import sys\nfrom {__name__} import _read\n_read(sys.stdin.buffer.read())"
     command = [sys.executable, "-P", "-c", program]  # -P: nothing is imported from the folder it is called in
     try:
@@ -138,7 +138,7 @@ def _solid_and_names(made: Any, file: FileContent) -> tuple[cq.Solid, Mapping[st
 
 
 def _line(error: BaseException, file: FileContent) -> str:
-    """Where in the file an error came up."""
+    """Line of the file at which an error came up."""
     if isinstance(error, SyntaxError):
         return f"{file.path}:{error.lineno}"
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file.path)]

@@ -1,4 +1,4 @@
-"""Which face of a solid is meant, and what that face has."""
+"""Face of a solid that is selected, and its properties."""
 
 import hashlib
 import json
@@ -20,12 +20,12 @@ FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
 
 @dataclass(frozen=True)
 class Pick:
-    """Which face of a solid is meant.
+    """Selection of a face of a solid.
 
     Args:
         name: its name; "" for the nearest one.
         near: a point [mm] that no other face of these kinds is as near to; None of a pick by name.
-        kinds: what the face may be; all kinds where it is empty.
+        kinds: allowed kinds of face; empty for all.
         along: direction of x on a flat face, as near as may be; None for the part's x, or y where the normal is x.
     """
 
@@ -41,7 +41,7 @@ class PickedFace:
 
     Args:
         name: of the face.
-        kind: what it is.
+        kind: of the face.
         at: the middle: of a flat face of its bounding rectangle (or circle), of a round one of its axis, of a sphere
             its centre.
         direction: the normal out of the material of a flat face; the axis of a round one, towards +x, +y or +z,
@@ -75,10 +75,10 @@ class PickedFace:
 
 
 class PickError(GeometryError):
-    """No face is what a pick asks for, or several are.
+    """No face matches a pick, or several do.
 
     Args:
-        sentence: what was expected and what there is.
+        sentence: expected and existing faces.
         number: which pick.
         by: whether its name or its place is at fault.
     """
@@ -89,7 +89,7 @@ class PickError(GeometryError):
 
 
 FACES: Final = TypeAdapter(tuple[PickedFace, ...])
-"""As they are kept."""
+"""Faces as they are kept."""
 
 
 def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:

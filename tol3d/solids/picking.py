@@ -1,4 +1,4 @@
-"""Faces of a CAD solid by their names or places, and what each of them is."""
+"""Faces of a CAD solid by their names or places, and the properties of each."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
@@ -25,7 +25,7 @@ MOST_LISTED: Final = 8
 SAMPLES: Final = 181
 """Places on a curve that is neither line nor circle, between which its extremes are sought."""
 REFINED: Final = 1e-9
-"""Of the length of such a curve: where its extremes are found to; what lies that far from one is 1e-12 mm lower."""
+"""Fraction of the length of such a curve to which its extremes are found; a point that far off is 1e-12 mm lower."""
 ALONG: Final = 0.9
 """Cosine to the part's x beyond which a normal counts as along it; as in the frames of features by numbers."""
 
@@ -202,17 +202,17 @@ def _middle(face: cq.Face, surface: BRepAdaptor_Surface) -> Triple:
 
 
 def _normal(face: cq.Face, place: Triple) -> Triple:
-    """At a point of the face, out of the material."""
+    """Normal at a point of the face, out of the material."""
     return _floats(np.array(_triple(face.normalAt(cq.Vector(*place)))))
 
 
 def _towards(normal: Triple, place: Triple, centre: Triple) -> bool:
-    """Whether a normal points to a centre: the material lies outside."""
+    """True if a normal points to a centre: the material lies outside."""
     return bool(np.dot(normal, np.subtract(centre, place)) > 0.0)
 
 
 def _x_of(z: Array, along: Triple | None) -> Array:
-    """Across z, as near as may be to a direction; to the part's x, or its y, where none is stated."""
+    """Across z, as near as may be to a direction; by default to the part's x, or its y."""
     wish = np.array(along) if along is not None else np.eye(3)[0] if abs(z[0]) < ALONG else np.eye(3)[1]
     across = wish - (wish @ z) * z
     return np.asarray(across / np.linalg.norm(across))
@@ -226,6 +226,6 @@ def _triple(point: Any) -> Triple:
 
 
 def _floats(vector: Array) -> Triple:
-    """Without minus zeros."""
+    """Vector without minus zeros."""
     x, y, z = (float(own) + 0.0 for own in vector)
     return x, y, z

@@ -1,4 +1,4 @@
-"""Gears and other bodies, and where they stand."""
+"""Gears and other bodies, with their poses."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ Collar = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class ShaftBody:
-    """A cylinder about z from start to end [mm], thicker where it has collars: diameter, start and end of each."""
+    """A cylinder about z from start to end [mm], thicker at collars: diameter, start and end of each."""
 
     diameter: float
     start: float
@@ -41,7 +41,7 @@ class PosedGear:
 
     @property
     def shape(self) -> Gear:
-        """What is built: the gear."""
+        """Built shape: the gear."""
         return self.gear
 
 

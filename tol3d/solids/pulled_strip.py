@@ -26,9 +26,9 @@ class PulledStrip:
         return strip_mesh(self.strips, self.flank, self.slack, scale, self.span)
 
     def put_back(self, scale: Array, triangle: Triangles, point: Array) -> Array:
-        """Which vectors put points of the strip back onto the flank: (n, 3) [mm], out of the tooth.
+        """Vectors that put points of the strip back onto the flank: (n, 3) [mm], out of the tooth.
 
-        A vertex was pulled along its normal, what lies between vertices by their mixture.
+        A vertex was pulled along its normal, points between vertices by an interpolation.
 
         Args:
             scale: (n,), growth of the gear.
@@ -48,7 +48,7 @@ class PulledStrip:
         return np.asarray(self.slack * (weights[..., None] * normals[step]).sum(axis=1))
 
     def at_end(self, scale: Array, point: Array) -> NDArray[np.bool_]:
-        """Which points (n, 3) [mm] of the strip lie on an edge that ends its profile, (n,); arguments as above."""
+        """True for points (n, 3) [mm] of the strip on an edge that ends its profile, (n,); arguments as above."""
         found = np.zeros(len(point), dtype=bool)
         for end in (0, -1):
             inner, outer = self.strips.inner[self.flank][end], self.strips.outer[self.flank][end]
@@ -59,7 +59,7 @@ class PulledStrip:
         return found
 
     def curvature(self, scale: Array, triangle: Triangles) -> Array:
-        """Of the flank along its profile where triangles lie, in the middle of the span: (n,) [1/mm]; a ring: < 0."""
+        """Curvature of the flank along its profile at triangles, in mid-span: (n,) [1/mm]; negative for a ring."""
         normals = self.strips.normals[self.flank]
         step = triangle % (len(normals) - 1)
         middle = np.full(step.shape, sum(self.span) / 2)

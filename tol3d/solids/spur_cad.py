@@ -1,4 +1,4 @@
-"""What is read off the solid of a spur gear, external or internal: flanks swept along z, one end with its rims."""
+"""Data read off the solid of a spur gear, external or internal: flanks swept along z, one end with its rims."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""What is read off a solid that was swept along z: its ruled faces, and one end with its rims as a closed mesh."""
+"""Data read off a solid swept along z: its ruled faces, and one end with its rims as a closed mesh."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -116,7 +116,7 @@ class SweptMesh:
     count: int
 
     def arrays(self, side: NDArray[np.int8]) -> Arrays:
-        """Those of a DisplayMesh."""
+        """Arrays of a DisplayMesh."""
         return {
             "vertices": self.vertices,
             "triangles": self.triangles,
@@ -126,7 +126,7 @@ class SweptMesh:
 
 
 def swept_mesh(part: NamedSolid, width: float, deflection: float) -> SweptMesh:
-    """A closed mesh of what was swept from z = -width/2 to +width/2 [mm].
+    """A closed mesh of a section swept from z = -width/2 to +width/2 [mm].
 
     OCC meshes faces of splines many times finer than asked for and slowly, though they are ruled along z
     and need nothing between their ends; swept from one end the mesh closes by construction.

@@ -1,4 +1,4 @@
-"""OCC's own triangulations and curves as arrays, and how far a polygon leaves its curve."""
+"""OCC's own triangulations and curves as arrays, and the distance of a polygon from its curve."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ def largest_sagitta(curve: Curve, parameters: Array) -> float:
 
 
 def mesh_of(face: cq.Face) -> tuple[Poly_Triangulation, TopLoc_Location]:
-    """A face's triangulation and where it lies; the solid must be triangulated."""
+    """A face's triangulation and its location; the solid must be triangulated."""
     place = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(face.wrapped, place)
     if mesh is None:

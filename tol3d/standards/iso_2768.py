@@ -33,7 +33,7 @@ def linear(tolerance_class: str, size: float) -> float:
     0.3
 
     Raises:
-        InputError: no such class, or it has no value for the size; the text says what to write.
+        InputError: no such class, or it has no value for the size; the text gives the allowed ones.
     """
     _refuse_class(tolerance_class)
     _refuse_small(size)

@@ -86,7 +86,7 @@ J_HOLES: Final[Mapping[int, tuple[int, ...]]] = {
     7: (4, 6, 8, 10, 12, 14, 18, 22, 26, 30, 36, 39, 43),
     8: (6, 10, 12, 15, 20, 24, 28, 34, 41, 47, 55, 60, 66),
 }
-"""Upper deviation of J likewise."""
+"""Upper deviation of J, in the same way."""
 M6_OF_280_TO_315: Final = -9  # um; the one special case of the rule for holes that the standard names
 
 OUTSIDE: Final = ("a", "b", "c", "cd", "d", "e", "ef", "f", "fg", "g", "h")
@@ -140,7 +140,7 @@ def limits(tolerance_class: str, size: float) -> Limits:
         size: above 0, up to 500 mm.
 
     Raises:
-        InputError: no class of ISO 286, or one that it does not have for this size; the text says what there is.
+        InputError: no class of ISO 286, or one that it does not have for this size; the text gives the existing ones.
     """
     letter, grade = _parsed(tolerance_class)
     _refuse_size(tolerance_class, letter.lower(), grade, size)

@@ -48,12 +48,12 @@ class Clusters:
 
     @cached_property
     def starts(self) -> Places:
-        """Of each part its first feature, and the number of all."""
+        """First feature of each part, and the number of all."""
         return np.concatenate([[0], np.cumsum(self.sizes)]).astype(np.intp)
 
     @property
     def features(self) -> int:
-        """How many there are."""
+        """Number of features."""
         return int(self.starts[-1])
 
     @cached_property
@@ -96,7 +96,7 @@ class Clusters:
         return Picked(self, np.arange(self.features), np.arange(len(self.pairs[0])))
 
     def part(self, chosen: Places) -> "Picked":
-        """Some of the parts (chosen,), in their order; what is left of a cluster stays together."""
+        """Some of the parts (chosen,), in their order; the rest of a cluster stays together."""
         own = Clusters(self.sizes[chosen], self.together[chosen])
         rows = np.repeat(self.starts[chosen] - own.starts[:-1], own.sizes) + np.arange(own.features)
         wanted = rows[own.pairs[0]] * self.features + rows[own.pairs[1]]
@@ -116,7 +116,7 @@ class Picked:
     """Some parts of clusters.
 
     Args:
-        clusters: what they are.
+        clusters: of the features.
         rows: their features among those of all.
         pairs: their pairs among those of all.
     """

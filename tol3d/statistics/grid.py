@@ -39,9 +39,9 @@ class Grid:
     Args:
         lower: lower edge of the first bin.
         width: of a bin, in the unit of the values.
-        bins: how many.
+        bins: their number.
         held: values in each bin (bins,), or in those of `places` alone; of 32 bits while they need no more.
-        places: bins that are occupied (occupied,), in order; None where all are held.
+        places: bins that are occupied (occupied,), in order; None if all are held.
         inside: values in all bins.
         underflow, overflow: values below the first and above the last bin, infinite ones included.
     """
@@ -106,7 +106,7 @@ class Grid:
         return self._plus(other.places, other.held, other.inside, other.underflow, other.overflow)
 
     def _plus(self, places: Counts | None, held: Counts, inside: int, underflow: int, overflow: int) -> Self:
-        """With more counted: in the bins of `places`, or in all."""
+        """Grid with more counted: in the bins of `places`, or in all."""
         kind = np.int32 if self.inside + inside <= MOST_OF_32_BITS else np.int64
         mine: Counts | None = None
         its: Counts
@@ -158,13 +158,13 @@ class Grid:
 
     @property
     def quantile_error(self) -> float:
-        """How far a quantile may be off."""
+        """Largest error of a quantile."""
         return self.width
 
     def histogram(self, bins: int, span: tuple[float, float] | None = None) -> Histogram:
         """At most `bins` coarse bins, each of equally many fine ones, over a span of values.
 
-        The span grows to whole fine bins and is cut at the grid's ends; None takes what is occupied.
+        The span grows to whole fine bins and is cut at the grid's ends; None takes the occupied range.
         The same grid, bins and span always give the same edges, so that pictures can be laid over
         each other. Values outside the span, under- and overflow are left out.
         """

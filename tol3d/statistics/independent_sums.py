@@ -1,4 +1,4 @@
-"""Which contributors of very many a target's variance comes from: by what each has in common with it.
+"""Contributors of very many that a target's variance comes from: by the covariance of each with it.
 
 Products of all pairs of features go with the square of their number. Where contributors are independent those between
 them are chance, and are left out: each cluster of contributors is regressed on by itself.
@@ -21,11 +21,11 @@ class Products(Protocol):
     """Sums of products over trials."""
 
     def cross_products(self, features: Array, targets: Array) -> Array:
-        """Of each feature (features, trials) and each target (targets, trials): (features, targets)."""
+        """Cross products of each feature (features, trials) and each target (targets, trials): (features, targets)."""
         ...
 
     def pair_products(self, rows: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> Array:
-        """Of pairs of rows (rows, trials): (pairs,)."""
+        """Products of pairs of rows (rows, trials): (pairs,)."""
         ...
 
 
@@ -65,7 +65,7 @@ class IndependentSums:
             targets: (targets, trials), no nan.
             clusters: of all features.
             picked: those that each target has.
-            products: what sums them.
+            products: function that sums them.
         """
         count = features.shape[1]
         if count == 0:
@@ -89,7 +89,7 @@ class IndependentSums:
 
     @classmethod
     def _none(cls, own: Clusters) -> Self:
-        """Of no trial."""
+        """Sums over no trial."""
         size = own.features
         return cls(own, 0, np.zeros(size + 1), np.zeros(len(own.pairs[0])), np.zeros(size), 0.0)
 
@@ -112,7 +112,7 @@ class IndependentSums:
 
     @property
     def target_mean(self) -> float:
-        """Of the target."""
+        """Mean of the target."""
         return float(self.means[-1])
 
     @property
@@ -122,7 +122,7 @@ class IndependentSums:
 
     @property
     def is_constant(self) -> bool:
-        """Whether the target does not vary, but for rounding."""
+        """True if the target does not vary, but for rounding."""
         return self.square == 0.0 or self.target_sigma <= CONSTANT_RTOL * abs(self.target_mean)
 
     def fits(self) -> Iterator["ClusterFit"]:
@@ -170,8 +170,8 @@ class ClusterFit:
         coefficients: (clusters, features of a cluster), unit of the target per unit of the feature.
         covariance: of the coefficients (clusters, features, features).
         spread: covariance of the features.
-        explained: (clusters, features), co-moments of the target with what each feature explains of it.
-        unknowns: (clusters,), how many the fit had.
+        explained: (clusters, features), co-moments of the target with the part that each feature explains.
+        unknowns: (clusters,), their number in the fit.
     """
 
     pattern: Pattern
@@ -183,7 +183,7 @@ class ClusterFit:
 
 
 def independent_shares(sums: IndependentSums) -> tuple[Array, Array, float]:
-    """The share of the target's variance that each part explains, its standard error, and what none explains.
+    """The share of the target's variance that each part explains, its standard error, and the unexplained share.
 
     A cluster's share is r^2 of its own fit less what chance adds to it, (1 - r^2) q / (n - 1 - q) of q unknowns
     (Ezekiel's adjustment), so that no bias adds up over very many parts; by chance it may lie below 0. The error is

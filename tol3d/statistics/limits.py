@@ -1,4 +1,4 @@
-"""What falls outside the limits of a measure, in parts per million, and the performance indices."""
+"""Fraction outside the limits of a measure, in parts per million, and the performance indices."""
 
 import math
 from dataclasses import dataclass
@@ -51,14 +51,14 @@ class Proportion:
 
 @dataclass(frozen=True)
 class LimitCounts:
-    """How many trials gave a value, failed, and lie out of the limits.
+    """Numbers of trials that gave a value, failed, and lie out of the limits.
 
-    A share out of limits is one of ALL trials: a build that cannot be put together is not a good one.
+    A fraction out of limits is one of ALL trials: a build that cannot be assembled is not a good one.
 
     Args:
         good: trials that gave a value.
         failed: the others.
-        below: trials below the lower limit, those failed ones among them that lack what is measured.
+        below: trials below the lower limit, with the failed ones whose status is "lacking".
         above: trials above the upper limit.
         out: trials that are not good within both limits, each once; without limits those that failed.
     """
@@ -76,7 +76,7 @@ class LimitCounts:
         A value at a limit is within it.
 
         Args:
-            values, lower, upper: as said.
+            values, lower, upper: as described.
             lacking: (trials,), failed trials that count as below any lower limit; None for none.
         """
         return cls.of_spans(values, values, lower, upper, lacking)
@@ -115,22 +115,22 @@ class LimitCounts:
 
     @property
     def below_limit(self) -> Proportion:
-        """Of all trials, those below the lower limit."""
+        """Fraction of all trials below the lower limit."""
         return Proportion(self.below, self.total)
 
     @property
     def above_limit(self) -> Proportion:
-        """Of all trials, those above the upper limit."""
+        """Fraction of all trials above the upper limit."""
         return Proportion(self.above, self.total)
 
     @property
     def failures(self) -> Proportion:
-        """Of all trials, those that gave no value."""
+        """Fraction of all trials that gave no value."""
         return Proportion(self.failed, self.total)
 
     @property
     def out_of_limits(self) -> Proportion:
-        """Of all trials, those that are not good within the limits: 1 less the yield."""
+        """Fraction of all trials that are not good within the limits: 1 less the yield."""
         return Proportion(self.out, self.total)
 
 

@@ -1,4 +1,4 @@
-"""Least-squares fits of a target on feature columns, with the errors of what each part of the features does."""
+"""Least-squares fits of a target on feature columns, with the errors of the effect of each part of the features."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ LEAST_FREEDOM = 30  # rows beyond the fit's unknowns; Student's 5 sigma there is
 
 @dataclass(frozen=True, eq=False)
 class PartFit:
-    """What a fit says of parts of as many features each, such as contributors of two regressors.
+    """Fit of parts of as many features each, such as contributors of two regressors.
 
     Args:
         parts: (parts,), their places among all.
@@ -42,7 +42,7 @@ class PartFit:
 
     @property
     def chances(self) -> Array:
-        """The same of what is chance in it: of coefficients that are off by their errors."""
+        """The same for the part of chance in it: for coefficients that are off by their errors."""
         return _rooted(np.einsum("pij,pji->p", self.covariance, self.spread))
 
     @property
@@ -52,7 +52,7 @@ class PartFit:
 
     @property
     def standard_errors(self) -> Array:
-        """How many standard errors the coefficients are from 0: the root of Wald's statistic; inf without error."""
+        """Number of standard errors of the coefficients from 0: the root of Wald's statistic; inf without error."""
         inverse = np.linalg.pinv(self.covariance, hermitian=True)
         found = _rooted(np.einsum("pi,pij,pj->p", self.coefficients, inverse, self.coefficients))
         found[~self.covariance.any(axis=(1, 2))] = math.inf
@@ -67,7 +67,7 @@ class LinearFit:
     Args:
         count: rows.
         fits: of all parts, those of as many features together.
-        residual: standard deviation of what is left [unit of y].
+        residual: its standard deviation [unit of y].
     """
 
     count: int
@@ -76,7 +76,7 @@ class LinearFit:
 
     @classmethod
     def of(cls, sums: RegressorSums | IndependentSums, parts: Sequence[slice]) -> Self | None:
-        """The fit of the sums' target; None where there are too few rows to distinguish coefficients from chance."""
+        """The fit of the sums' target; None if there are too few rows to distinguish coefficients from chance."""
         return cls._of_all(sums, parts) if isinstance(sums, RegressorSums) else cls._of_clusters(sums)
 
     @classmethod
@@ -105,7 +105,7 @@ class LinearFit:
 
     @classmethod
     def _of_clusters(cls, sums: IndependentSums) -> Self | None:
-        """Each cluster by itself; what others do is left in the errors of its coefficients."""
+        """Each cluster by itself; the effects of others are in the errors of its coefficients."""
         widest = max((own.columns.shape[1] for own in sums.clusters.patterns), default=0)
         if sums.count - widest - 1 < LEAST_FREEDOM:
             return None
@@ -117,7 +117,7 @@ class LinearFit:
 
     @property
     def parts(self) -> int:
-        """How many there are."""
+        """Number of parts."""
         return sum(len(own.parts) for own in self.fits)
 
     @property
@@ -141,13 +141,13 @@ class LinearFit:
         return self._of_each([own.standard_errors for own in self.fits])
 
     def reaches(self, features: Array) -> Array:
-        """How far one row (features,) of the features lies out in each part, in units of `spreads`; 0 without any."""
+        """Size of one row (features,) of the features in each part, in units of `spreads`; 0 without any."""
         sizes = self._of_each([np.hypot.reduce(features[own.columns], axis=1) for own in self.fits])
         spreads = self.spreads
         return np.divide(sizes, spreads, out=np.zeros(len(sizes)), where=spreads > 0.0)
 
     def variances(self, part: int) -> Array:
-        """Of the features (features of a part,) of one part."""
+        """Variances of the features (features of a part,) of one part."""
         fit, place = next((own, k) for own in self.fits for k in np.flatnonzero(own.parts == part))
         return np.diagonal(fit.spread[place])
 

@@ -87,12 +87,12 @@ class Moments:
 
     @property
     def skewness(self) -> float:
-        """g1 = (m3 / n) / (m2 / n)^1.5; NaN where nothing varies."""
+        """g1 = (m3 / n) / (m2 / n)^1.5; NaN if nothing varies."""
         return math.sqrt(self.count / self.m2) * (self.m3 / self.m2) if self.m2 > 0 else math.nan
 
     @property
     def excess_kurtosis(self) -> float:
-        """g2 = (m4 / n) / (m2 / n)^2 - 3, 0 for a normal; NaN where nothing varies."""
+        """g2 = (m4 / n) / (m2 / n)^2 - 3, 0 for a normal; NaN if nothing varies."""
         return (self.count / self.m2) * (self.m4 / self.m2) - 3 if self.m2 > 0 else math.nan
 
     @property
@@ -102,7 +102,7 @@ class Moments:
 
     @property
     def sigma_se(self) -> float:
-        """Standard error of sigma, whatever the distribution; NaN where nothing varies.
+        """Standard error of sigma, for any distribution; NaN if nothing varies.
 
         var(s^2) = (mu4 - mu2^2 (n - 3) / (n - 1)) / n (Mood, Graybill, Boes, Introduction to the
         Theory of Statistics, 3rd ed., 1974, ch. VI), with the sample's own mu4 and s^2
@@ -116,7 +116,7 @@ class Moments:
 
 
 def skewness_se(count: int) -> float:
-    """Standard deviation of the skewness g1 of so many independent values of a normal law; inf for fewer than three.
+    """Standard deviation of the skewness g1 of independent values of a normal law; inf for fewer than three.
 
     var(g1) = 6 (n - 2) / ((n + 1) (n + 3)), exact. Source: Fisher, The moments of the distribution for normal samples
     of measures of departure from normality, Proc. R. Soc. A 130, 1930; it tends to 6 / n.
@@ -126,7 +126,7 @@ def skewness_se(count: int) -> float:
 
 
 def kurtosis_se(count: int) -> float:
-    """Standard deviation of the excess kurtosis g2 of so many values of a normal law; inf for fewer than four.
+    """Standard deviation of the excess kurtosis g2 of a number of values of a normal law; inf for fewer than four.
 
     var(g2) = 24 n (n - 2) (n - 3) / ((n + 1)^2 (n + 3) (n + 5)), exact; it tends to 24 / n. Source: as skewness_se.
     """

@@ -23,8 +23,8 @@ class PairSums:
     """Counts, means and co-moments of all pairs of columns, each over the trials that have both of its values.
 
     Args:
-        counts: (columns, columns), how many trials those are.
-        means: (columns, columns), [i, j] that of column i over them; 0 where there are none.
+        counts: (columns, columns), number of those trials.
+        means: (columns, columns), [i, j] that of column i over them; 0 if there are none.
         squares: (columns, columns), [i, j] the sum over them of (x_i - means[i, j])^2.
         comoments: (columns, columns), the sum over them of (x_i - means[i, j])(x_j - means[j, i]).
     """
@@ -42,7 +42,7 @@ class PairSums:
 
         Args:
             columns: each (trials,), NaN where a trial has no value.
-            products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
+            products: function that sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
             known: sums of the first columns, of the next ones ..., of all of them, by the same products; without any
                 they are worked out. No trial lacks a value then.
         """
@@ -60,7 +60,7 @@ class PairSums:
 
     @classmethod
     def _of_known(cls, columns: Sequence[Array], products: Products, known: Sequence[TargetSums]) -> Self:
-        """Of trials that have all values, where the sums within groups of columns are known."""
+        """Sums over trials that have all values, where the sums within groups of columns are known."""
         if len(known) == 1:
             return cls._of_sums(known[0])
         if products is not plain_products:  # compiled ones are quicker than what could be left out
@@ -84,7 +84,7 @@ class PairSums:
 
     @classmethod
     def _of_whole(cls, rows: Array, products: Products) -> Self:
-        """Of trials that have all values; the rows (columns, trials) are centred in place."""
+        """Sums over trials that have all values; the rows (columns, trials) are centred in place."""
         size, count = rows.shape
         if count == 0:
             return cls(np.zeros((size, size), dtype=np.int64), *(np.zeros((size, size)) for _ in range(3)))
@@ -99,7 +99,7 @@ class PairSums:
 
     @classmethod
     def _of_pairs(cls, rows: Array, products: Products) -> Self:
-        """Of trials (columns, trials) that lack some values: sums about each column's own mean, shifted for each pair.
+        """Sums over trials (columns, trials) that lack some values: about each column's mean, shifted for each pair.
 
         Where next to nothing is left by the shift, because a pair's trials lie close together and far from the mean of
         the column, the pair is summed by itself.
@@ -167,6 +167,6 @@ class PairSums:
 
 
 def fisher_half_width(counts: Counts, confidence: float = CONFIDENCE) -> Array:
-    """Half the interval of artanh r of so many trials; NaN for three or less. Its tanh is the noise of r about 0."""
+    """Half the interval of artanh r of some trials; NaN for three or less. Its tanh is the noise of r about 0."""
     freedom = np.where(counts > FISHER_FREEDOM, counts - float(FISHER_FREEDOM), np.nan)
     return np.asarray(float(scipy.special.ndtri((1 + confidence) / 2)) / np.sqrt(freedom))

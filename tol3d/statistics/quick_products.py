@@ -14,7 +14,7 @@ TILE = 512  # trials; forty rows of them stay in the nearest cache
 
 
 def quick_products(rows: Array) -> Array:
-    """As variance_shares.plain_products, to rounding."""
+    """Same products as variance_shares.plain_products, to rounding."""
     sums = np.zeros((len(rows), len(rows)))
     _add_products(np.ascontiguousarray(rows), sums)
     return sums
@@ -39,7 +39,7 @@ def pair_products(rows: Array, first: Places, second: Places) -> Array:
 
 
 def _padded(rows: Array, count: int) -> Array:
-    """So many rows, in one piece of memory: those given and zeros."""
+    """Rows in one piece of memory: those given and zeros."""
     if len(rows) == count:
         return np.ascontiguousarray(rows)
     return np.concatenate([rows, np.zeros((count - len(rows), rows.shape[1]))])

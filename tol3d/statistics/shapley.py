@@ -1,4 +1,4 @@
-"""Shapley effects of sums: shares of the variance of what is correlated, none negative, which add up to all of it.
+"""Shapley effects of sums: shares of the variance of correlated summands, none negative, which add up to all of it.
 
 Summands come to be known in some order; each has what the variance that is explained grows by when it comes, averaged
 over all orders. Of regressions this is known as LMG.
@@ -17,7 +17,7 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 
 ALL_ORDERS: Final = 5040
-"""Up to so many all orders are taken, of seven summands; beyond them as many random ones."""
+"""Largest number of orders for which all are taken, those of seven summands; beyond, as many random ones."""
 RANK_RTOL: Final = 1e-10
 
 

@@ -1,4 +1,4 @@
-"""Which group of features a measure's variance comes from, by least squares on the trials."""
+"""Variance of a measure by groups of features, by least squares on the trials."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -57,7 +57,7 @@ class TargetSums:
     comoments: Array
 
     def of(self, which: Sequence[int]) -> "TargetSums":
-        """Those of some of the targets, in their order."""
+        """Sums of some of the targets, in their order."""
         return TargetSums(self.count, self.means[[*which]], self.comoments[np.ix_(which, which)])
 
 
@@ -90,8 +90,8 @@ class RegressorSums:
         """The sums of one block for several targets (targets, trials) of the same features (features, trials).
 
         Args:
-            features, targets: as said.
-            products: what sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
+            features, targets: as described.
+            products: function that sums the products of all pairs of rows (rows, trials) over the trials, (rows, rows).
         """
         every = np.arange(len(features))
         return cls.with_targets(features, targets, products, [every] * len(targets))[0]
@@ -135,7 +135,7 @@ class RegressorSums:
 
     @property
     def target_mean(self) -> float:
-        """Of the target."""
+        """Mean of the target."""
         return float(self.means[-1])
 
     @property
@@ -146,7 +146,7 @@ class RegressorSums:
 
 @dataclass(frozen=True)
 class Shares:
-    """How a target's variance splits; shares and remainder add up to 1 unless the target is constant.
+    """Decomposition of a target's variance; shares and remainder add up to 1 unless the target is constant.
 
     Args:
         share: the fraction that each group explains.
@@ -166,7 +166,7 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
     var(y). With independent groups this tends to the group's fraction of the variance; it may come
     out slightly negative by chance. What no feature follows (interactions, higher powers, noise of
     the engine) is unexplained. Constant columns have no share; of columns that say the same each
-    takes its part. q columns of mere noise explain about q / n of what would be unexplained.
+    takes its part. q columns of mere noise explain about q / n of the unexplained part.
 
     A constant target has nothing to share: all zeros. With no more rows than the fit has unknowns
     it says nothing: all NaN.
@@ -174,7 +174,7 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
     Args:
         groups: for each name its feature columns; no column in two groups.
         together: names of groups that are correlated with each other; what they explain together is divided by their
-            Shapley effects on their part of the fit, of which none is negative.
+            Shapley effects on their part of the fit, none of which is negative.
     """
     features = [column for group in groups.values() for column in range(len(sums.means) - 1)[group]]
     if sums.count <= len(features) + 1:

@@ -70,13 +70,13 @@ def bodies_of(file: Part21, structure: Structure) -> tuple[Body, ...]:
 
 
 def _unit(file: Part21, representations: tuple[int, ...]) -> float:
-    """One unit of length of what represents a product, in mm."""
+    """One unit of length of a product's representation, in mm."""
     contexts = (representation(file, own)[1] for own in representations)
     return next((length_unit(file, own).factor for own in contexts), 1.0)
 
 
 def names_of(file: Part21, faces: frozenset[int]) -> dict[int, str]:
-    """What the file calls faces; those without a name are left out."""
+    """Names of faces in the file; those without a name are left out."""
     named = {number: file[number].inherited("REPRESENTATION_ITEM").text(0) for number in sorted(faces)}
     return {number: name for number, name in named.items() if name}
 
@@ -103,7 +103,7 @@ def layers_of(file: Part21) -> tuple[str, ...]:
 
 
 def _colour(file: Part21, styles: tuple[Reference, ...]) -> str:
-    """The first colour of surfaces that styles lead to; "" where they say none."""
+    """The first colour of surfaces that styles lead to; "" if they state none."""
     stack, seen = [(int(own), 0) for own in reversed(styles)], set(map(int, styles))
     while stack:
         number, depth = stack.pop()

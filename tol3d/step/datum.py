@@ -25,7 +25,7 @@ class DatumTarget:
         number: as the drawing has it after the letter: the 1 of A1.
         kind: area, point, line, rectangle, circle or another word of the file.
         feature: the faces that it names, if any.
-        placement: where it lies in the part's frame, if the file says it.
+        placement: in the part's frame, if the file states it.
         sizes: its lengths, named `target length`, `target width`, `target diameter`.
     """
 
@@ -44,8 +44,8 @@ class Datum:
     Args:
         id: its entity.
         letter: as tolerances refer to it.
-        features: the geometry that it is taken from; several only where the file says it so.
-        targets: where it is taken, if targets are stated.
+        features: the geometry that it is taken from; several only if the file states it.
+        targets: if targets are stated.
     """
 
     id: int
@@ -85,7 +85,7 @@ class Compartment:
 
     @property
     def letters(self) -> str:
-        """As a frame prints it without modifiers: `A`, `E-F-G`."""
+        """Letters as a frame prints them without modifiers: `A`, `E-F-G`."""
         return "-".join(each.letter for each in self.references)
 
 
@@ -95,10 +95,10 @@ def datum_letter(file: Part21, identifier: int) -> str:
 
 
 def read_datum(features: Features, identifier: int) -> Datum:
-    """A datum with what it is taken from.
+    """A datum with its features.
 
     Raises:
-        StepError: it says something that cannot be read.
+        StepError: its content cannot be read.
     """
     file = features.file
     ends = [

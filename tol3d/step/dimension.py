@@ -47,14 +47,14 @@ class Fit:
 
 @dataclass(frozen=True)
 class Dimension:
-    """A dimension as the file says it.
+    """A dimension as the file states it.
 
     Args:
-        id: where it stands.
-        name: that of what it dimensions, such as `Linear Size.13`; often empty.
+        id: its instance.
+        name: that of the dimensioned feature, such as `Linear Size.13`; often empty.
         kind: `diameter`, `radius`, `linear distance`, `angle` and so on, in the file's words.
         features: one of a size, two of a location, from the first to the second.
-        directed: whether the file says that the second is measured from the first.
+        directed: True if the file states that the second is measured from the first.
         role: toleranced, basic (theoretically exact) or reference.
         nominal: its value; None where the file states none.
         minus, plus: deviations from the nominal, lower and upper.
@@ -79,7 +79,7 @@ class Dimension:
 
     @property
     def is_size(self) -> bool:
-        """Whether it is of one feature."""
+        """True if it is of one feature."""
         return len(self.features) == 1
 
     @property
@@ -129,7 +129,7 @@ class Dimensions:
 
     @cached_property
     def represented(self) -> dict[int, tuple[int, ...]]:
-        """From each dimension to the items that represent it."""
+        """Items that represent each dimension."""
         found: dict[int, tuple[int, ...]] = {}
         for record in self.file.records("DIMENSIONAL_CHARACTERISTIC_REPRESENTATION"):
             dimension = int(record.reference(0))
@@ -139,7 +139,7 @@ class Dimensions:
 
     @cached_property
     def ranges(self) -> dict[int, int]:
-        """From each dimension to its ± values or class of limits."""
+        """± values or class of limits of each dimension."""
         found = self.file.records("PLUS_MINUS_TOLERANCE")
         return {int(each.reference(1)): int(each.reference(0)) for each in found}
 
@@ -147,7 +147,7 @@ class Dimensions:
         """One dimension.
 
         Raises:
-            StepError: it says something that cannot be read.
+            StepError: its content cannot be read.
         """
         instance = self.file[identifier]
         named: dict[str, Measure] = {}
@@ -188,7 +188,7 @@ class Dimensions:
         return [each for each in words if each in ("maximum", "minimum", "average")]
 
     def sides(self, instance: Instance) -> tuple[str, tuple[NamedFeature, ...]]:
-        """The kind of a dimension, and what it is of."""
+        """The kind of a dimension, and its features."""
         size = instance.record(*SIZES)
         if size is not None:
             record = instance.record("DIMENSIONAL_SIZE") or size
@@ -201,7 +201,7 @@ class Dimensions:
         return self.kind(record, 0, "angle" if angular else "linear distance"), ends
 
     def kind(self, record: Record, index: int, otherwise: str) -> str:
-        """The kind of a dimension in the file's words, or the usual word where it is not said."""
+        """The kind of a dimension in the file's words, or the usual word by default."""
         return record.text(index).strip().lower() or otherwise
 
     def range_of(self, identifier: int) -> tuple[Measure | None, Measure | None, Fit | None]:

@@ -1,4 +1,4 @@
-"""Triangles of the faces of a foreign part, each with its face: for pictures, and for what is near a point."""
+"""Triangles of the faces of a foreign part, each with its face: for pictures, and for selecting by a point."""
 
 from collections.abc import Sequence, Set
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from tol3d.solids.lazy import Arrays
 JOINED: Final = 1e-5
 """mm; nodes of two faces on one edge agree to OCC's 1e-7, others lie much further apart."""
 DECIMALS: Final = 4
-"""Of a point of a face [mm], as short as a person would paste it."""
+"""Decimals of a point of a face [mm], as short as a person would paste it."""
 
 Triple = tuple[float, float, float]
 
@@ -36,7 +36,7 @@ class FaceMesh:
 
     @classmethod
     def of(cls, arrays: Arrays) -> "FaceMesh":
-        """What the process that read the file hands over, vertices on edges joined.
+        """Mesh from the arrays of the process that read the file, vertices on edges joined.
 
         Raises:
             KeyError, TypeError, ValueError: it is no mesh.
@@ -87,7 +87,7 @@ class FaceMesh:
         Args:
             point: the point.
             faces: their numbers in the file.
-            less_error: whether what their triangles may be off is taken from it, so that it is 0 of a point on them.
+            less_error: subtract the error of their triangles, so that it is 0 for a point on them.
         """
         found = nearest(point, self.corners(faces))
         if not less_error:

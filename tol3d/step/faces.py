@@ -1,4 +1,4 @@
-"""Faces of a foreign STEP file as numbers: what the process that read it hands over, checked.
+"""Faces of a foreign STEP file as numbers: the output of the process that read it, checked.
 
 Lengths are in mm, angles in rad, in the frame of the product that has the solid.
 """
@@ -75,7 +75,7 @@ class Face(BaseModel):
 
     @property
     def is_hollow(self) -> bool:
-        """Whether the material of a round face lies outside: its normal points to the axis, or the centre."""
+        """True if the material of a round face lies outside: its normal points to the axis, or the centre."""
         towards = np.subtract(self.at, self.place)
         if self.kind == "torus":
             return bool(np.dot(self._tube() - np.array(self.place), self.normal) > 0.0)
@@ -168,6 +168,6 @@ class Faces(BaseModel):
 
 
 def extent(edges: Sequence[Edge], direction: Array) -> tuple[float, float]:
-    """Lowest and highest coordinate of some edges along a direction (3,) of unit length [mm]; 0 of none."""
+    """Lowest and highest coordinate of some edges along a direction (3,) of unit length [mm]; 0 for none."""
     found = [edge.extremes(direction) for edge in edges if edge.kind != "none"]
     return (min(low for low, _ in found), max(high for _, high in found)) if found else (0.0, 0.0)

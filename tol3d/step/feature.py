@@ -1,7 +1,7 @@
-"""What a tolerance, datum or dimension names: a shape aspect with the faces of each of its members.
+"""Feature that a tolerance, datum or dimension names: a shape aspect with the faces of each of its members.
 
-An aspect's own geometry hangs on it by GEOMETRIC_ITEM_SPECIFIC_USAGE or ITEM_IDENTIFIED_REPRESENTATION_USAGE; its
-members by SHAPE_ASPECT_RELATIONSHIP, and what a centre is derived from by SHAPE_ASPECT_DERIVING_RELATIONSHIP. Source:
+An aspect's own geometry is linked by GEOMETRIC_ITEM_SPECIFIC_USAGE or ITEM_IDENTIFIED_REPRESENTATION_USAGE; its
+members by SHAPE_ASPECT_RELATIONSHIP, and the basis of a centre by SHAPE_ASPECT_DERIVING_RELATIONSHIP. Source:
 CAx-IF recommended practices for the representation of PMI, 4.x, sections 5 and 6.
 """
 
@@ -48,13 +48,13 @@ class NamedFeature:
         id: the shape aspect, or the product's shape where the whole part is meant.
         name: the aspect's name, often that of the PMI that made it.
         shape: the product definition shape that it is of.
-        groups: the `#ids` of the faces, by member: two halves of a hole are one group where the file says so.
+        groups: the `#ids` of the faces, by member: two halves of a hole are one group if the file says so.
         solids: solids and shells that are named as wholes.
         curves: edges and other curves that are named.
         aspects: the shape aspects that were gone through.
         bare: those among them that name neither geometry nor members.
         whole: whether the whole part is meant.
-        around: `all around` or `all over`, empty where neither is said.
+        around: `all around` or `all over`, empty if neither is stated.
         pattern: whether the file calls it a pattern of features.
         derived: whether it is the centre (axis or middle plane) of the faces.
     """
@@ -79,7 +79,7 @@ class NamedFeature:
 
     @property
     def lies_on(self) -> str:
-        """What it consists of, in words: faces, the whole part, curves, or nothing that the file names."""
+        """Geometry of the feature in words: faces, the whole part, curves, or nothing that the file names."""
         if self.groups:
             return "faces"
         if self.whole:
@@ -91,13 +91,13 @@ class NamedFeature:
 
 @dataclass(frozen=True)
 class Features:
-    """The shape aspects of a file, with what hangs on each."""
+    """The shape aspects of a file, with the items linked to each."""
 
     file: Part21
 
     @cached_property
     def items(self) -> dict[int, tuple[int, ...]]:
-        """From each shape aspect to the geometry that hangs on it."""
+        """Geometry of each shape aspect."""
         found: dict[int, list[int]] = {}
         for instance in self.file.of(*USAGES):
             record = instance.needed(*USAGES)
@@ -118,7 +118,7 @@ class Features:
 
     @cached_property
     def members(self) -> dict[int, tuple[tuple[int, bool], ...]]:
-        """From each relating aspect to those it relates to, without datums, and whether it is derived from them."""
+        """Aspects that each relating aspect relates to, without datums, and whether it is derived from them."""
         found: dict[int, list[tuple[int, bool]]] = {}
         for relating, related, derives in self.relationships:
             if not is_datum(self.file[related]):
@@ -126,7 +126,7 @@ class Features:
         return {aspect: tuple(related) for aspect, related in found.items()}
 
     def named(self, identifier: int) -> NamedFeature:
-        """What a shape aspect names, by a walk that ends where members hold each other.
+        """Feature that a shape aspect names, by a walk that ends where members hold each other.
 
         Raises:
             StepError: it is no shape aspect, nor a dimension of one, nor the whole part.
@@ -140,7 +140,7 @@ class Features:
         return self.aspect(identifier)
 
     def aspect(self, identifier: int) -> NamedFeature:
-        """What a shape aspect itself names."""
+        """Feature that a shape aspect itself names."""
         instance = self.file[identifier]
         aspect = instance.inherited("SHAPE_ASPECT")
         if self.file[aspect.reference(2)].record("PRODUCT_DEFINITION_SHAPE") is None:
@@ -184,7 +184,7 @@ class Features:
         return found
 
     def is_one(self, identifier: int) -> bool:
-        """Whether an aspect's members are parts of one feature, such as the halves of a hole."""
+        """True if an aspect's members are parts of one feature, such as the halves of a hole."""
         instance = self.file[identifier]
         if instance.record("COMPOSITE_GROUP_SHAPE_ASPECT", "ALL_AROUND_SHAPE_ASPECT") is not None:
             return False
@@ -208,12 +208,12 @@ def identified(record: Record) -> Iterator[int]:
 
 
 def is_datum(instance: Instance) -> bool:
-    """Whether an aspect is a datum, a target or a system of them, rather than a feature of the part."""
+    """True if an aspect is a datum, a target or a system of them, rather than a feature of the part."""
     return instance.record(*DATUM_ASPECTS) is not None
 
 
 def around(instance: Instance) -> Around:
-    """What the all-around sign of an aspect says."""
+    """Meaning of the all-around sign of an aspect."""
     if instance.record("ALL_AROUND_SHAPE_ASPECT") is not None:
         return "all around"
     if instance.record("ALL_OVER_SHAPE_ASPECT") is not None:

@@ -22,7 +22,7 @@ SAME_SLOPE: Final = 1e-6
 HELD: Final = math.pi + 0.02
 """rad; a cylinder that turns further holds a pin across, one that turns less is a rounded edge."""
 DECIMALS: Final = 10
-"""Of lengths in mm: rounding noise of a file's 15 digits is cut off, and no more."""
+"""Decimals of lengths in mm: rounding noise of a file's 15 digits is cut off, and no more."""
 COSINE_DECIMALS: Final = 13
 ALONG: Final = 0.9
 """Cosine to the part's x beyond which a normal counts as along it; as in the frames of features by numbers."""
@@ -40,7 +40,7 @@ class FoundFeature:
     """A feature of a part, in the frame of its product [mm].
 
     Args:
-        faces: their numbers in the file, of the solid; of loose faces where it is loose.
+        faces: their numbers in the file, of the solid; of loose faces if it is loose.
         kind: a fillet is a hollow cylinder that turns by half a turn or less, a round its opposite.
         at: the middle: of a plane of the rectangle (or circle) around it, of a round feature of its axis.
         direction: the normal out of the material of a plane; else the axis, towards +x, +y or +z.
@@ -50,12 +50,12 @@ class FoundFeature:
             circle in its tube; 0 of others.
         minor_radius: of a torus's tube; of a cone, the smaller one.
         half_angle: of a cone [rad].
-        turn: how far about its axis it reaches [rad].
+        turn: its angle about its axis [rad].
         area: [mm²].
         loose: whether it lies beside the solid.
         repeated: numbers of loose faces that lie on it.
         names: of its faces in the file.
-        colour: of its faces, "#RRGGBB"; "" where the file says none, or several.
+        colour: of its faces, "#RRGGBB"; "" if the file states none, or several.
         on: a point of it.
     """
 
@@ -78,16 +78,16 @@ class FoundFeature:
 
     @property
     def length(self) -> float:
-        """Along its axis [mm]."""
+        """Length along its axis [mm]."""
         return self.extent[0]
 
     @property
     def hollow(self) -> bool:
-        """Whether the material lies outside."""
+        """True if the material lies outside."""
         return self.kind in ("hole", "fillet", "socket")
 
     def axis_distance(self, point: Array) -> float:
-        """How far a point (3,) is from the axis between its ends, or from the centre of a ball [mm]."""
+        """Distance of a point (3,) from the axis between its ends, or from the centre of a ball [mm]."""
         off = point - np.array(self.at)
         along = float(np.clip(off @ np.array(self.direction), -self.length / 2, self.length / 2))
         return float(np.linalg.norm(off - along * np.array(self.direction)))
@@ -95,7 +95,7 @@ class FoundFeature:
 
 @dataclass(frozen=True)
 class Shell:
-    """A solid, or loose faces, with what their numbers mean.
+    """A solid, or loose faces, with the meaning of their numbers.
 
     Args:
         faces: by their numbers in the file.
@@ -130,7 +130,7 @@ class Shell:
 
     @cached_property
     def features(self) -> tuple[FoundFeature, ...]:
-        """What is found, in the order of the file; loose faces that repeat none of the solid's last."""
+        """Features found, in the order of the file; loose faces that repeat none of the solid's last."""
         own = [number for number in self.faces if number not in self.loose]
         found = [self.made_of(ids) for ids in self._grouped(own)]
         extra: list[int] = []
@@ -142,7 +142,7 @@ class Shell:
         return (*found, *(replace(self.made_of(ids), loose=True) for ids in self._grouped(extra)))
 
     def _repeats(self, number: int, feature: FoundFeature) -> bool:
-        """Whether a loose face lies on a feature of the solid."""
+        """True if a loose face lies on a feature of the solid."""
         face = self.faces[number]
         for other in feature.faces:
             own = self.faces[other]
@@ -155,7 +155,7 @@ class Shell:
         return False
 
     def _meet(self, number: int, other: int) -> bool:
-        """Whether the boxes of two faces overlap."""
+        """True if the boxes of two faces overlap."""
         for direction in np.eye(3):
             low, high = self.along((number,), direction)
             other_low, other_high = self.along((other,), direction)
@@ -202,7 +202,7 @@ class Shell:
         """The feature that faces on one surface are.
 
         Args:
-            ids: their numbers; the first says which surface it is.
+            ids: their numbers; the first gives the surface.
             along: direction of x on a plane, as near as may be; the part's x, or y where the normal is x, if None.
         """
         face = self.faces[ids[0]]
@@ -221,7 +221,7 @@ class Shell:
         return replace(found, area=round(area, DECIMALS), loose=ids[0] in self.loose)
 
     def is_one(self, ids: Sequence[int]) -> bool:
-        """Whether faces lie on one surface."""
+        """True if faces lie on one surface."""
         first = self.faces[ids[0]]
         return all(_same_surface(first, self.faces[own], turned=False) for own in ids[1:])
 
@@ -274,7 +274,7 @@ class Shell:
         )
 
     def _turn(self, ids: Sequence[int], length: float) -> float:
-        """How far faces reach together about their axis [rad]."""
+        """Angle about their axis that faces cover together [rad]."""
         first = self.faces[ids[0]]
         if any(self.faces[number].turn is None for number in ids):
             area = sum(self.faces[number].area for number in ids)
@@ -356,7 +356,7 @@ def by_place(found: Sequence[FoundFeature]) -> list[FoundFeature]:
 
 
 def _normal(face: Face) -> Array:
-    """Of a flat face, out of the material (3,)."""
+    """Normal of a flat face, out of the material (3,)."""
     axis = np.array(face.axis)
     return axis if float(axis @ np.array(face.normal)) > 0.0 else 0.0 - axis
 
@@ -369,11 +369,11 @@ def _scalar(face: Face) -> float:
 
 
 def _same_surface(first: Face, second: Face, *, turned: bool) -> bool:
-    """Whether two faces lie on one surface.
+    """True if two faces lie on one surface.
 
     Args:
         first, second: both.
-        turned: whether the material may lie on the other side.
+        turned: True if the material may lie on the other side.
     """
     if first.kind != second.kind or first.kind == "free form":
         return False
@@ -403,7 +403,7 @@ def _same_surface(first: Face, second: Face, *, turned: bool) -> bool:
 
 
 def _one_circle(edges: Sequence[Edge]) -> bool:
-    """Whether arcs are of one circle."""
+    """True if arcs are of one circle."""
     first = edges[0]
     return all(
         abs(own.radii[0] - first.radii[0]) < SAME_PLACE
@@ -413,7 +413,7 @@ def _one_circle(edges: Sequence[Edge]) -> bool:
 
 
 def _x_of(z: Array, along: Triple | None) -> Array:
-    """Across z, as near as may be to a direction; to the part's x, or its y, where none is stated."""
+    """Across z, as near as may be to a direction; by default to the part's x, or its y."""
     wish = np.array(along) if along is not None else np.eye(3)[0] if abs(z[0]) < ALONG else np.eye(3)[1]
     across = wish - (wish @ z) * z
     return np.asarray(across / np.linalg.norm(across))

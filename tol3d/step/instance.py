@@ -1,4 +1,4 @@
-"""One instance of a STEP file, `#id = ENTITY(…);`, and its arguments asked for by what they must be."""
+"""One instance of a STEP file, `#id = ENTITY(…);`, and its arguments asked for by their required types."""
 
 from dataclasses import dataclass
 
@@ -103,7 +103,7 @@ class Record:
         return tuple(each for each in found if isinstance(each, Reference))
 
     def text(self, index: int) -> str:
-        """A string; empty where it is not given.
+        """A string; empty if it is not given.
 
         Raises:
             StepError: it is none.

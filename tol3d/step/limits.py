@@ -1,15 +1,15 @@
-"""Limits of a process that reads what a stranger made."""
+"""Limits of a process that reads untrusted files."""
 
 from importlib import import_module
 from typing import Any, Final
 
 MEGABYTE: Final = 1_000_000
 LARGEST_ANSWER: Final = 2_000 * MEGABYTE
-"""Bytes; what such a process may write to one file."""
+"""Bytes; limit of what such a process may write to one file."""
 
 
 def limit_this_process(megabytes: int, seconds: float) -> None:
-    """Let this process have so much address space and computing time, and leave no core behind.
+    """Limit the address space and computing time of this process, and leave no core behind.
 
     Where the system knows no such limits, the wall clock of the one that started it is the only one.
 

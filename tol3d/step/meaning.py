@@ -1,4 +1,4 @@
-"""What each tolerance of a STEP file means in a scene: said, said approximately, or left out, each with its reason.
+"""Meaning of each tolerance of a STEP file in a scene: said, said approximately, or left out, each with its reason.
 
 The grammar is that of docs/assemblies.md. A tolerance is *said* where a zone of the grammar limits the same features in
 the same frame; *approximately* where something of it is lost, which is named; else it is *left out*, and why. Each
@@ -38,19 +38,19 @@ DROPPED: Final = {
     "tangent plane": "the tangent plane is taken as the face itself",
     "statistical tolerance": "that it is statistical is lost: the law of the zone says how deviations lie",
 }
-"""Modifiers that today's grammar has no word for, and what is lost without them."""
+"""Modifiers for which the grammar has no word yet, and the loss without them."""
 
 
 @dataclass(frozen=True)
 class Meaning:
-    """What one tolerance means in a scene.
+    """Meaning of one tolerance in a scene.
 
     Args:
         tolerance: its `#id`.
         how: said, approximately or left out.
-        kind: the kind of tolerance or measure in the scene; empty where it is left out.
-        shape: what it is of, in words.
-        why: what is lost, or why it is left out; empty where it is said.
+        kind: the kind of tolerance or measure in the scene; empty if it is left out.
+        shape: the toleranced shape, in words.
+        why: the loss, or the reason why it is left out; empty if it is said.
     """
 
     tolerance: int
@@ -89,7 +89,7 @@ class Meanings:
 
     @cached_property
     def by_id(self) -> dict[int, Tolerance]:
-        """The tolerances by where they stand."""
+        """The tolerances by their instances."""
         return {each.id: each for each in self.text.tolerances}
 
     @cached_property
@@ -107,7 +107,7 @@ class Meanings:
         return own if own is not None and own.letter == reference.letter else self.text.datum(reference.letter)
 
     def datum_shape(self, compartment: Compartment) -> Shape | None:
-        """The shape of the one datum of a compartment; None of several, or of what is no single feature."""
+        """The shape of the one datum of a compartment; None for several, or for anything but a single feature."""
         own = self.datum(compartment.references[0]) if len(compartment.references) == 1 else None
         return None if own is None else self.datum_shapes.get(own.id)
 
@@ -139,7 +139,7 @@ class Meanings:
         return Meaning(tolerance.id, "approximately" if lost else "said", kind, shape.words, lost)
 
     def obstacle(self, tolerance: Tolerance, shape: Shape) -> str:
-        """Why the feature or the kind of a tolerance cannot be said at all; empty where it can."""
+        """Reason why the feature or the kind of a tolerance cannot be said at all; empty if it can."""
         if tolerance.magnitude is None:
             return "the file states no value"
         if tolerance.feature.lies_on != "faces":
@@ -167,7 +167,7 @@ class Meanings:
         return "" if shape.kind in allowed else f"{tolerance.kind} of {shape.words}"
 
     def datum_obstacle(self, compartment: Compartment) -> str:
-        """Why a compartment of a datum system cannot be said; empty where it can."""
+        """Reason why a compartment of a datum system cannot be said; empty if it can."""
         if len(compartment.references) > 2 and not self.in_line(compartment):
             return f"the common datum {compartment.letters} of {len(compartment.references)} features"
         for each in compartment.references:
@@ -198,7 +198,7 @@ class Meanings:
         return all(first.is_coaxial_with(own) for own in others)
 
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
-        """The kind in the scene, and what is lost by it; empty where nothing is."""
+        """The kind in the scene, and its loss; empty for none."""
         if tolerance.kind == "surface profile" and not tolerance.datums:
             return "flatness", "a profile without datums is a flatness"
         if tolerance.kind == "surface profile":
@@ -229,7 +229,7 @@ class Meanings:
         return Meaning(tolerance.id, "approximately", orientation(shape, datum), shape.words, lost)
 
     def refining_loss(self, tolerance: Tolerance, location: Tolerance) -> str:
-        """What is lost where an orientation cannot refine the location zone of its feature."""
+        """Loss of an orientation that cannot refine the location zone of its feature."""
         letters = [[each.letters for each in own.datums] for own in (tolerance, location)]
         if letters[0] != letters[1][: len(letters[0])]:
             return f"its datums are not the first of #{location.id}: it only limits what is inspected"
@@ -238,7 +238,7 @@ class Meanings:
         return ""
 
     def turn_loss(self, tolerance: Tolerance, shape: Shape, location: Tolerance) -> str:
-        """What is lost of an orientation to one datum whose feature may turn about it, within a zone that stops it."""
+        """Loss of an orientation to one datum whose feature may turn about it, within a zone that stops it."""
         datum = self.datum_shape(tolerance.datums[0]) if len(tolerance.datums) == 1 else None
         if datum is None or len(location.datums) < 2 or not shape.surfaces or not datum.surfaces:
             return ""
@@ -249,7 +249,7 @@ class Meanings:
         return f"to {letter} alone it may turn about {letter}: {zone}"
 
     def modifier_loss(self, tolerance: Tolerance) -> str:
-        """What is lost of the modifiers of a tolerance."""
+        """Loss of the modifiers of a tolerance."""
         lost = [DROPPED.get(each, f"{each} is dropped") for each in tolerance.modifiers if each not in MATERIAL]
         if set(tolerance.modifiers) & MATERIAL and not self.has_size(tolerance):
             lost.append("without a size that has limits there is no bonus")
@@ -258,7 +258,7 @@ class Meanings:
         return "; ".join(lost)
 
     def has_size(self, tolerance: Tolerance) -> bool:
-        """Whether a dimension with limits is of the same faces."""
+        """True if a dimension with limits is of the same faces."""
         faces = set(tolerance.feature.faces)
         sizes = [each for each in self.text.dimensions if each.is_size and each.limits is not None]
         return any(faces & set(each.features[0].faces) for each in sizes)

@@ -1,4 +1,4 @@
-"""What the drawing of a foreign part names on its faces: datums, tolerances, dimensions. Selectors may say them."""
+"""Names on the faces of a foreign part's drawing: datums, tolerances, dimensions. Selectors may use them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ class Named:
     """Faces that a drawing names.
 
     Args:
-        id: where it stands in the file.
-        what: what names them.
+        id: its instance in the file.
+        what: kind of item that names them.
         name: the letter of a datum; the name of a tolerance or dimension in the file.
         kind: of a tolerance, such as "position"; of a dimension its words; "" of a datum.
-        value: of a tolerance [mm]; None where it states none.
+        value: of a tolerance [mm]; None if it states none.
         datums: of a tolerance, their letters: "A | B-C".
         words: as a drawing has it.
         faces: their numbers.

@@ -12,7 +12,7 @@ PER_RADIUS: Final = {"diameter": 2.0, "radius": 1.0, "spherical diameter": 2.0, 
 
 
 def measured(dimension: Dimension, surfaces: Mapping[int, Surface]) -> float | None:
-    """The size or the distance that the surfaces have [mm]; None where they are not of one size, or not parallel."""
+    """The size or the distance that the surfaces have [mm]; None if they are not of one size, or not parallel."""
     sides = [merged([surfaces[face] for face in each.faces if face in surfaces]) for each in dimension.features]
     if dimension.kind in PER_RADIUS and sides[0]:
         radii = [each.radius for each in sides[0] if each.radius and each.kind != "cone"]

@@ -1,4 +1,4 @@
-"""All that the text of a STEP file says of parts, datums, tolerances and dimensions: `read_step_text`."""
+"""The content of a STEP file's text on parts, datums, tolerances and dimensions: `read_step_text`."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ class Remark:
     """Something of the file that was not read, or is incomplete, and why.
 
     Args:
-        id: where it stands.
+        id: its instance.
         what: `tolerance`, `dimension`, `datum`, `feature` or `shown`, and its name.
         why: in one line.
     """
@@ -37,15 +37,15 @@ class Remark:
 
 @dataclass(frozen=True)
 class StepText:
-    """What the text of a STEP file says.
+    """Content of the text of a STEP file.
 
     Args:
         file: the instances.
         structure: products, solids, faces, assemblies.
         datums: in the file's order.
-        tolerances: likewise.
-        dimensions: likewise.
-        remarks: what was not read, or is incomplete; nothing is left out silently.
+        tolerances: in the file's order.
+        dimensions: in the file's order.
+        remarks: items not read, or incomplete; nothing is left out silently.
     """
 
     file: Part21 = field(repr=False)
@@ -62,7 +62,7 @@ class StepText:
 
     @property
     def header(self) -> Header:
-        """What the file says about itself."""
+        """Header of the file."""
         return self.file.header
 
     @cached_property
@@ -89,7 +89,7 @@ class StepText:
 
     @cached_property
     def faces_of(self) -> dict[int, set[int]]:
-        """From every tolerance, dimension, datum and datum feature to its faces."""
+        """Faces of every tolerance, dimension, datum and datum feature."""
         found: dict[int, set[int]] = {each.id: set(each.feature.faces) for each in self.tolerances}
         for dimension in self.dimensions:
             found[dimension.id] = {face for each in dimension.features for face in each.faces}
@@ -113,7 +113,7 @@ def read_step_text(source: Path | bytes, name: str | None = None) -> StepText:
     """Read the text of a STEP file.
 
     Args:
-        source: where it lies, or what it holds.
+        source: its path, or its content.
         name: the name for errors; the file's own if not given.
 
     Raises:
@@ -148,7 +148,7 @@ def read_step_text(source: Path | bytes, name: str | None = None) -> StepText:
 
 
 def incomplete(text: StepText) -> Iterator[Remark]:
-    """Remarks on what lacks a value, a kind, a letter or its faces, and on products without a shape."""
+    """Remarks on items that lack a value, a kind, a letter or its faces, and on products without a shape."""
     for product in text.structure.products.values():
         if not product.faces and product.id not in text.structure.inside:
             yield Remark(product.id, f"product {product.name}", "has neither solids nor faces")
@@ -176,7 +176,7 @@ def incomplete(text: StepText) -> Iterator[Remark]:
 
 
 def incomplete_feature(identifier: int, what: str, feature: NamedFeature) -> Iterator[Remark]:
-    """Remarks on what names no faces, or members without any."""
+    """Remarks on items that name no faces, or members without any."""
     if feature.lies_on == "nothing":
         yield Remark(identifier, what, f"names no geometry (#{feature.id})")
     elif feature.lies_on == "curves":
@@ -211,7 +211,7 @@ def unnamed(text: StepText, features: Features) -> Iterator[Remark]:
 
 
 def shown_together(file: Part21) -> dict[Value, list[int]]:
-    """From each callout of the presentation to what it shows: tolerances and dimensions, and their shape aspects."""
+    """Tolerances, dimensions and shape aspects that each callout of the presentation shows."""
     found: dict[Value, list[int]] = {}
     links = ("DRAUGHTING_MODEL_ITEM_ASSOCIATION", "DRAUGHTING_MODEL_ITEM_ASSOCIATION_WITH_PLACEHOLDER")
     for each in file.of(*links):

@@ -1,6 +1,6 @@
 """A STEP file as text (ISO 10303-21): its header and its instances, split at once and each parsed when asked for.
 
-`read_part21` is the gate of every foreign file: what it lets through has its end, well-formed brackets, finite numbers
+`read_part21` is the gate of every foreign file: files that pass have their end, well-formed brackets, finite numbers
 and no reference that leads nowhere or back to itself (see gate.py). It never recurses and takes time in proportion to
 the file's size. Source: ISO 10303-21:2016; anchors of edition 3 are skipped, references to other files are refused.
 """
@@ -36,7 +36,7 @@ FIRST_KEYWORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*+")
 
 @dataclass(frozen=True)
 class Header:
-    """What a file says about itself.
+    """Header of a file.
 
     Args:
         name: the file's name when it was written.
@@ -56,7 +56,7 @@ class Part21:
     Args:
         name: the file's name, for errors.
         text: all of it, decoded.
-        header: what it says about itself.
+        header: of the file.
         spans: from each `#id`, in the file's order, to where its body begins and ends in the text.
     """
 
@@ -75,7 +75,7 @@ class Part21:
 
     @cached_property
     def ids(self) -> MappingProxyType[str, tuple[int, ...]]:
-        """From each entity to the instances that have it, simple or in a complex one, in the file's order."""
+        """Instances of each entity, simple or in a complex one, in the file's order."""
         found: dict[str, list[int]] = {}
         for identifier, (start, end) in self.spans.items():
             first = FIRST_KEYWORD.match(self.text, start, end)
@@ -118,7 +118,7 @@ class Part21:
 
     @cached_property
     def rank(self) -> MappingProxyType[int, int]:
-        """From each `#id` to its place in the file's order, from 0."""
+        """Place of each `#id` in the file's order, from 0."""
         return MappingProxyType({identifier: rank for rank, identifier in enumerate(self.spans)})
 
     def records(self, keyword: str) -> Iterator[Record]:
@@ -130,7 +130,7 @@ def read_part21(source: Path | bytes, name: str | None = None) -> Part21:
     """Read a file, or its bytes, through the gate.
 
     Args:
-        source: where it lies, or what it holds.
+        source: its path, or its content.
         name: the name for errors; the file's own if not given.
 
     Raises:
@@ -196,7 +196,7 @@ def at(text: str, offset: int, name: str) -> str:
 
 
 def statement(text: str, position: int, name: str) -> tuple[str, int]:
-    """The next statement without its semicolon, and where it ends.
+    """The next statement without its semicolon, and its end.
 
     Raises:
         StepError: the file is cut.
@@ -211,7 +211,7 @@ def statement(text: str, position: int, name: str) -> tuple[str, int]:
 
 
 def read_header(text: str, position: int, name: str) -> tuple[Header, int]:
-    """The header section, and where it ends."""
+    """The header section, and its end."""
     found: dict[str, Record] = {}
     while True:
         here = at(text, position, name)
@@ -236,12 +236,12 @@ def texts(record: Record) -> tuple[str, ...]:
 
 
 def first_text(found: dict[str, Record], keyword: str) -> str:
-    """The first string of a header entity, empty where there is none."""
+    """The first string of a header entity, empty if there is none."""
     return next(iter(texts(found[keyword])), "") if keyword in found and len(found[keyword]) else ""
 
 
 def read_data(text: str, position: int, name: str, spans: dict[int, tuple[int, int]]) -> int:
-    """Split a DATA section into `spans`; where it ends."""
+    """Split a DATA section into `spans`; return its end."""
     while found := INSTANCE.match(text, position):
         identifier = int(found.group(1))
         if identifier in spans:

@@ -1,4 +1,4 @@
-"""Placements of a STEP file as matrices in mm, and what its representations hold."""
+"""Placements of a STEP file as matrices in mm, and the items of its representations."""
 
 import math
 from itertools import chain
@@ -71,7 +71,7 @@ def vector_of(file: Part21, identifier: int, keyword: str) -> Vector:
 
 
 def axes(file: Part21, axis: int | None, reference: int | None, place: str) -> tuple[Vector, Vector, Vector]:
-    """Right-handed axes of a z direction and one near x; the world's where they are not given. Source: ISO 10303-42."""
+    """Right-handed axes of a z direction and one near x; the world's by default. Source: ISO 10303-42."""
     z = unit_vector(vector_of(file, axis, "DIRECTION"), place) if axis is not None else (0.0, 0.0, 1.0)
     near = unit_vector(vector_of(file, reference, "DIRECTION"), place) if reference is not None else (1.0, 0.0, 0.0)
     along = sum(a * b for a, b in zip(near, z, strict=True))
@@ -82,7 +82,7 @@ def axes(file: Part21, axis: int | None, reference: int | None, place: str) -> t
 
 
 def placement_of(file: Part21, identifier: int, unit: Unit) -> Placement:
-    """Where an AXIS2_PLACEMENT_3D lies [mm]: `frame_from_placement`.
+    """Placement by an AXIS2_PLACEMENT_3D [mm]: `frame_from_placement`.
 
     Args:
         file: the file.
@@ -118,7 +118,7 @@ def length_unit(file: Part21, context: int) -> Unit:
     """The unit of lengths of a context.
 
     Raises:
-        StepError: it says none.
+        StepError: it states none.
     """
     instance = file[context]
     assigned = instance.needed("GLOBAL_UNIT_ASSIGNED_CONTEXT")

@@ -1,4 +1,4 @@
-"""Reading the products of a STEP file from its text; see structure.py for what is read."""
+"""Reading the products of a STEP file from its text; see structure.py for the result."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class StructureReader:
 
     @cached_property
     def shapes(self) -> dict[int, int]:
-        """From each product definition, or use of one, to its shape."""
+        """Shape of each product definition, or use of one."""
         found: dict[int, int] = {}
         for record in self.file.records("PRODUCT_DEFINITION_SHAPE"):
             found.setdefault(int(record.reference(2)), record.instance.id)
@@ -53,7 +53,7 @@ class StructureReader:
 
     @cached_property
     def same_frame(self) -> dict[int, tuple[int, ...]]:
-        """From each representation to those that are related to it without a transformation."""
+        """Representations that are related to each one without a transformation."""
         found: dict[int, list[int]] = {}
         for instance in self.file.of("SHAPE_REPRESENTATION_RELATIONSHIP"):
             if instance.record("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") is None:
@@ -67,7 +67,7 @@ class StructureReader:
 
     @cached_property
     def represented(self) -> dict[int, tuple[int, ...]]:
-        """From each product definition shape to its representations, in its own frame."""
+        """Representations of each product definition shape, in its own frame."""
         found: dict[int, list[int]] = {}
         for record in self.file.records("SHAPE_DEFINITION_REPRESENTATION"):
             found.setdefault(int(record.reference(0)), []).append(int(record.reference(1)))
@@ -77,7 +77,7 @@ class StructureReader:
         """The structure.
 
         Raises:
-            StepError: it says something that cannot be read, or a part stands in another file.
+            StepError: its content cannot be read, or a part stands in another file.
         """
         products = {each: self.product(each) for each in self.definitions}
         occurrences = tuple(self.occurrence(each, products) for each in self.file.records(USES[0]))
@@ -101,7 +101,7 @@ class StructureReader:
         return (each for each in items if self.file[each].record("MAPPED_ITEM") is None)
 
     def is_surface(self, identifier: int) -> bool:
-        """Whether an item of a representation is made of faces."""
+        """True if an item of a representation is made of faces."""
         words = {each.keyword for each in self.file[identifier].records}
         return bool(
             words & {"SHELL_BASED_SURFACE_MODEL", "OPEN_SHELL", "CLOSED_SHELL", "FACE_BASED_SURFACE_MODEL", *FACES}
@@ -114,7 +114,7 @@ class StructureReader:
         return Solid(identifier, named.text(0), record.keyword, tuple(self.faces_under(identifier)))
 
     def faces_under(self, root: int) -> Iterator[int]:
-        """The faces that an item is made of, in the order of its shells; no face is gone into."""
+        """The faces that an item is made of, in the order of its shells; faces are not entered."""
         seen = {root}
         stack = [root]
         while stack:
@@ -165,13 +165,13 @@ class StructureReader:
 
     @cached_property
     def relations(self) -> dict[int | None, int]:
-        """From the shape of each use to the relation of representations that places it."""
+        """Relation of representations that places the shape of each use."""
         found = self.file.records("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION")
         return {int(each.reference(1)): int(each.reference(0)) for each in found}
 
     @cached_property
     def uses(self) -> dict[int, tuple[int, int]]:
-        """From each use to its assembly and its product."""
+        """Assembly and product of each use."""
         found = self.file.records(USES[0])
         return {each.instance.id: (int(each.reference(3)), int(each.reference(4))) for each in found}
 
@@ -191,7 +191,7 @@ class StructureReader:
 
     @cached_property
     def owners(self) -> dict[int, int]:
-        """From each representation of a product to its definition, the first that has it."""
+        """Definition of each representation of a product, the first that has it."""
         found: dict[int, int] = {}
         for definition in self.definitions:
             for each in self.represented_by(definition):
@@ -214,7 +214,7 @@ class StructureReader:
         return [self.map_placement(item, parent) for item, own in self.mapped_items(parent) if own == used]
 
     def map_placement(self, item: Record, parent: int) -> Placement:
-        """The placement that a MAPPED_ITEM says: its target, less the origin of what it shows.
+        """The placement of a MAPPED_ITEM: its target, less the origin of the shown item.
 
         Raises:
             StepError: the target is neither axes nor a transformation that is rigid.
@@ -240,7 +240,7 @@ class StructureReader:
         return self.represented.get(shape, ()) if shape is not None else ()
 
     def transformation(self, relation: int, used: int) -> Placement:
-        """The placement that a relation of two representations says, from the one of the used product."""
+        """The placement by a relation of two representations, from the one of the used product."""
         instance = self.file[relation]
         related = instance.needed("REPRESENTATION_RELATIONSHIP")
         first, second = int(related.reference(2)), int(related.reference(3))

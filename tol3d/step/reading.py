@@ -42,29 +42,29 @@ from tol3d.step.refused import StepError, shown
 
 SECONDS_VARIABLE: Final = "TOL3D_STEP_SECONDS"
 SECONDS: Final = 120.0
-"""s of computing and twice of the clock, in which a file must be read, if the variable says nothing else."""
+"""s; default limit of computing time, twice that of the clock, for reading a file."""
 MEGABYTES_VARIABLE: Final = "TOL3D_STEP_MEGABYTES"
 MEGABYTES: Final = 8_000.0
 """Address space in which it must be; Open CASCADE alone takes 1 to 2 GB of it."""
 DEFLECTION: Final = 0.05
-"""mm; how far triangles of the pictures may lie off the faces; see tol3d.assembly.presenting."""
+"""mm; largest distance of the pictures' triangles from the faces; see tol3d.assembly.presenting."""
 LARGEST_ANSWER: Final = 2_000_000_000
-"""Bytes of what the other process hands over."""
+"""Largest output of the other process [bytes]."""
 WORKER: Final = "tol3d.step.worker"
 PROGRAM: Final = f"from {WORKER} import main; main()"
 SAME: Final = 1e-6
-"""mm, and of the number itself; what Open CASCADE says of a face may differ so much from what the text says."""
+"""mm, and fraction of the number; allowed difference of a face by Open CASCADE from the text."""
 
 
 @dataclass(frozen=True)
 class ReadPart:
-    """A product with what is found on its faces, as it is kept.
+    """A product with the features found on its faces, as it is kept.
 
     Args:
         body: the product.
         features: with names and colours of their faces.
-        names: what the file calls its faces, by their numbers.
-        named: what its drawing names on its faces.
+        names: of its faces in the file, by their numbers.
+        named: items that its drawing names on its faces.
         colours: "#RRGGBB" of its faces that have one, by their numbers.
     """
 
@@ -82,7 +82,7 @@ class Use:
     Args:
         path: names from the top assembly down, with / between them.
         product: the `#id` of its product definition.
-        placed: where it stands in the file's world, rows of a 4 by 4 matrix [mm].
+        placed: its pose in the file's world, rows of a 4 by 4 matrix [mm].
     """
 
     path: str
@@ -115,9 +115,9 @@ class StepPart:
     Args:
         file: the file as it was read.
         body: the product.
-        features: what is found on its faces, with names and colours.
-        names: what the file calls its faces, by their numbers.
-        named: what its drawing names on its faces: datums, tolerances, dimensions.
+        features: found on its faces, with names and colours.
+        names: of its faces in the file, by their numbers.
+        named: items that its drawing names on its faces: datums, tolerances, dimensions.
         colours: "#RRGGBB" of its faces that have one, by their numbers.
     """
 
@@ -130,7 +130,7 @@ class StepPart:
 
     @property
     def name(self) -> str:
-        """What the file calls the product."""
+        """Name of the product in the file."""
         return self.body.name
 
     @cached_property
@@ -153,7 +153,7 @@ class StepFile:
 
     Args:
         content: its bytes.
-        read: its products with geometry, and where they are used.
+        read: its products with geometry, and their uses.
     """
 
     content: FileContent
@@ -161,7 +161,7 @@ class StepFile:
 
     @property
     def name(self) -> str:
-        """Of the file, for messages."""
+        """Name of the file, for messages."""
         return self.content.path.name
 
     @cached_property
@@ -171,7 +171,7 @@ class StepFile:
 
     @cached_property
     def faces(self) -> Faces:
-        """What Open CASCADE says of its faces."""
+        """Faces of the file, read by Open CASCADE."""
         return _geometry(self.content, [own.body for own in self.read.parts])[0]
 
     @cached_property
@@ -182,7 +182,7 @@ class StepFile:
         )
 
     def part(self, product: str | None, use: str | None = None) -> StepPart:
-        """The product of that name, or that a use has; the only one if none is said.
+        """The product of that name, or that a use has; the only one by default.
 
         Raises:
             StepError: there is no such product or use, or several.
@@ -202,7 +202,7 @@ class StepFile:
 
     @property
     def uses(self) -> tuple[Use, ...]:
-        """Where parts with geometry stand in it, in its order."""
+        """Placed parts with geometry, in the file's order."""
         return self.read.uses
 
     @property
@@ -278,7 +278,7 @@ def _shell(body: Body, faces: Faces) -> Shell:
 
 
 def _geometry(content: FileContent, bodies: Sequence[Body], text: Part21 | None = None) -> tuple[Faces, FaceMesh]:
-    """What Open CASCADE says of the faces of a file, checked against its text, and their triangles for pictures."""
+    """Faces of a file, read by Open CASCADE and checked against its text, and their triangles for pictures."""
     made: dict[str, Arrays] = {}
 
     def make() -> Arrays:
@@ -296,8 +296,8 @@ def _mesh(content: FileContent, deflection: float, made: Arrays | None = None) -
 
     Args:
         content: the file.
-        deflection: how far they may lie off the faces [mm].
-        made: they, where they are made already.
+        deflection: largest distance from the faces [mm].
+        made: existing ones.
     """
 
     def make() -> Arrays:
@@ -314,7 +314,7 @@ def _mesh(content: FileContent, deflection: float, made: Arrays | None = None) -
 
 
 def _checked(answer: Any, text: Part21, bodies: Sequence[Body], *, deep: bool = True) -> Faces:
-    """What the other process handed over, if it is what the text has.
+    """Faces from the other process, if they match the text.
 
     Raises:
         StepError: it is none, or has other faces.
@@ -341,7 +341,7 @@ def _checked(answer: Any, text: Part21, bodies: Sequence[Body], *, deep: bool = 
 
 
 def _check_surface(text: Part21, face: Face, unit: float) -> None:
-    """Refuse a plane, cylinder or sphere that lies elsewhere than the text says: a wrong join, or a wrong unit.
+    """Refuse a plane, cylinder or sphere that differs from the text: a wrong join, or a wrong unit.
 
     Raises:
         StepError: it does.
@@ -364,7 +364,7 @@ def _check_surface(text: Part21, face: Face, unit: float) -> None:
 
 
 def _asked(content: FileContent, order: Mapping[str, Any]) -> tuple[Any, Arrays]:
-    """What a process of its own answers about a file, and the arrays that it writes.
+    """Answer of a process of its own about a file, and the arrays that it writes.
 
     Raises:
         StepError: it refuses, dies, takes too long or too much memory.
@@ -400,7 +400,7 @@ def _asked(content: FileContent, order: Mapping[str, Any]) -> tuple[Any, Arrays]
 
 
 def _environment() -> dict[str, str]:
-    """That of this process; the other one has one thread, so that its limit of memory is not spent on stacks."""
+    """Environment of this process; the other one has one thread, so that its limit of memory is not spent on stacks."""
     paths = os.pathsep.join(path for path in sys.path if path)
     return {**os.environ, "PYTHONPATH": paths, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
@@ -417,7 +417,7 @@ def _limit(variable: str, usual: float, words: str) -> float:
 
 
 def _answer(path: Path) -> Any:
-    """What it answered; None where that is none."""
+    """Answer of the process; None where there is none."""
     try:
         return json.loads(read_contained(path, path.parent, LARGEST_ANSWER))
     except (UnreadableFileError, ValueError, RecursionError):
@@ -425,7 +425,7 @@ def _answer(path: Path) -> Any:
 
 
 def _arrays(path: Path) -> Arrays:
-    """Arrays that it wrote; none where they are none, or would take too much when they are unpacked."""
+    """Arrays that it wrote; empty if there are none, or they are too large unpacked."""
     try:
         stream = io.BytesIO(read_contained(path, path.parent, LARGEST_ANSWER))
         with zipfile.ZipFile(stream) as archive:
@@ -438,7 +438,7 @@ def _arrays(path: Path) -> Arrays:
 
 
 def _ended(code: int, said: bytes, longer: str) -> str:
-    """The end of the process in words, with what helps."""
+    """The end of the process in words, with the remedy."""
     last = (said.decode(errors="replace").strip().splitlines() or [""])[-1]
     if code in (-signal.SIGXCPU if hasattr(signal, "SIGXCPU") else 1, -getattr(signal, "SIGKILL", 9)):
         return f"Open CASCADE does not read it within its limits; {longer}"
@@ -470,7 +470,7 @@ def _versions() -> dict[str, str]:
 
 
 def _cached(name: str, make: Any) -> Arrays:
-    """Arrays from the cache, or made and kept; a cache that cannot be written is told."""
+    """Arrays from the cache, or made and kept; a cache that cannot be written causes a warning."""
     kept = read_entry(name)
     if kept is not None:
         try:

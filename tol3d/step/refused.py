@@ -1,4 +1,4 @@
-"""A STEP file that cannot be used, said in one line with its place."""
+"""A STEP file that cannot be used: one line with its place."""
 
 from tol3d.errors import InputError
 
@@ -6,10 +6,10 @@ LONGEST_SHOWN = 80  # characters of what the file says that an error shows; name
 
 
 class StepError(InputError):
-    """A STEP file is damaged, too large, refers to other files or says something that cannot be read; exit code 2."""
+    """A STEP file is damaged, too large, refers to other files or has content that cannot be read; exit code 2."""
 
 
 def shown(written: object) -> str:
-    """What a file says, on one line of printable characters, cut where it is long."""
+    """Text of a file, on one line of printable characters, truncated if it is long."""
     text = "".join(each if each.isprintable() else "·" for each in str(written))
     return text if len(text) <= LONGEST_SHOWN else text[: LONGEST_SHOWN - 1] + "…"

@@ -1,4 +1,4 @@
-"""Which features of a foreign part a selector means: exactly one, exactly as many as it counts, or none at all."""
+"""Features of a foreign part that a selector means: exactly one, exactly as many as it counts, or none at all."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ SAME_SIZE: Final = 1e-4
 SAME_DISTANCE: Final = 1e-6
 """mm; features whose distances from a point differ by less are as near as each other."""
 TWICE: Final = 2.0
-"""How many times as far the next feature must be, so that a point says which one is meant."""
+"""Least ratio of the distances of the next and of the nearest feature, for a point to select one."""
 SAME_VALUE: Final = 1e-6
 """mm; a tolerance whose value differs by more is another one."""
 MOST_SHOWN: Final = 6
@@ -28,7 +28,7 @@ MOST_KNOWN: Final = 12
 
 @dataclass(frozen=True)
 class Selector:
-    """Which features of a part are meant; what is not said does not matter.
+    """Selector of features of a part; fields that are not stated do not matter.
 
     Args:
         face: the number of a face in the file; the whole feature that it is of.
@@ -42,8 +42,8 @@ class Selector:
         kind: of the feature.
         diameter: of a round one [mm].
         near: a point [mm] that is nearest to it.
-        within: how far from that it may be [mm].
-        count: how many there are.
+        within: largest distance from that [mm].
+        count: number of features.
         along: direction of x on a plane.
     """
 
@@ -67,7 +67,7 @@ class SelectionError(StepError):
     """A selector means no feature, or another number of them.
 
     Args:
-        sentence: what was expected, what there is, and lines to paste.
+        sentence: expected and existing features, and lines to paste.
         field: of the selector that is at fault.
     """
 
@@ -80,7 +80,7 @@ def selected(part: StepPart, selector: Selector) -> tuple[FoundFeature, ...]:
     """The features that a selector means, by their places.
 
     Raises:
-        SelectionError: it means none, or another number of them than it says.
+        SelectionError: it selects none, or another number than it states.
     """
     if selector.faces:
         found: Sequence[FoundFeature] = (_of_faces(part, selector),)
@@ -105,7 +105,7 @@ def _of_faces(part: StepPart, selector: Selector) -> FoundFeature:
 
 
 def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
-    """The features that are what a selector says, wherever they lie."""
+    """The features that match a selector, wherever they lie."""
     found = [own for own in part.features if not own.loose]
     if selector.face is not None:
         found = [own for own in part.features if selector.face in (*own.faces, *own.repeated)]
@@ -133,7 +133,7 @@ def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
 
 
 def _by_drawing(selector: Selector) -> str | None:
-    """The field by which a drawing names what is meant; None where it does not."""
+    """The field by which a drawing names the features; None if it does not."""
     return next((own for own in ("datum", "pmi", "tolerance") if getattr(selector, own) is not None), None)
 
 
@@ -166,7 +166,7 @@ def _named(part: StepPart, selector: Selector, field: str) -> list[FoundFeature]
 
 
 def _fits(named: Named, selector: Selector) -> bool:
-    """Whether something that a drawing names is what a selector says."""
+    """True if a name of a drawing matches a selector."""
     if selector.datum is not None and (named.what != "datum" or named.name != selector.datum):
         return False
     if selector.pmi is not None and (named.what == "datum" or named.name != selector.pmi):
@@ -206,7 +206,7 @@ def _of_size(found: Sequence[FoundFeature], selector: Selector) -> Sequence[Foun
 
 
 def _nearest(part: StepPart, selector: Selector, fitting: list[FoundFeature]) -> Sequence[FoundFeature]:
-    """As many of what fits as a selector says, the nearest to its point if it says one."""
+    """Matching features, as many as a selector states, the nearest to its point if it states one."""
     count = selector.count or 1
     if selector.near is None:
         if len(fitting) != count:
@@ -233,7 +233,7 @@ def _nearest(part: StepPart, selector: Selector, fitting: list[FoundFeature]) ->
 
 
 def distance(mesh: FaceMesh, feature: FoundFeature, point: Array) -> float:
-    """How far a point (3,) is from a feature [mm]: from its faces, of a hole, pin or ball from its axis as well."""
+    """Distance of a point (3,) from a feature [mm]: from its faces, of a hole, pin or ball from its axis as well."""
     found = mesh.distance(point, feature.faces, less_error=feature.kind != "free form")
     if feature.kind in ("hole", "pin", "ball", "socket"):
         found = min(found, feature.axis_distance(point))
@@ -243,7 +243,7 @@ def distance(mesh: FaceMesh, feature: FoundFeature, point: Array) -> float:
 def line_of(feature: FoundFeature) -> str:
     """A selector that means a feature, as a scene has it.
 
-    It says where the feature lies: that stays when the file is exported again, numbers of faces do not.
+    It gives the place of the feature: that stays when the file is exported again, numbers of faces do not.
     """
     round_one = feature.kind in ("hole", "pin", "ball", "socket")
     place = feature.at if round_one else feature.on

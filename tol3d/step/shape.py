@@ -28,12 +28,12 @@ WORDS: Mapping[ShapeKind, str] = {
 
 @dataclass(frozen=True)
 class Shape:
-    """What a feature is made of.
+    """Shape of a feature.
 
     Args:
         kind: of all its surfaces together.
         surfaces: each once: the halves of a hole are one, and so are coplanar faces.
-        loose: whether faces that lie beside the solid were left out of it.
+        loose: True if faces beside the solid were left out of it.
     """
 
     kind: ShapeKind
@@ -42,7 +42,7 @@ class Shape:
 
     @property
     def words(self) -> str:
-        """In words, with how many there are."""
+        """Shape in words, with the number of surfaces."""
         if self.kind in ("planes", "cylinders", "spheres"):
             return f"{len(self.surfaces)} {WORDS[self.kind].removeprefix('several ')}"
         return WORDS[self.kind]
@@ -57,7 +57,7 @@ def shape_of(feature: NamedFeature, surfaces: Mapping[int, Surface], structure: 
 
 
 def kind_of(surfaces: list[Surface]) -> ShapeKind:
-    """What surfaces are together, each given once."""
+    """Kind of several surfaces together, each given once."""
     if not surfaces:
         return "nothing"
     kinds = {each.kind for each in surfaces}

@@ -20,7 +20,7 @@ class StepShape(MeshedShape):
 
     Args:
         sha256: of the file.
-        product: its name; None where the file has one only, or where a use says it.
+        product: its name; None if the file has one only, or if a use states it.
         use: a part as it stands in the file.
         file: the file.
     """

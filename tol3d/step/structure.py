@@ -1,4 +1,4 @@
-"""The products of a STEP file, what each is made of, and where it stands in the assemblies.
+"""The products of a STEP file, their bodies, and their poses in the assemblies.
 
 From the text and not from XCAF, which calls a part with loose faces an assembly. Source: CAx-IF recommended practices
 for assembly structure and for external references; ISO 10303-44.
@@ -20,7 +20,7 @@ class Solid:
     """A solid of a product.
 
     Args:
-        id: where it stands.
+        id: its instance.
         name: its name in the file.
         kind: its entity, such as `MANIFOLD_SOLID_BREP`.
         faces: the `#ids` of its faces.
@@ -38,8 +38,8 @@ class Product:
 
     Args:
         id: its product definition.
-        name: its name, or its number where it has none.
-        shape: its product definition shape, by which tolerances name it; None where it has none.
+        name: its name, or its number if it has none.
+        shape: its product definition shape, by which tolerances name it; None if it has none.
         solids: its own solids, without those of the products in it.
         loose_faces: faces of its own that no solid of it has (supplemental geometry).
     """
@@ -61,8 +61,8 @@ class Occurrence:
     """One use of a product in an assembly.
 
     Args:
-        id: where it stands.
-        name: its name; that of the product where it has none.
+        id: its instance.
+        name: its name; that of the product if it has none.
         parent: the assembly.
         product: the product that is used.
         placement: `parent_from_product` [mm].
@@ -109,7 +109,7 @@ class Structure:
 
     @cached_property
     def inside(self) -> dict[int, tuple[tuple[str, Occurrence], ...]]:
-        """From each assembly to what is used in it, with names that are unique in it."""
+        """Contents of each assembly, with names that are unique in it."""
         found: dict[int, list[Occurrence]] = {}
         for each in self.occurrences:
             found.setdefault(each.parent, []).append(each)
@@ -160,12 +160,12 @@ class Structure:
 
     @cached_property
     def product_of_shape(self) -> dict[int, int]:
-        """From each product definition shape to its product."""
+        """Product of each product definition shape."""
         return {each.shape: each.id for each in self.products.values() if each.shape is not None}
 
     @cached_property
     def product_of_face(self) -> dict[int, int]:
-        """From each face to the first product that has it."""
+        """First product that has each face."""
         found: dict[int, int] = {}
         for each in self.products.values():
             for face in each.faces:

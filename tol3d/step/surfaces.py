@@ -31,7 +31,7 @@ class Surface:
     """The surface of a face.
 
     Args:
-        kind: what it is.
+        kind: of the surface.
         at: a point of a plane, the centre of a sphere or torus, a point on the axis of others [mm].
         direction: the normal of a plane out of the material; the axis of others.
         radius: of a round one [mm], of a torus that of its tube, of a cone that at its placement; 0 of planes.
@@ -52,7 +52,7 @@ class Surface:
         return aligned(self.direction, other.direction) != 0 and across < SAME_PLACE
 
     def is_one_with(self, other: "Surface") -> bool:
-        """Whether two faces lie on one surface, with the material on the same side."""
+        """True if two faces lie on one surface, with the material on the same side."""
         if (self.kind, self.same_sense if self.radius else True) != (
             other.kind,
             other.same_sense if self.radius else True,
@@ -76,7 +76,7 @@ def dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
 
 
 def aligned(a: Vector, b: Vector) -> int:
-    """1 where two directions are the same, -1 where they are opposite, else 0."""
+    """1 if two directions are the same, -1 if they are opposite, else 0."""
     cosine = dot(a, b)
     if 1 - cosine * cosine > SAME_SLOPE * SAME_SLOPE:
         return 0
@@ -84,7 +84,7 @@ def aligned(a: Vector, b: Vector) -> int:
 
 
 def surface_of(file: Part21, face: int, unit: Unit) -> Surface:
-    """The surface of an ADVANCED_FACE; `other` where it is none of the analytic ones."""
+    """The surface of an ADVANCED_FACE; `other` if it is none of the analytic ones."""
     record = file[face].needed("ADVANCED_FACE", "FACE_SURFACE")
     sense = record.argument(3)
     same = not (isinstance(sense, Enumeration) and sense.word in ("F", "FALSE"))
@@ -102,7 +102,7 @@ def surface_of(file: Part21, face: int, unit: Unit) -> Surface:
 
 
 def product_unit(file: Part21, product: Product) -> Unit | None:
-    """The unit of lengths of a product's own representations, None where it has none."""
+    """The unit of lengths of a product's own representations, None if it has none."""
     for word in (each for each in file.ids if each.endswith("REPRESENTATION") and "SHAPE" in each):
         for instance in file.of(word):
             record = instance.record("REPRESENTATION") or instance.inherited("REPRESENTATION")

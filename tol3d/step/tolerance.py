@@ -56,12 +56,12 @@ ZONE_FORMS: Final[Mapping[str, Zone]] = {
     "spherical": "spherical diameter",
     "within a sphere": "spherical diameter",
 }
-"""What form of a zone makes its magnitude a diameter; all others are widths."""
+"""Forms of a zone whose magnitude is a diameter; all others are widths."""
 
 
 @dataclass(frozen=True)
 class ProjectedZone:
-    """How far a zone reaches beyond its feature, and from which faces."""
+    """Length of a zone beyond its feature, and the faces that it starts from."""
 
     length: Measure
     ends: tuple[NamedFeature, ...]
@@ -84,19 +84,19 @@ class PerUnit:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """A geometric tolerance as the file says it.
+    """A geometric tolerance as the file states it.
 
     Args:
-        id: where it stands.
+        id: its instance.
         name: its name in the file, such as `Position.10`.
         text: its description, such as a note under the frame.
         kind: `position`, `flatness` and so on.
         magnitude: its value with its own unit; None where the file states none.
         zone: whether the magnitude is a width or a diameter.
-        form: the zone's form in the file's words, empty where it says none.
-        feature: what is toleranced.
+        form: the zone's form in the file's words, empty if it states none.
+        feature: the toleranced one.
         datums: the compartments of its datum system, in order.
-        datum_system: where that stands; None where there is none.
+        datum_system: its instance; None if there is none.
         modifiers: in words, such as `maximum material requirement`.
         projected, unequal, per_unit, maximum: further fields of the frame.
         above: the tolerance whose lower segment this one is.
@@ -136,7 +136,7 @@ class Tolerances:
 
     @cached_property
     def zones(self) -> dict[int, list[int]]:
-        """From each tolerance to its zones."""
+        """Zones of each tolerance."""
         found: dict[int, list[int]] = {}
         for instance in self.file.of("TOLERANCE_ZONE", "TOLERANCE_ZONE_WITH_DATUM"):
             for tolerance in zone_fields(instance)[0]:
@@ -145,7 +145,7 @@ class Tolerances:
 
     @cached_property
     def projections(self) -> dict[int, ProjectedZone]:
-        """From each zone that is projected to how far."""
+        """Projection of each projected zone."""
         found: dict[int, ProjectedZone] = {}
         for instance in self.file.of("PROJECTED_ZONE_DEFINITION", "PROJECTED_ZONE_DEFINITION_WITH_OFFSET"):
             record = instance.needed("PROJECTED_ZONE_DEFINITION", "PROJECTED_ZONE_DEFINITION_WITH_OFFSET")
@@ -167,7 +167,7 @@ class Tolerances:
 
     @cached_property
     def above(self) -> dict[int, tuple[int, str]]:
-        """From each lower segment to the tolerance above it, and the relation's name."""
+        """Tolerance above each lower segment, and the relation's name."""
         related = self.file.records("GEOMETRIC_TOLERANCE_RELATIONSHIP")
         return {int(each.reference(3)): (int(each.reference(2)), each.text(0)) for each in related}
 
@@ -175,7 +175,7 @@ class Tolerances:
         """One tolerance.
 
         Raises:
-            StepError: it says something that cannot be read.
+            StepError: its content cannot be read.
         """
         instance = self.file[identifier]
         record = instance.inherited("GEOMETRIC_TOLERANCE")
@@ -206,7 +206,7 @@ class Tolerances:
         )
 
     def zone_of(self, identifier: int) -> tuple[Zone, str, ProjectedZone | None]:
-        """The zone of a tolerance: whether its magnitude is a diameter, its form, and how far it is projected."""
+        """The zone of a tolerance: its type of magnitude, its form, and its projection."""
         zone: Zone = "width"
         form, projected = "", None
         for each in self.zones.get(identifier, ()):

@@ -16,10 +16,10 @@ SI_PREFIXES: Final = {
     "DECI": 1e-1, "CENTI": 1e-2, "MILLI": 1e-3, "MICRO": 1e-6, "NANO": 1e-9, "PICO": 1e-12, "FEMTO": 1e-15,
     "ATTO": 1e-18,
 }  # fmt: skip
-"""What each prefix is times."""
+"""Factor of each prefix."""
 
 SI_UNITS: Final[dict[str, tuple[Dimension, float]]] = {"METRE": ("length", 1e3), "RADIAN": ("angle", 1.0)}
-"""Of each unit: its dimension, and one of it in mm or rad."""
+"""Dimension of each unit, and one of it in mm or rad."""
 
 DEEPEST_CONVERSION: Final = 4  # units that are said by others; files of CAD systems have one
 SHORT_NAMES: Final = {
@@ -42,7 +42,7 @@ class Unit:
     """A unit of length or angle.
 
     Args:
-        name: as tol3d writes it where it has it (`mm`, `in`, `deg`), else the file's own name.
+        name: as tol3d writes it if it knows it (`mm`, `in`, `deg`), else the file's own name.
         dimension: length or angle.
         factor: one of it in mm or rad.
     """
@@ -86,7 +86,7 @@ def unit_of(file: Part21, identifier: int, depth: int = 0) -> Unit:
     """The unit that an instance is.
 
     Raises:
-        StepError: it is none of length or angle, or is said by others without end.
+        StepError: it is none of length or angle, or is defined by others without end.
     """
     instance = file[identifier]
     converted = instance.record("CONVERSION_BASED_UNIT", "CONVERSION_BASED_UNIT_WITH_OFFSET")
@@ -129,7 +129,7 @@ MEASURES: Final = (
 
 
 def is_measure(instance: Instance) -> bool:
-    """Whether an instance is a value with a unit."""
+    """True if an instance is a value with a unit."""
     return instance.record(*MEASURES) is not None
 
 
@@ -154,7 +154,7 @@ def measure_of(file: Part21, identifier: int, depth: int = 0) -> Measure:
 
 
 def stated_dimension(record: Record, index: int) -> Dimension | None:
-    """The dimension that the type of a value says, None where it says none."""
+    """The dimension by the type of a value, None if it states none."""
     value = record.argument(index)
     if isinstance(value, Typed) and value.keyword.endswith("LENGTH_MEASURE"):
         return "length"

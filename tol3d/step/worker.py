@@ -45,9 +45,9 @@ from tol3d.step.limits import limit_this_process
 SAMPLES: Final = 129
 """Places on a curve that is neither a line, a circle nor an ellipse."""
 RECOGNISED: Final = 1e-6
-"""mm; how far a spline may lie off the plane, cylinder, cone or sphere that it is taken for."""
+"""mm; largest distance of a spline from the plane, cylinder, cone or sphere that it is taken for."""
 MOST_RECOGNISED: Final = 200
-"""Splines of a file that are looked at, each of which takes milliseconds."""
+"""Largest number of splines of a file that are checked, each of which takes milliseconds."""
 DISPLAY_ANGLE: Final = 0.5
 """rad; coarsest turn between neighbouring facets."""
 FULL_TURN: Final = 2.0 * math.pi
@@ -56,7 +56,7 @@ Numbers = list[float]
 
 
 class UnreadError(Exception):
-    """Open CASCADE cannot read the file; its text says why."""
+    """Open CASCADE cannot read the file; its text gives the reason."""
 
 
 def main() -> None:
@@ -103,7 +103,7 @@ class Transferred:
         return {"roots": [self._root(number, shape) for number, shape in self._roots.items()]}
 
     def mesh(self, deflection: float) -> dict[str, Any]:
-        """Triangles of all solids and shells: nodes, corners, the face of each, and how far each face is off."""
+        """Triangles of all solids and shells: nodes, corners, the face of each, and the error of each face."""
         nodes, corners, owners, off, count = [], [], [], [], 0
         for shape in self._roots.values():
             BRepMesh_IncrementalMesh(shape, deflection, False, DISPLAY_ANGLE)
@@ -189,7 +189,7 @@ class Transferred:
         }
 
     def _surface(self, face: TopoDS_Face, surface: BRepAdaptor_Surface) -> tuple[str, dict[str, Any]]:
-        """What a face is, and its numbers."""
+        """Type of a face, and its numbers."""
         kind = surface.GetType()
         if kind == GeomAbs_Plane:
             return "plane", _placed(surface.Plane(), surface)
@@ -238,7 +238,7 @@ def faces_of(shape: TopoDS_Shape) -> Iterator[TopoDS_Face]:
 
 
 def edge_of(edge: TopoDS_Edge) -> dict[str, Any]:
-    """What an edge is, and its numbers; one without a curve, as at the tip of a cone, is a point."""
+    """Type of an edge, and its numbers; one without a curve, as at the tip of a cone, is a point."""
     if BRep_Tool.Degenerated_s(edge):
         return {"kind": "none"}
     curve = BRepAdaptor_Curve(edge)
@@ -275,7 +275,7 @@ def triangles_of(face: TopoDS_Face) -> tuple[Any, Any]:
 
 
 def _chord_error(face: TopoDS_Face, nodes: Any, corners: Any) -> float:
-    """How far triangles lie off their face [mm], by their middles and those of their edges; 0 of a plane."""
+    """Largest distance of triangles from their face [mm], by their middles and those of their edges; 0 of a plane."""
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
     if kind == GeomAbs_Plane:
@@ -289,7 +289,7 @@ def _chord_error(face: TopoDS_Face, nodes: Any, corners: Any) -> float:
 
 
 def _off(kind: Any, surface: BRepAdaptor_Surface, places: Any) -> Any:
-    """How far places (n, 3) lie off a round surface [mm]."""
+    """Distances of places (n, 3) from a round surface [mm]."""
     if kind == GeomAbs_Sphere:
         sphere = surface.Sphere()
         return np.linalg.norm(places - np.array(_xyz(sphere.Location())), axis=1) - sphere.Radius()
@@ -320,7 +320,7 @@ def _middle(face: TopoDS_Face, surface: BRepAdaptor_Surface, bounds: Sequence[fl
 
 
 def _placed(own: Any, surface: BRepAdaptor_Surface | None) -> dict[str, Any]:
-    """Where an elementary surface lies, its axis, and between which angles about it the face does."""
+    """Placement of an elementary surface, its axis, and the angles about it between which the face lies."""
     position = own.Position()
     found: dict[str, Any] = {
         "at": _xyz(position.Location()),

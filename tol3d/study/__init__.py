@@ -1,1 +1,1 @@
-"""What is asked of a system, drawn, tallied, stopped and found."""
+"""Study of a system: its settings, draws, tallies, stopping and findings."""

@@ -1,4 +1,4 @@
-"""How a study's trials are cut into blocks, whose statistics are folded together and that are written as one file."""
+"""Blocks of a study's trials, whose statistics are folded together and that are written as one file each."""
 
 import math
 from typing import Final
@@ -37,10 +37,10 @@ def _most(simulation: Simulation) -> int:
 
 
 def contacts_of(simulation: Simulation) -> int:
-    """How many contacts one trial takes."""
+    """Number of contacts that one trial takes."""
     return simulation.system.cost(simulation.system.measures)
 
 
 def plan_of(simulation: Simulation) -> Plan:
-    """How many trials there are at most, and how they are cut."""
+    """Largest number of trials, and their division into blocks."""
     return Plan(simulation.study.trials, block_trials(simulation), contacts_of(simulation))

@@ -8,7 +8,7 @@ from tol3d.system.pooled import PooledTerms
 from tol3d.system.statuses import Statuses
 
 Pooled = Mapping[str, Mapping[str, PooledTerms]]
-"""By measure and method."""
+"""Pooled terms by measure and method."""
 
 
 def pooled_terms(breakdowns: Sequence[Breakdown], statuses: Statuses, columns: Columns) -> Pooled:

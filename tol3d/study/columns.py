@@ -1,4 +1,4 @@
-"""Trials to columns, by both methods: what every worker and every replay runs.
+"""Trials to columns, by both methods: run by every worker and every replay.
 
 Columns are in the user's units (um, mm, mrad, K, deg, arcmin), trial on axis 0; a curve has positions on axis 1.
 """
@@ -27,7 +27,7 @@ def columns_of(
     """All columns of some trials.
 
     Args:
-        system: what is built.
+        system: the system to build.
         method: of the 3D simulation; None for the analytic columns only.
         trials: deviations and positions.
         measures: which are read; all by default.
@@ -60,7 +60,7 @@ def _columns(system: System, measures: Sequence[Measure], by_method: Sequence[As
 
 
 def drawn_columns(system: System, trials: Trials) -> Columns:
-    """Columns of what trials are: their deviations and positions."""
+    """Columns of the input of trials: their deviations and positions."""
     columns: Columns = {}
     for contributor, slots in zip(system.contributors, component_slices(system).values(), strict=True):
         own = trials.deviations[:, slots]

@@ -1,4 +1,4 @@
-"""Correlated contributors of a study: from the scene to a copula, and what it does to sums of effects.
+"""Correlated contributors of a study: from the scene to a copula, and its effect on sums of effects.
 
 Correlations are of the standard normals of the laws. Those of the deviations themselves follow by Hermite polynomials:
 of x = Σ a_k H_k(z) and y = Σ b_k H_k(z'), H_k normalised, the covariance is Σ a_k b_k ρ^k (Mehler). It is ρ sigma sigma
@@ -32,23 +32,23 @@ from tol3d.system.normals import LEAST, MOST, groups_of
 from tol3d.system.system import System
 
 ORDERS: Final = 200
-"""Of the polynomials."""
+"""Number of orders of the polynomials."""
 REACH: Final = 9.0
-"""Of the normals, in which laws are integrated."""
+"""Range of the normals, in which laws are integrated."""
 STEPS: Final = 8_001
 ALIKE: Final = 1e-6
-"""Of a variance; a contributor whose part in a sum differs more from its slope's is not linear in it."""
+"""Fraction of a variance; a contributor whose part in a sum differs more from its slope's is not linear in it."""
 
 
 # from the scene -----------------------------------------------------------------------------------------
 
 
 def copula_of(scene: Scene, system: System) -> Copula:
-    """What a scene says of correlations between the contributors of its system.
+    """Correlations that a scene states between the contributors of its system.
 
     Raises:
-        SceneError: a name is none, or of a contributor that cannot be correlated; a pair is said twice; or the
-            correlations cannot hold together.
+        SceneError: a name is unknown, or of a contributor that cannot be correlated; a pair is stated twice; or the
+            correlations are inconsistent.
     """
     if not scene.correlations:
         return INDEPENDENT
@@ -72,7 +72,7 @@ def copula_of(scene: Scene, system: System) -> Copula:
 
 
 def _unfit(name: str, known: Mapping[str, Contributor]) -> str:
-    """Why a contributor cannot be correlated, or nothing."""
+    """Reason why a contributor cannot be correlated, or nothing."""
     if name not in known:
         return f"expected the name of a contributor, got {name!r}{hint(name, known)}"
     draw, expected = known[name].draw, "expected a contributor of one number that varies by itself, got"
@@ -158,7 +158,7 @@ def divided_variances(effects: Mapping[str, float], copula: Copula, draws: Mappi
 
 
 def closed_form_of(simulation: Simulation, measure: Measure) -> ClosedForm | None:
-    """Moments of a measure by the analytic method, with covariances; None where there is no closed form.
+    """Moments of a measure by the analytic method, with covariances; None if there is no closed form.
 
     There is none either where a contributor that is correlated with another one acts otherwise than by a slope.
     """
@@ -177,20 +177,20 @@ def closed_form_of(simulation: Simulation, measure: Measure) -> ClosedForm | Non
 
 
 def _acting_together(copula: Copula, names: Sequence[str]) -> frozenset[str]:
-    """Those of some contributors that are correlated with others of them."""
+    """Contributors of some that are correlated with others of them."""
     blocks = ([name for name in own.names if name in names] for own in copula.blocks)
     return frozenset(name for own in blocks if len(own) > 1 for name in own)
 
 
 def _by_slope(form: ClosedForm, name: str, draw: Draw) -> bool:
-    """Whether a contributor acts on a measure in proportion to its deviation."""
+    """True if a contributor acts on a measure in proportion to its deviation."""
     (first, *others) = [own for own in form.shares if own.name == name]
     linear = (first.coefficient * draw.sigma) ** 2
     return not others and name not in form.leaning and abs(first.variance - linear) <= ALIKE * max(linear, 1e-300)
 
 
 def correlation_warnings(simulation: Simulation) -> Iterator[str]:
-    """What correlations do to the numbers of a study."""
+    """Warnings of the effect of correlations on the numbers of a study."""
     for own in simulation.copula.blocks:
         names = ", ".join(own.names)
         yield (

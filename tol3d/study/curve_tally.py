@@ -60,7 +60,7 @@ class OrderTally:
 
 
 def spectrum_tally(measure: Measure, curves: Array, grids: Mapping[str, Grid]) -> tuple[OrderTally, ...]:
-    """A block's amplitudes of each order that a measure asks for; none where it asks for none."""
+    """A block's amplitudes of each order that a measure asks for; none if it asks for none."""
     if measure.spectrum is None:
         return ()
     found = amplitudes_of(measure, measure.spectrum, curves)
@@ -71,7 +71,7 @@ def spectrum_tally(measure: Measure, curves: Array, grids: Mapping[str, Grid]) -
 
 
 def spectrum_sample(measure: Measure, tallies: tuple[OrderTally, ...]) -> SpectrumSample | None:
-    """What summary.json says of them, in the measure's unit; None where the measure asks for none."""
+    """Spectrum in the form of summary.json, in the measure's unit; None if the measure asks for none."""
     if measure.spectrum is None:
         return None
     low, middle, high = ([own.quantile(p) for own in tallies] for p in QUANTILES)
@@ -97,7 +97,7 @@ def status_counts(statuses: Statuses, columns: Columns, measure: Measure) -> dic
 
 
 def counted(statuses: Statuses, status: NDArray[np.generic] | None, trials: int) -> dict[str, int]:
-    """How many of the trials have each status (trials,); None where all of them seat."""
+    """Number of trials of each status; `status` is (trials,), None where all of them seat."""
     seated = trials if status is None else int(np.count_nonzero(status == statuses.seated))
     if seated == trials:
         return {statuses.seated: trials, **dict.fromkeys(statuses.failed, 0)}
@@ -105,7 +105,7 @@ def counted(statuses: Statuses, status: NDArray[np.generic] | None, trials: int)
 
 
 def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
-    """Trials of a block that failed, by what decided it; none where the method does not say."""
+    """Trials of a block that failed, by the deciding cause; none if the method does not give it."""
     reasons = columns.get(reason_column(measure.name))
     if reasons is None or not (said := reasons != "").any():
         return {}
@@ -114,7 +114,7 @@ def reason_counts(columns: Columns, measure: Measure) -> dict[str, int]:
 
 
 def gathered(mine: Counts, its: Counts) -> dict[str, int]:
-    """Both counts as one, of whatever names."""
+    """Both counts as one, of any names."""
     return {name: mine.get(name, 0) + its.get(name, 0) for name in sorted(mine.keys() | its.keys())}
 
 

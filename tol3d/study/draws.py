@@ -34,7 +34,7 @@ def streams_of(system: System) -> Mapping[StreamKey, Stream]:
 
 
 def sampler_of(simulation: Simulation, streams: int) -> Sampler:
-    """The study's sampler, for so many streams."""
+    """The study's sampler, for a number of streams."""
     study = simulation.study
     if study.sampler == "sobol":
         return Sobol(study.seed, study.replicate_trials, streams)

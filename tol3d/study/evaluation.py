@@ -33,12 +33,12 @@ Values = Callable[[Array, Sequence[Measure]], Mapping[str, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What a method says of some trials.
+    """Answers of a method for some trials.
 
     Args:
-        trials: they.
-        answers: the method's.
-        values: what measures take of them: by name (trials,), or (trials, positions) of a curve, in their units.
+        trials: the trials.
+        answers: those of the method.
+        values: values taken by measures: by name (trials,), or (trials, positions) of a curve, in their units.
     """
 
     trials: Trials
@@ -51,7 +51,7 @@ class Evaluation:
     """A system by one method.
 
     Args:
-        system: what is built.
+        system: the system to build.
         method: of the 3D simulation; None for the analytic one.
     """
 
@@ -75,7 +75,7 @@ class Evaluation:
         Args:
             trials: stated or drawn.
             measures: of the system.
-            overlaps: whether what a method answers of builds that do not seat is kept, such as how deep they overlap.
+            overlaps: keep a method's answers for builds that do not seat, such as the depth of their overlap.
 
         Returns:
             By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build does not
@@ -95,7 +95,7 @@ class Evaluation:
         return {own.name: np.concatenate([piece[own.name] for piece in pieces]) for own in measures}
 
     def asked(self, trials: Trials, measures: Sequence[Measure]) -> Iterator[Asked]:
-        """All that the method says of trials, as many at once as their positions let it."""
+        """All answers of the method for trials, as many at once as their positions let it."""
         method = self.method or self.system.method(ANALYTIC_METHOD, None)
         rows = trials_at_once(measures)
         for first in range(0, len(trials), rows):
@@ -120,13 +120,13 @@ def _read(method: str, answers: Answers, measure: Measure, count: int) -> NDArra
 
 
 def evaluations(system: System, method: Method | None) -> Mapping[str, Evaluation]:
-    """By each method: "analytic", and "geometric" where there is an engine."""
+    """Evaluation by each method: "analytic", and "geometric" if there is an engine."""
     own = {ANALYTIC: Evaluation(system)}
     return own | {GEOMETRIC: Evaluation(system, method)} if method else own
 
 
 def measures_alike(system: System, measures: Sequence[Measure]) -> list[tuple[Mapping[str, bool], list[Measure]]]:
-    """Measures by what turns at random from trial to trial at their positions: those that share a mean build."""
+    """Measures by the directions that turn at random at their positions: those that share a mean build."""
     names = [contributor.name for contributor in system.contributors]
     turning: dict[Positions, tuple[bool, ...]] = {}
     alike: dict[tuple[bool, ...], list[Measure]] = {}
@@ -150,7 +150,7 @@ def of_alike(
 
 
 def batches(contributors: Sequence[T], rows: Sequence[int], width: int) -> Iterator[Sequence[T]]:
-    """Contributors whose builds are made together, by the rows that each takes of so many components."""
+    """Contributors whose builds are made together, by the number of rows that each takes for its components."""
     batch: list[T] = []
     size = 0
     for own, count in zip(contributors, rows, strict=True):

@@ -17,7 +17,7 @@ from tol3d.system.dependent import Dependent, Named, in_draw_order, reads_of
 from tol3d.system.draw import Each
 
 PLACES: Final = 65
-"""Of what is read, at first: what it does is smooth but for a few bends."""
+"""Number of places that are read at first: the effect is smooth but for a few bends."""
 ZOOMS: Final = 14
 """Each to the two spans beside the best place, a quarter of the spans before: 5e-10 of all in the end."""
 SWEEPS: Final = 3
@@ -25,7 +25,7 @@ SWEEPS: Final = 3
 
 
 class Ended(Named, Protocol):
-    """A contributor, as far as its ends hang on it."""
+    """The part of a contributor on which its ends depend."""
 
     @property
     def distribution(self) -> DeviationLaw:
@@ -34,7 +34,7 @@ class Ended(Named, Protocol):
 
 
 def ends_alone(contributor: Ended, slopes: Array, *, turning: bool) -> Array:
-    """The ends (2, components) of a contributor that lower and that raise what has these slopes.
+    """The ends (2, components) of a contributor that lower and that raise a quantity with these slopes.
 
     Features that are drawn each for itself are all at their own worst ends. Not a number where a slope is none.
     """

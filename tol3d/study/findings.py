@@ -1,4 +1,4 @@
-"""What a study found, and what its witness found of it."""
+"""Findings of a study, and those of its witness."""
 
 import csv
 import io
@@ -22,10 +22,10 @@ def findings(simulation: Simulation, method: Method | None, tally: Tally, activi
     """Everything of summary.json but files, timing and versions.
 
     Args:
-        simulation: what was simulated.
+        simulation: that was run.
         method: of the 3D simulation; None for an analytic study.
         tally: of all trials.
-        activity: gets what goes on, in words.
+        activity: callback for the current activity, in words.
     """
     with threadpool_limits(1, user_api="blas"):  # threads make these small matrices three to ten times as slow
         found = study_summary(simulation, method, tally)
@@ -40,7 +40,7 @@ def findings(simulation: Simulation, method: Method | None, tally: Tally, activi
 
 
 def described(simulation: Simulation, tally: Tally, found: Findings) -> dict[str, Any]:
-    """Findings with what their system adds: what each measure is, and sections of its own behind the measures."""
+    """Findings with what their system adds: descriptions of measures, and sections of its own after the measures."""
     system, options = simulation.system, simulation.study.options
     measures = {own.name: {**system.describe(own), **dict(found.measures[own.name].items())} for own in system.measures}
     whole = dict(found.items()) | {"measures": measures}
@@ -57,14 +57,14 @@ SHARES: Final[Mapping[str, str]] = {
     "analytic_percent": "analytic",
     "high_low_mean_percent": "high-low-mean",
 }
-"""What the rows of contributors.csv are called, by the keys of a share in summary.json."""
+"""Names of the rows of contributors.csv, by the keys of a share in summary.json."""
 
 
 def run_tables(simulation: Simulation, tally: Tally, found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Files of a run with their texts; none that would be empty.
 
     Args:
-        simulation: what was simulated.
+        simulation: that was run.
         tally: of all trials.
         found: the findings, as summary.json has them.
     """

@@ -1,4 +1,4 @@
-"""What makes the blocks of an interrupted run this run's own: scene, files, study, versions and blocks."""
+"""Identity of the blocks of an interrupted run: scene, files, study, versions and blocks."""
 
 import json
 

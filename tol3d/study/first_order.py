@@ -1,4 +1,4 @@
-"""First order by differences: what each deviation does to a measure, on either method.
+"""First order by differences: the effect of each deviation on a measure, by either method.
 
 No theory is needed, so any system has it; both methods stand beside each other before a trial is drawn.
 """
@@ -30,16 +30,16 @@ NOISE = 1e-9  # of the values; smaller differences are rounding, and have no sig
 
 @dataclass(frozen=True)
 class FirstOrderEffect:
-    """What a contributor does to a measure, of first order at the mean build.
+    """First-order effect of a contributor on a measure, at the mean build.
 
     Args:
         name, unit: of the contributor.
         slope: change of the measure [its unit] per unit of the deviation; of several components the size of their
             gradient, of several deviations of their own that of each or the greatest; nan where a build does not seat.
-        each: how many deviations of their own it has, such as one a feature; 1 of a single one or of components.
-        alike: whether their slopes are.
+        each: number of independent deviations, such as one per feature; 1 for a single one or for components.
+        alike: True if their slopes are equal.
         variance: its part of the measure's variance [the measure's unit, squared].
-        reach: how far it moves the measure between its low and high ends [the measure's unit].
+        reach: change of the measure between its low and high ends [the measure's unit].
     """
 
     name: str
@@ -74,21 +74,21 @@ class FirstOrder:
         return math.sqrt(sum(own.variance for own in self.effects))
 
     def variance_percent(self, effect: FirstOrderEffect) -> float:
-        """Share of the variance [%]; 0 where nothing varies."""
+        """Share of the variance [%]; 0 if nothing varies."""
         return _percent(effect.variance, sum(own.variance for own in self.effects))
 
     def reach_percent(self, effect: FirstOrderEffect) -> float:
-        """Share of the worst case [%]: of the sum of all reaches; 0 where nothing varies."""
+        """Share of the worst case [%]: of the sum of all reaches; 0 if nothing varies."""
         return _percent(effect.reach, sum(own.reach for own in self.effects))
 
 
 def first_orders(
     simulation: Simulation, method: Method | None, measures: Sequence[Measure]
 ) -> dict[str, dict[str, FirstOrder]]:
-    """Measures of one number a trial, by name and method: "analytic", and "geometric" where there is an engine.
+    """Measures of one number a trial, by name and method: "analytic", and "geometric" if there is an engine.
 
     Args:
-        simulation: what is studied.
+        simulation: to be studied.
         method: of its engine; None without one.
         measures: of its system, no curves.
     """
@@ -107,7 +107,7 @@ def first_order(
     """Measures of first order about their mean builds, by central differences over one sigma to both sides.
 
     Args:
-        system, measures: what is built, and what is read of it.
+        system, measures: to build and to read.
         values: by one method, in units of the measures.
         copula: which contributors are correlated; their parts in the variance are then Shapley effects.
     """
@@ -116,7 +116,7 @@ def first_order(
 
 
 def _correlated(found: FirstOrder, system: System, copula: Copula) -> FirstOrder:
-    """With the variance that correlations make of the sum."""
+    """First order with the variance that correlations make of the sum."""
     draws = {own.name: own.draw for own in system.contributors}
     effects = {
         own.name: math.copysign(math.sqrt(own.variance), own.slope)
@@ -169,7 +169,7 @@ def _slopes(
     acting: Mapping[str, Sequence[Contributor]],
     values: Values,
 ) -> dict[str, dict[str, Array]]:
-    """Change of measures per mm, rad or K of each contributor's components (components,); 0 of what does not act."""
+    """Change of measures per mm, rad or K of each contributor's components (components,); 0 if it does not act."""
     names = {measure: {own.name for own in those} for measure, those in acting.items()}
     slopes = {
         measure.name: {own.name: np.zeros(len(own.draw.components)) for own in system.contributors}
@@ -201,7 +201,7 @@ def _step(contributor: Contributor) -> float:
 
 
 def _concerned(system: Described, acting: Sequence[Contributor]) -> list[Contributor]:
-    """Those that act on a measure and those that they read, directly or not, in the system's order."""
+    """Contributors that act on a measure and those that they read, directly or not, in the system's order."""
     known = {own.name: own for own in system.contributors}
     names = {own.name for own in acting}
     while added := {name for own in names for name in reads_of(known[own])} - names:

@@ -38,7 +38,7 @@ def high_low_mean_percents(system: System, measures: Sequence[Measure], values: 
     """Shares [%] of contributors: the square of each one's range (largest less smallest of three states) in their sum.
 
     Args:
-        system, measures: what is built, and what is read of it: one number of each.
+        system, measures: to build and to read: one number of each.
         values: measures of deviations; nan where a build does not seat.
 
     Returns:
@@ -48,7 +48,7 @@ def high_low_mean_percents(system: System, measures: Sequence[Measure], values: 
 
 
 def to_first_order(system: System, measures: Sequence[Measure]) -> int:
-    """How many contributors move most measures by what they do to first order, for not all of their ends are built."""
+    """Number of contributors whose effect on most measures is of first order only; not all of their ends are built."""
     found = 0
     for turning, alike in measures_alike(system, measures):
         mean = mean_deviations(system, alike[0].positions)
@@ -69,7 +69,7 @@ def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_A
 def _percents_of(
     system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
 ) -> dict[str, Percents]:
-    """Shares of measures that share the mean build and what turns at random."""
+    """Shares of measures that share the mean build and the directions that turn at random."""
     mean = mean_deviations(system, measures[0].positions)
     found = _ranges_of(_alone(system, turning, mean), mean, measures, values)
     names = [contributor.name for contributor in system.contributors]
@@ -79,7 +79,7 @@ def _percents_of(
 def ranges(
     contributors: Sequence[Named], slices: Mapping[str, slice], mean: Array, measures: Sequence[Measure], values: Values
 ) -> Mapping[str, Array]:
-    """How far each contributor by itself moves measures: largest less smallest of both ends and the mean build.
+    """Range of measures over each contributor by itself: largest less smallest of both ends and the mean build.
 
     Args:
         contributors: of some system; none of their directions turns.
@@ -117,12 +117,12 @@ def _ranges_of(
 
 @dataclass(frozen=True)
 class _Ranges:
-    """How far each contributor moves each measure.
+    """Range of each measure over each contributor.
 
     Args:
         places: of the contributors.
         seated: the measures whose mean build seats.
-        middle: of measures, what they are there.
+        middle: values of the measures there.
         values: measures of deviations.
         by_measure: the range of each contributor (contributors,), nan where it is not known.
     """
@@ -150,7 +150,7 @@ class _Ranges:
                 self.by_measure[name][at] = np.ptp(np.concatenate([found.reshape(-1, 2), middle], axis=1), axis=1)
 
     def ask(self, asking: Sequence["_Alone"], *, all_exact: bool) -> None:
-        """Find those of contributors whose ends follow from what they do to a measure; to first order if not exact."""
+        """Find ranges of contributors whose ends follow from their effect on a measure; to first order if not exact."""
         for own in asking:
             own.builds_ends = all_exact
             own.ask(measure.name for measure in self.seated)
@@ -164,7 +164,7 @@ class _Ranges:
                     self.by_measure[measure.name][place] = own.first_order(measure.name, self.middle[measure.name])
 
     def build_the_largest(self, asking: Sequence["_Alone"]) -> None:
-        """Find those of the contributors that move a measure most, in place of what they do to first order."""
+        """Find the ranges of the contributors that move a measure most, in place of their first-order effects."""
         chosen = []
         for measure in self.seated:
             sizes = self.by_measure[measure.name][[self.places[own.contributor.name] for own in asking]]
@@ -218,7 +218,7 @@ class _Alone:
 
     @cached_property
     def plain_ends(self) -> Array | None:
-        """Its ends (2, components) where they are the same for all measures; None where they ask what it does."""
+        """Its ends (2, components) where they are the same for all measures; None if they depend on its effect."""
         try:
             ends = self.contributor.draw.ends(_refuse_to_read, turning=self.turning)
         except _NotKnownError:
@@ -237,14 +237,14 @@ class _Alone:
                 self.want_ends(name)
 
     def want_ends(self, name: str) -> None:
-        """Ask for what a measure is at its ends."""
+        """Ask for the values of a measure at its ends."""
         if (ends := self.ends.get(name)) is not None:
             self._want(ends, name)
 
     def first_order(self, name: str, middle: float) -> float:
-        """How far it moves a measure, by what was read of it about the mean build; nan where its ends are not known.
+        """Range of a measure, from readings about the mean build; nan where its ends are not known.
 
-        As a sum of what each component does to either side: a tilt that the highest point follows acts alike to both.
+        A sum of the effects of each component to either side: a tilt that the highest point follows acts alike to both.
         """
         if (ends := self.ends.get(name)) is None:
             return math.nan

@@ -1,4 +1,4 @@
-"""What the measures of a study do together: the share of trials within all limits, and correlations."""
+"""Joint results of the measures of a study: the share of trials within all limits, and correlations."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -41,7 +41,7 @@ def correlated(measures: Sequence[Measure]) -> list[Measure]:
 
 @dataclass(frozen=True)
 class JointTally:
-    """What measures do together, by method.
+    """Joint results of measures, by method.
 
     Args:
         within: of all trials, those in which every measure that has a limit is valid and within its limits; empty
@@ -58,7 +58,7 @@ class JointTally:
     def of(
         cls, measures: Sequence[Measure], outcomes: Outcomes, rows: Rows, products: Products, among: Among
     ) -> "JointTally":
-        """Of one block.
+        """Tally of one block.
 
         Args:
             measures: all of the study.
@@ -109,7 +109,7 @@ def _within(measure: Measure, outcome: Outcome) -> Mask:
 
 
 def _pairs(measures: Sequence[Measure], method: str, outcomes: Outcomes, products: Products, among: Among) -> PairSums:
-    """Sums of all pairs of measures on a method: those that are known, where no trial lacks any, and the others."""
+    """Sums of all pairs of measures by a method: those that are known, where no trial lacks any, and the others."""
     names = [measure.name for measure in measures]
     groups, ordered = [], list[str]()
     for keys, own in among.items():
@@ -137,7 +137,7 @@ def _merged(mine: Mapping[Key, Proportion], its: Mapping[Key, Proportion]) -> di
 
 
 def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | None:
-    """What measures do together, as summary.json shows it; None where none has a limit and there are no two."""
+    """Joint results of measures, as summary.json shows them; None where none has a limit and there are no two."""
     judged, paired = limited(simulation.system.measures), correlated(simulation.system.measures)
     if not judged and not paired:
         return None
@@ -159,7 +159,7 @@ def joint_summary(simulation: Simulation, tally: JointTally) -> summary.Joint | 
 
 
 def _most_correlated(tally: JointTally) -> list[int]:
-    """Which MOST_IN_SUMMARY measures have the largest correlations by the best method, in the scene's order."""
+    """The MOST_IN_SUMMARY measures with the largest correlations by the best method, in the scene's order."""
     first, second = _ranked_pairs([*tally.pairs.values()][-1])
     found = dict.fromkeys(np.stack([first, second], axis=1).ravel().tolist())
     return sorted([*found][:MOST_IN_SUMMARY])

@@ -1,4 +1,4 @@
-"""What a run is asked to do: a scene, and what is said otherwise than there."""
+"""Order for a run: a scene, and the values that override it."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from tol3d.system.mechanism import mechanism_of, origin_of, requires_of
 
 @dataclass(frozen=True)
 class Overrides:
-    """What a run may say otherwise than its scene's study; None keeps the scene's word."""
+    """Values of a run that override its scene's study; None keeps the scene's."""
 
     trials: int | str | None = None
     seed: int | None = None
@@ -33,7 +33,7 @@ AS_WRITTEN = Overrides()
 
 
 def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation:
-    """What a scene means, with a run's overrides in its study.
+    """Simulation of a scene, with a run's overrides in its study.
 
     Raises:
         SceneError: the scene cannot be built, or its parts overlap at the mean build.
@@ -71,7 +71,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
 
 
 def asked_study(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Study:
-    """What a run of a scene is asked to do, without looking at what the scene means.
+    """Study that a run of a scene is asked for, without interpreting the scene.
 
     Raises:
         InputError: an override that no scene could say.
@@ -81,7 +81,7 @@ def asked_study(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Study:
 
 
 def _refuse_engine(scene: Scene, overrides: Overrides, engine: str, known: Iterable[str]) -> None:
-    """Refuse an engine that the scene does not have, where it was asked for."""
+    """Refuse an engine that the scene does not have, if it was asked for."""
     names = [*(name for name in known if name != THEORY), THEORY]
     if engine in names:
         return
@@ -92,7 +92,7 @@ def _refuse_engine(scene: Scene, overrides: Overrides, engine: str, known: Itera
 
 
 def _said_by(option: str) -> str:
-    """How a run is asked for something otherwise than its scene has it."""
+    """Option of a run that overrides its scene, in words."""
     return f"--{option} (in Python Overrides.{option})"
 
 
@@ -112,7 +112,7 @@ def _overridden(scene: Scene, overrides: Overrides) -> Scene:
 
 
 def _unsaid_by(given: Mapping[str, Any], engines: Engines) -> set[str]:
-    """What the scene's study says for other trials, another sampler or another engine only."""
+    """Settings of the scene's study that hold only for other trials, another sampler or another engine."""
     unsaid = {"until", "at_most"} if given.get("trials", "auto") != "auto" else set()
     unsaid |= {"replicates"} if given.get("sampler") == "monte_carlo" else set()
     return unsaid | ({"witness"} if given.get("engine") in engines.unwitnessed else set())

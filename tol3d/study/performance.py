@@ -27,7 +27,7 @@ class Side:
     Args:
         moments: of the trials that have a value.
         replicates: the same of each replicate; empty for independent trials.
-        quantile: the value below which a share of them lies; None where it is not known.
+        quantile: the value below which a share of them lies; None if unknown.
     """
 
     moments: Moments
@@ -36,7 +36,7 @@ class Side:
 
     @property
     def not_normal(self) -> str:
-        """Skewness or excess kurtosis where it is none of a normal law's, beyond chance; else nothing.
+        """Skewness or excess kurtosis if it differs from a normal law's beyond chance; else nothing.
 
         The error is that of as many independent trials of a normal law. Replicates may vary more, their spread counts
         then.
@@ -64,7 +64,7 @@ def _larger(error: float, replicates: Sequence[float]) -> float:
 
 @dataclass(frozen=True)
 class Performance:
-    """A Ppk, by which rule it was found, and why by that one; None where trials cannot say."""
+    """A Ppk, the rule by which it was found, and the reason; None if trials do not suffice."""
 
     ppk: float | None
     by: By
@@ -73,13 +73,13 @@ class Performance:
 
 @dataclass(frozen=True)
 class Judged:
-    """Limits of a measure, and what its trials say of them.
+    """Limits of a measure, and the statistics of its trials against them.
 
     Args:
         lower, upper: the limits; None for none.
         low, high: values that the one and the other judges.
         counts: of all trials.
-        interval: bounds of the true share out of limits [ppm]; None where it is not known.
+        interval: bounds of the true share out of limits [ppm]; None if unknown.
     """
 
     lower: float | None
@@ -90,7 +90,7 @@ class Judged:
     interval: tuple[float, float] | None
 
     def performance(self, asked: PpkBy | None) -> Performance:
-        """By the share out of limits where any build failed, else as asked, else as the trials are distributed.
+        """Performance by the share out of limits if any build failed, else as asked, else by the law of the trials.
 
         Mean and sigma are of a normal law. By quantiles it is taken where a skewness or kurtosis is not one's, and
         where a normal law would have a share out that the trials refute, so that Ppk and verdict do not contradict
@@ -112,7 +112,7 @@ class Judged:
 
     @property
     def _sides(self) -> list[tuple[Side, float]]:
-        """The values that each limit judges, and how far it lies from their mean."""
+        """The values that each limit judges, and its distance from their mean."""
         found = []
         if self.lower is not None:
             found.append((self.low, self.low.moments.mean - self.lower))

@@ -27,14 +27,14 @@ Built = Callable[[Array, Standing], tuple[Array, Codes]]
 """A measure (rows,) in its unit and statuses (rows,) of deviations (rows, components) at positions."""
 
 NOISE: Final = 1e-9
-"""Of the largest values; smaller differences are rounding."""
+"""Fraction of the largest values; smaller differences are rounding."""
 AT_ONCE: Final = 2**21
 """Numbers of builds in one batch."""
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A contributor as it is drawn; what the order of drawing reads of it.
+    """A contributor as it is drawn; its part for the order of drawing.
 
     Args:
         name, draw: of it.
@@ -67,7 +67,7 @@ class Space:
 
     @cached_property
     def free(self) -> Sequence[tuple[Drawing, Region]]:
-        """Those that act and read no others, with their regions."""
+        """Contributors that act and read no others, with their regions."""
         return [
             (own, region_of(own.draw, turning=own.turning))
             for own in self.drawings
@@ -76,7 +76,7 @@ class Space:
 
     @cached_property
     def bound(self) -> Sequence[Drawing]:
-        """Those that act and read others, in the order of drawing."""
+        """Contributors that act and read others, in the order of drawing."""
         return [own for own in in_draw_order(self.drawings) if own.acts and isinstance(own.draw, Dependent)]
 
     @cached_property
@@ -92,7 +92,7 @@ class Space:
 
     @cached_property
     def sigmas(self) -> Array:
-        """Of each component."""
+        """Sigma of each component."""
         each = [np.array(component_sigmas(own.draw), dtype=float) for own in self.drawings]
         found = np.concatenate([np.zeros(0), *each])
         return np.where(found > 0.0, found, 0.0)
@@ -111,8 +111,8 @@ class Rows:
 
     Args:
         deviations: (rows, components).
-        towards: of contributors that read others, which way they lie in what these leave (rows, components).
-        reach: how far that way, 0 in the middle and 1 at the end (rows, components).
+        towards: of contributors that read others, their direction in the remaining region (rows, components).
+        reach: fraction of that way, 0 in the middle and 1 at the end (rows, components).
     """
 
     deviations: Array
@@ -139,7 +139,7 @@ class Rows:
 
 
 def space_of(system: System, measure: Measure, draws: Mapping[str, Draw]) -> Space:
-    """The regions that act on a measure, or are read by what acts.
+    """The regions that act on a measure, or are read by contributors that act.
 
     Args:
         system, measure: which.
@@ -248,7 +248,7 @@ def confined(space: Space, deviations: Array) -> Array:
 
 
 def within_regions(space: Space, deviations: Array) -> NDArray[np.bool_]:
-    """Whether builds (rows, components) lie in the regions, as far as these have a nearest point."""
+    """True where builds (rows, components) lie in the regions, as far as these have a nearest point."""
     moved = np.abs(confined(space, deviations) - deviations)
     return np.asarray((moved <= NOISE * (np.abs(deviations) + space.sigmas)).all(axis=1))
 
@@ -268,11 +268,11 @@ def builds_in(space: Space, deviations: Array) -> Rows:
 
 
 def random_ends(space: Space, count: int, seed: int) -> Rows:
-    """So many builds with all contributors at their ends, along slopes drawn at random."""
+    """Builds with all contributors at their ends, along slopes drawn at random."""
     slopes = np.random.default_rng(seed).standard_normal((count, len(space.mean)))
     return settled(space, furthest(space, np.repeat(space.mean[None], count, axis=0), slopes))
 
 
 def repeated(positions: Standing, count: int) -> Standing:
-    """Each row's positions so many times."""
+    """Each row's positions, repeated."""
     return {name: np.repeat(own, count, axis=0) for name, own in positions.items()}

@@ -1,4 +1,4 @@
-"""What measures have in common with their regressors, block by block: shares and explanations come of it."""
+"""Sums of measures with their regressors, block by block, for shares and explanations."""
 
 from collections.abc import Mapping, Sequence
 
@@ -42,12 +42,12 @@ def target_sums(
     products: Products,
     copula: Copula = INDEPENDENT,
 ) -> tuple[dict[Key, Sums], Among]:
-    """What each method's column of each measure has in common with its regressors, by method and name.
+    """Sums of each method's column of each measure with its regressors, by method and name.
 
     And with those columns that have the same regressors and that no trial lacks.
 
     Args:
-        system, measures: what is measured; scalar measures.
+        system, measures: to be measured; scalar measures.
         columns: of a block.
         values: of methods and their difference, nan where a trial lacks one.
         products: of all pairs of rows.
@@ -87,11 +87,11 @@ class _Block:
         self.own, self.rows, self.products = own, rows, products
 
     def part(self, good: NDArray[np.bool_]) -> "_Block":
-        """Of some of its trials."""
+        """Block of some of its trials."""
         return _Block(self.own, self.rows[:, good], self.products)
 
     def sums(self, keys: Sequence[Key], targets: Array) -> tuple[dict[Key, Sums], TargetSums | None]:
-        """Of targets (targets, trials), and those of the targets among each other where they are known."""
+        """Sums of targets (targets, trials), and those of the targets among each other where they are known."""
         known = {own.name: own for own in self.own.measures}
         regressed = [self.own.of(known[name]) for _, name in keys]
         if not self.own.apart:

@@ -29,13 +29,13 @@ contributors each cluster that depends on nothing else is regressed on by itself
 
 @dataclass(frozen=True, eq=False)
 class Regressed:
-    """What one measure is regressed on.
+    """Regressors of one measure.
 
     Args:
         names: of the contributors that act on it.
         ends: (contributors + 1,), where the regressors of each begin and end.
         rows: its regressors among those of its set.
-        picked: of very many contributors how they are cut; None where all are regressed on together.
+        picked: division of very many contributors; None if all are regressed on together.
     """
 
     names: tuple[str, ...]
@@ -56,15 +56,15 @@ class Regressed:
 
 @dataclass(frozen=True, eq=False)
 class RegressorSet:
-    """Measures that see contributors alike, and contributors of which each measure has some.
+    """Measures that see contributors alike, and their contributors.
 
     Args:
         measures: which.
         contributors: all that act on any of them, in the system's order.
-        clusters: how they are cut.
+        clusters: division of the contributors.
         apart: whether each cluster is regressed on by itself, or all that act on a measure together.
         acting: names of those that act on each measure.
-        known: what was asked for, by measure.
+        known: earlier answers, by measure.
     """
 
     measures: tuple[Measure, ...]
@@ -75,7 +75,7 @@ class RegressorSet:
     known: dict[str, Regressed] = field(default_factory=dict)
 
     def of(self, measure: Measure) -> Regressed:
-        """What one of its measures is regressed on."""
+        """Regressors of one of its measures."""
         if measure.name not in self.known:
             self.known[measure.name] = self._of(self.acting[measure.name])
         return self.known[measure.name]
@@ -89,7 +89,7 @@ class RegressorSet:
         return {own.name: place for place, own in enumerate(self.contributors)}
 
     def __len__(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return self.clusters.features
 
     def rows(self, system: Theory, columns: Columns) -> Array:
@@ -112,7 +112,7 @@ def regressor_set(system: System, measure: Measure) -> RegressorSet:
 
 
 def regressor_groups(system: System, measure: Measure) -> Mapping[str, slice]:
-    """Which regressors of a measure belong to each contributor that acts on it."""
+    """Regressors of a measure that belong to each contributor that acts on it."""
     return regressor_set(system, measure).of(measure).groups
 
 

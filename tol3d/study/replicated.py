@@ -21,7 +21,7 @@ LEAST_COUNT = 5.0  # a replicate, in the mean, inside and outside a limit: fewer
 
 
 def rows_of_replicates(study: Study, first: int, count: int) -> Rows:
-    """Which rows of trials first ... first + count - 1 belong to each replicate; none for independent trials."""
+    """Rows of trials first ... first + count - 1 that belong to each replicate; none for independent trials."""
     if study.sampler == "monte_carlo":
         return {}
     rows, start = {}, 0
@@ -42,7 +42,7 @@ class Replicated:
     def of(
         cls, values: Array, rows: Rows, lower: float | None, upper: float | None, lacking: Mask | None = None
     ) -> "Replicated":
-        """Of a block of values (trials,), nan where a trial failed; limits and `lacking` as in LimitCounts.of."""
+        """Statistics of a block of values (trials,), nan for failed trials; limits, `lacking` as in LimitCounts.of."""
         own = {replicate: values[part] for replicate, part in rows.items()}
         return cls(
             {replicate: Moments.of(part[~np.isnan(part)]) for replicate, part in own.items()},
@@ -68,7 +68,7 @@ class Replicated:
 
     @property
     def freedom(self) -> int:
-        """Of the standard errors."""
+        """Degrees of freedom of the standard errors."""
         return len(self.moments) - 1
 
     @property
@@ -130,7 +130,7 @@ def interval_of_replicates(shares: Sequence[Proportion]) -> tuple[float, float] 
 
 
 def missed_share(points: int, replicates: int) -> float:
-    """The largest share of which no replicate of so many points may have any, with a chance of 2.5 %.
+    """The largest share of which no replicate of a number of points may have any, with a chance of 2.5 %.
 
     A net's count k of a share p has the mean n p. Of a Latin hypercube it has a variance of at most n/(n - 1) times
     n p (1 - p), that of independent trials (Owen, Monte Carlo variance of scrambled net quadrature, SIAM J. Numer.
@@ -151,5 +151,5 @@ def students_half(error: float, freedom: int) -> float:
 
 
 def standard_error(parts: Sequence[float]) -> float:
-    """Of the mean of independent parts; nan for fewer than two, or where one says nothing."""
+    """Standard error of the mean of independent parts; nan for fewer than two, or where one says nothing."""
     return float(np.std(parts, ddof=1)) / math.sqrt(len(parts)) if len(parts) > 1 else math.nan

@@ -26,7 +26,7 @@ def in_unit(measure: Measure, value: float | None) -> float | None:
 
 
 def lacking_of(measure: Measure, outcome: Outcome) -> Mask | None:
-    """Trials that lack what is measured, and so are below every lower limit.
+    """Trials of status "lacking", which are below every lower limit.
 
     But for a range: that of a build whose parts overlap says nothing of how far it swings, so it counts as failed only.
     """
@@ -40,7 +40,7 @@ class Sample:
     Args:
         moments, grid: of the trials that seated.
         limits: of all trials.
-        deepest: the largest overlap of a trial, as a value below 0; inf where none is known.
+        deepest: the largest overlap of a trial, as a value below 0; inf if none is known.
         replicated: the sample by replicates where its trials are not independent, and its errors are theirs then.
     """
 
@@ -55,7 +55,7 @@ class Sample:
         """Sample of a block.
 
         Args:
-            measure: what was measured.
+            measure: that was read.
             outcome: of the block's trials, values (trials,).
             empty: the measure's grid.
             rows: which of them belong to each replicate; empty for independent trials.
@@ -89,7 +89,7 @@ class Sample:
 
 
 def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None) -> summary.Sample:
-    """A sample as summary.json shows it, in the measure's unit; `asked` is by what Ppk is to be taken."""
+    """A sample as summary.json shows it, in the measure's unit; `asked` is the requested basis of Ppk."""
     moments, limits = sample.moments, sample.limits
     lower, upper = in_unit(measure, measure.lower_limit), in_unit(measure, measure.upper_limit)
     errors = sample.replicated or _Independent(moments, limits)
@@ -203,7 +203,7 @@ def sigma_interval(moments: Moments, errors: Errors) -> list[float | None]:
 
 
 def finite(value: float | None) -> float | None:
-    """JSON has no nan: what is unknown (a sigma of one trial) is null."""
+    """JSON has no nan: an unknown value (a sigma of one trial) is null."""
     return None if value is None or not math.isfinite(value) else value
 
 

@@ -1,4 +1,4 @@
-"""What is simulated: a system, what is asked of it, and what others found of it."""
+"""Simulation: a system, its study, and published figures of it."""
 
 from dataclasses import dataclass, field
 
@@ -16,13 +16,13 @@ class Simulation:
     """Everything that a trial and its statistics need; it pickles.
 
     Args:
-        system: what is built and measured.
-        study: what is asked of it.
+        system: that is built and measured.
+        study: settings for it.
         published: columns of others.
         requires: packages, besides those of every study, whose versions decide its results.
-        presenter: import path of what shows the system, see `tol3d.report.presenter`; "" for nothing.
+        presenter: import path of the system's presenter, see `tol3d.report.presenter`; "" for nothing.
         mechanism: the one that understood the scene; None of a system made without.
-        implausible: what its vocabularies warn of in the scene.
+        implausible: warnings of its vocabularies on the scene.
         copula: which contributors are correlated.
     """
 
@@ -42,12 +42,12 @@ class Simulation:
 
     @property
     def has_geometry(self) -> bool:
-        """Whether there is a 3D simulation beside the analytic method."""
+        """True if there is a 3D simulation beside the analytic method."""
         return self.study.engine != ANALYTIC_METHOD
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What may spoil the numbers of this study."""
+        """Warnings of conditions that may spoil the numbers of this study."""
         return (*self.implausible, *self.system.warnings, *self.study.warnings)
 
 

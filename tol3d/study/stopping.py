@@ -1,4 +1,4 @@
-"""When an automatic study may stop: every standard error that was asked for is reached, or it is said which is not."""
+"""Stopping of an automatic study: every requested standard error is reached, or the message says which is not."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -28,7 +28,7 @@ def shortfalls(simulation: Simulation, tally: Tally) -> Iterator[str]:
 
 
 def _short(simulation: Simulation, tally: Tally) -> Iterator[tuple[str, str, float, float, str]]:
-    """Measure, statistic, standard error wanted and reached, unit, where it is not reached (or not known)."""
+    """Measure, statistic, standard error wanted and reached, unit, if it is not reached (or unknown)."""
     measures = {measure.name: measure for measure in simulation.system.measures}
     for until in simulation.study.until:
         measure, moments = measures[until.measure], _moments(tally, until)
@@ -46,5 +46,5 @@ def _moments(tally: Tally, until: Until) -> Moments:
 
 
 def _sigma_se(moments: Moments) -> float:
-    """Of sigma; 0 where nothing varies, for more trials would not change that."""
+    """Standard error of sigma; 0 where nothing varies, for more trials would not change that."""
     return 0.0 if moments.count > 1 and moments.m2 == 0.0 else moments.sigma_se

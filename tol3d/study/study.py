@@ -1,4 +1,4 @@
-"""What is asked of a system: how many trials, drawn how, by which engine, and when they may stop."""
+"""Settings of a study: number of trials, their draws, the engine, and when they may stop."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,10 +21,10 @@ class Until(NamedTuple):
 
 @dataclass(frozen=True)
 class Study:
-    """How many trials, drawn from which seed and how, by which engine.
+    """Number of trials, their seed and sampling, and the engine.
 
-    With `until` the trials are those at most. `replicates` of a sampler are parts of equal size, each randomised
-    anew. `ppk_by` is by what Ppk is taken; None is as the trials are distributed. `options` are what the system's
+    With `until` the number is a maximum. `replicates` of a sampler are parts of equal size, each randomised
+    anew. `ppk_by` is the basis of Ppk; None takes that of the trials' law. `options` are those of the system's
     vocabulary adds, for its own use.
     """
 
@@ -59,7 +59,7 @@ class Study:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What makes its numbers worse than they need be."""
+        """Warnings of settings that make its numbers worse than they need be."""
         if self.sampler != "sobol" or is_power_of_two(self.replicate_trials):
             return ()
         return (

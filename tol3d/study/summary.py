@@ -1,4 +1,4 @@
-"""A run's summary: what summary.json holds, in the measures' units."""
+"""A run's summary: the content of summary.json, in the measures' units."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, cast
@@ -65,7 +65,7 @@ NAMED_AT_ONCE = 6  # measures in one warning
 
 
 def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -> Findings:
-    """What a study found, but what its system adds to the whole and to each measure."""
+    """Findings of a study, without those that its system adds to the whole and to each measure."""
     explained = explanations(simulation, method, tally)
     study, mechanism = simulation.study, simulation.mechanism
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
@@ -128,7 +128,7 @@ def _asked(study: Study) -> StudySummary:
 
 
 def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
-    """A sentence for measures of which more trials failed than may be passed over; one for those that failed alike."""
+    """A sentence for measures with too many failed trials; one for those that failed alike."""
     alike: dict[tuple[tuple[tuple[str, int], ...], str], list[str]] = {}
     for measure in simulation.system.measures:
         status = _status(measure, tally)
@@ -149,13 +149,13 @@ def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
 
 
 def _named(names: Sequence[str]) -> str:
-    """Names at the begin of a sentence; of many the first and how many more there are."""
+    """Names at the begin of a sentence; of many the first and the number of the others."""
     left = len(names) - NAMED_AT_ONCE
     return ", ".join(names) if left <= 0 else f"{', '.join(names[:NAMED_AT_ONCE])} and {left} more measures"
 
 
 def _mostly(reasons: Mapping[str, int], failed: int) -> str:
-    """What decided most of the trials that failed, for a sentence; "" where nothing is known of it."""
+    """Reason why most of the failed trials failed, for a sentence; "" where nothing is known of it."""
     if not reasons:
         return ""
     reason, count = max(reasons.items(), key=lambda own: own[1])
@@ -163,14 +163,14 @@ def _mostly(reasons: Mapping[str, int], failed: int) -> str:
 
 
 def _reasons(measure: Measure, tally: Tally) -> Mapping[str, int]:
-    """How many trials of a measure failed by what, the most first."""
+    """Number of failed trials of a measure by reason, the most first."""
     if measure.take == "curve":
         return {}
     return dict(sorted(tally.measures[measure.name].reasons.items(), key=lambda own: -own[1]))
 
 
 def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
-    """How many trials of a measure ended how."""
+    """Number of trials of a measure by status."""
     return (tally.curves if measure.take == "curve" else tally.measures)[measure.name].status
 
 
@@ -188,7 +188,7 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
 
 
 def _ends_not_built(simulation: Simulation) -> Iterator[str]:
-    """A sentence where high-low-mean shares of some contributors are of what they do to first order."""
+    """A sentence if high-low-mean shares of some contributors are those of first-order effects."""
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
     if count := to_first_order(simulation.system, single):
         yield (
@@ -344,6 +344,6 @@ def _published(simulation: Simulation, measure: Measure) -> dict[str, PublishedC
 
 
 def _published_of_the_whole(simulation: Simulation) -> dict[str, Any]:
-    """What others found beside measures, by column and key."""
+    """Published figures beside measures, by column and key."""
     found = {name: own.figures for name, own in simulation.published.items()}
     return {name: converted(own, PER_INTERNAL) for name, own in found.items() if own}

@@ -46,7 +46,7 @@ class Disagreement:
     """Differences (geometric - analytic) of the trials in which a scalar measure has both, in its unit.
 
     Args:
-        sums: what they have in common with the measure's features.
+        sums: with the measure's features.
         largest: the largest |difference|, 0 without trials.
         trial: the first trial that has it; -1 without trials.
     """
@@ -57,7 +57,7 @@ class Disagreement:
 
     @classmethod
     def of(cls, first: int, difference: Array, sums: Sums) -> "Disagreement":
-        """Of a block that begins at trial `first`; difference (trials,), nan where a method has no value."""
+        """Disagreement in a block that begins at trial `first`; difference (trials,), nan if a method has no value."""
         size = np.where(np.isnan(difference), -1.0, np.abs(difference))
         at = int(np.argmax(size))
         return cls(sums, float(size[at]), first + at) if size[at] >= 0.0 else cls(sums, 0.0, -1)
@@ -80,8 +80,8 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
     A function of system and seed alone, so that any blocks add up.
 
     Args:
-        system: what is measured.
-        pilot: columns of the study's first PILOT_TRIALS trials, whatever the number of trials.
+        system: that is measured.
+        pilot: columns of the study's first PILOT_TRIALS trials, for any number of trials.
     """
     grids = {
         measure.name: _grid(measure, system.closed_form(measure), _values(system, measure, pilot))
@@ -98,13 +98,13 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
 
 
 def _values(system: Described, measure: Measure, pilot: Columns) -> list[Array]:
-    """The pilot's values of a measure by each method that was gone, nan where a trial did not seat."""
+    """The pilot's values of a measure by each method that was used, nan if a trial did not seat."""
     methods = [method for method in METHODS if value_column(method, measure.name) in pilot]
     return [outcome_of(pilot, method, measure.name, system.statuses.lacking).values for method in methods]
 
 
 def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[str, Grid]:
-    """Of amplitudes, which are at least 0."""
+    """Grids of amplitudes, which are at least 0."""
     spectrum = measure.spectrum
     if spectrum is None or measure.take != "curve":
         return {}
@@ -135,7 +135,7 @@ def _grid(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -
 class MeasureTally:
     """All that is kept of one measure.
 
-    `status` counts what became of its trials on the geometric method, `reasons` what decided it where they failed.
+    `status` counts the statuses of its trials by the geometric method, `reasons` the causes of failures.
     """
 
     status: Mapping[str, int]
@@ -173,7 +173,7 @@ class _Block:
     first: int
 
     def outcomes(self, measures: Sequence[Measure]) -> dict[tuple[str, str], Outcome]:
-        """Outcomes of each measure on each method that was gone, by method and name."""
+        """Outcomes of each measure by each method that was used, by method and name."""
         lacking = self.simulation.system.statuses.lacking
         keys = [(method, measure.name) for measure in measures for method in METHODS]
         return {
@@ -189,7 +189,7 @@ class _Block:
     def tally(
         self, measures: Sequence[Measure], grids: Mapping[str, Grid], found: Mapping[tuple[str, str], Outcome]
     ) -> tuple[dict[str, MeasureTally], Among]:
-        """Tallies of scalar measures, `found` their outcomes, and what is known of columns among each other."""
+        """Tallies of scalar measures, `found` their outcomes, and known sums of columns among each other."""
         statuses = self.simulation.system.statuses
         values = {key: own.values for key, own in found.items()}
         both = [measure.name for measure in measures if (GEOMETRIC, measure.name) in values]
@@ -221,13 +221,13 @@ class Tally:
     """Statistics of a whole run so far.
 
     Args:
-        trials: how many.
-        status: how many of them ended how, by the worst of their measures.
+        trials: their number.
+        status: number of them by status, that of the worst of their measures.
         unphysical: how many trials have a draw below what a contributor can be, or beyond what its drawing allows, by
             its name.
         measures, curves: by name.
         terms: of breakdowns, by measure and method.
-        joint: what measures do together.
+        joint: joint results of measures.
     """
 
     trials: int

@@ -1,4 +1,4 @@
-"""What workers run: blocks of a study's trials, from their numbers to columns and statistics."""
+"""Task of the workers: blocks of a study's trials, from their numbers to columns and statistics."""
 
 import threading
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ Columns = dict[str, NDArray[Any]]
 
 
 def materials_of(simulation: Simulation) -> Any:
-    """What the method of the study's engine is made of."""
+    """Materials of the method of the study's engine."""
     return simulation.system.materials(simulation.study.engine)
 
 
@@ -33,12 +33,12 @@ def method_of(simulation: Simulation, materials: Any) -> Method | None:
 
 
 def concurrency_of(simulation: Simulation) -> Concurrency:
-    """How its trials are handed out."""
+    """Scheduling of its trials."""
     return Concurrency.THREADS if simulation.method.threads else Concurrency.PROCESSES
 
 
 def workers_for(simulation: Simulation) -> int:
-    """How many workers a study is worth where nobody says: no more threads than it has blocks."""
+    """Default number of workers of a study: no more threads than it has blocks."""
     trials = simulation.study.trials
     suggested = suggested_workers(trials * contacts_of(simulation), concurrency_of(simulation))
     if concurrency_of(simulation) is Concurrency.PROCESSES:
@@ -47,7 +47,7 @@ def workers_for(simulation: Simulation) -> int:
 
 
 def task_of(simulation: Simulation, fingerprint: str, *, keep_trials: bool) -> "Task":
-    """What workers run; its pilot trials load what trials need: that is setup, not simulation."""
+    """Task of the workers; its pilot trials load what trials need: that is setup, not simulation."""
     versions = installed_versions(simulation.requires)
     pilot = Task(simulation, materials_of(simulation), {}, fingerprint, keep_trials, versions)
     return replace(pilot, grids=grids_of(simulation.system, pilot.columns(0, PILOT_TRIALS)))
@@ -58,12 +58,12 @@ class Task:
     """Blocks of a study. Equal by fingerprint, so that a process makes one method for all of its calls.
 
     Args:
-        simulation: what is simulated.
-        materials: what its method is made of.
+        simulation: to be run.
+        materials: of its method.
         grids: the empty grid of each scalar measure; none for a pilot, which has no statistics.
         fingerprint: one a study.
         keep_trials: whether the columns of a whole block are wanted, or its statistics only.
-        versions: of what decides the last bit, as installed_versions has it.
+        versions: of the packages that decide the last bit, as installed_versions has it.
     """
 
     simulation: Simulation

@@ -1,4 +1,4 @@
-"""What decides a result's last bit: versions of packages, and the kind of processor."""
+"""Versions of packages, and the kind of processor, which decide a result's last bit."""
 
 import importlib.metadata
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ Versions = tuple[tuple[str, str], ...]
 
 @cache
 def installed_versions(requires: Sequence[str] = ()) -> Versions:
-    """Those of this machine, of tol3d's own packages and of those that a system requires besides."""
+    """Versions of this machine, of tol3d's own packages and of those that a system requires besides."""
     packages = {name: importlib.metadata.version(name) for name in (*VERSIONS_OF, *requires)}
     return tuple({**packages, **processor()}.items())
 

@@ -1,6 +1,6 @@
 """The witness: some of a study's trials made again and measured by another engine, which knows its own errors.
 
-The trials are drawn by a stream of their own, so they are the same whoever ran the study and whatever it kept.
+The trials are drawn by a stream of their own, so they are the same for any execution of the study.
 """
 
 from typing import cast
@@ -25,20 +25,20 @@ STREAM = ("witness", "trial")
 
 
 def witness_of(system: Methods) -> str | None:
-    """The engine that can check the others; None where there is none."""
+    """The engine that can check the others; None if there is none."""
     return next((name for name, kind in system.methods.items() if kind.witness), None)
 
 
 def witness_summary(simulation: Simulation, method: Method, trials: int) -> WitnessSummary:
-    """What the witness finds of `study.witness` trials of a run, as summary.json shows it.
+    """Findings of the witness for `study.witness` trials of a run, as summary.json shows them.
 
     Args:
         simulation: of the run, whose study asks for a witness.
-        method: measured the run.
-        trials: how many trials the run has.
+        method: the one that measured the run.
+        trials: number of trials of the run.
 
     Returns:
-        the differences witness - engine of each measure, in its unit, and what the witness's errors explain of them.
+        the differences witness - engine of each measure, in its unit, and the part that the witness's errors explain.
     """
     system, study = simulation.system, simulation.study
     name = witness_of(system)
@@ -79,7 +79,7 @@ def witness_warnings(simulation: Simulation, witness: WitnessSummary) -> list[st
 
 
 def witnessed_trials(seed: int, trials: int, wanted: int) -> NDArray[np.int64]:
-    """Which trials of a study are measured again: distinct, ascending, all of them where there are no more.
+    """Trials of a study that are measured again: distinct, ascending, all of them if there are no more.
 
     A function of the three numbers alone. Each set of `wanted` trials is as likely as any other: for every top from
     trials - wanted on, one of the trials up to it is taken, or the top itself where that one was taken before.
@@ -95,7 +95,7 @@ def witnessed_trials(seed: int, trials: int, wanted: int) -> NDArray[np.int64]:
 
 
 def _difference(seen: Columns, given: Columns, measure: Measure) -> Array:
-    """By how much two engines differ, (trials,) or (trials, positions); nan where trials end with another status.
+    """Difference of two engines, (trials,) or (trials, positions); nan where trials end with another status.
 
     A build that one engine finds to overlap and another does not differs by more than their errors.
     """
@@ -107,7 +107,7 @@ def _difference(seen: Columns, given: Columns, measure: Measure) -> Array:
 
 
 def _witnessed(difference: Array, chosen: NDArray[np.int64], bounds: tuple[float, float]) -> Witnessed:
-    """Differences of some trials, (trials,) or of a curve (trials, positions), nan where either has no value."""
+    """Differences of some trials, (trials,) or of a curve (trials, positions), nan if either has no value."""
     each = difference.reshape(len(chosen), -1)
     known = ~np.isnan(each)
     compared = int(np.count_nonzero(known.any(axis=1)))

@@ -36,19 +36,19 @@ Side = Literal["low", "high"]
 
 ROUNDS: Final = 40
 USUAL_ROUNDS: Final = 6
-"""Of a search, for what it takes."""
+"""Usual number of rounds of a search, to estimate its cost."""
 STEP: Final = 0.05
-"""Of differences, in sigma of each component."""
+"""Step of differences, in sigma of each component."""
 SIGMA: Final = 1.0
-"""The same of the slopes by which ends are the first starts."""
+"""The same for the slopes whose ends are the first starts."""
 SHARES: Final = 0.5 ** np.arange(9)
-"""Of the way to where all contributors are furthest."""
+"""Fractions of the way to the point where all contributors are furthest."""
 STRIDES: Final = 8.0 * 0.25 ** np.arange(9)
-"""Along the gradient within the regions: of the largest component, in its sigma."""
+"""Strides along the gradient within the regions: of the largest component, in its sigma."""
 LEAST: Final = 1e-12
-"""The same of what is not moved, in the unit of the measure."""
+"""The same for an unmoved measure, in its unit."""
 GAIN: Final = 1e-7
-"""Of how far the measure has been moved: a row that gains less goes no further."""
+"""Fraction of the measure's total movement; a row that gains less goes no further."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,13 +70,13 @@ class WorstBuild:
 
 @dataclass(frozen=True, eq=False)
 class WorstCase:
-    """What a search has found.
+    """Result of a search.
 
     Args:
-        low, high: the builds that lower and that raise the measure most; None where none is measured.
-        unseated: a build within the regions that does not seat; None where none was met.
-        met: how many such were met.
-        evaluations: builds that it took.
+        low, high: the builds that lower and that raise the measure most; None if none is measured.
+        unseated: a build within the regions that does not seat; None if none was met.
+        met: number of such builds that were met.
+        evaluations: number of builds evaluated.
     """
 
     low: WorstBuild | None
@@ -125,7 +125,7 @@ def first_starts(space: Space, built: Built, at_rest: Standing, random: int) -> 
     Args:
         space, built: which.
         at_rest: positions of one row.
-        random: how many ends along slopes drawn at random.
+        random: number of ends along slopes drawn at random.
     """
     mean = space.mean[None]
     values, _ = built(mean, at_rest)
@@ -161,7 +161,7 @@ def joined(several: Sequence[Starts]) -> Starts:
 
 
 def builds_a_row(space: Space) -> int:
-    """How many builds a search of usual length takes for each row."""
+    """Number of builds per row that a search of usual length takes."""
     steps = len(SHARES) + len(STRIDES) + 4 * len(space.free) + 3 * len(space.bound)
     return USUAL_ROUNDS * (2 * len(space.acting) + steps)
 
@@ -206,7 +206,7 @@ class _Search:
         return self.built(deviations, positions)
 
     def _values(self, deviations: Array, positions: Standing) -> Array:
-        """Of builds, the worst of which are noted."""
+        """Values of builds, the worst of which are noted."""
         found, codes = np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)
         many = max(1, AT_ONCE // max(1, deviations.shape[1]))
         for first in range(0, len(deviations), many):
@@ -253,7 +253,7 @@ class _Search:
         return bool(self.going.any())
 
     def _take(self, going: NDArray[np.int64], several: Sequence[Rows]) -> Array:
-        """Take the best of several steps of rows where it gains; how much (rows,)."""
+        """Take the best of several steps of rows where it gains; return the gain (rows,)."""
         if not several:
             return np.zeros(len(going))
         steps = settled(self.space, Rows.joined(several))

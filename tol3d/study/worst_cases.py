@@ -22,7 +22,7 @@ from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
 
 CONTACTS: Final = 1_500_000
-"""Of all worst cases of a scene together, before any trial: some seconds."""
+"""Largest number of contacts of all worst cases of a scene together, before any trial: some seconds."""
 PLACING: Final = 20
 """Contacts that take as long as placing the parts of a build."""
 USUAL_SPEED: Final = 40_000_000
@@ -35,15 +35,15 @@ ROWS: Final = 2 * (1 + RANDOM) + 4
 def worst_cases(
     simulation: Simulation, method: Method | None, measures: Sequence[Measure]
 ) -> Mapping[str, Mapping[str, WorstCase | None]]:
-    """Worst cases of measures at rest, by name and method: "analytic", and "geometric" where there is an engine.
+    """Worst cases of measures at rest, by name and method: "analytic", and "geometric" if there is an engine.
 
     Args:
-        simulation: what is studied.
+        simulation: to be studied.
         method: of its engine; None without one.
         measures: of its system, no curves.
 
     Returns:
-        None where it would take too long.
+        None if it would take too long.
     """
     every, left = evaluations(simulation.system, method), float(CONTACTS)
     words = {shown: ANALYTIC_METHOD if shown == ANALYTIC else simulation.study.engine for shown in every}

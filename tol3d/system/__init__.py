@@ -1,1 +1,1 @@
-"""The seam between a study and what it studies."""
+"""The seam between a study and the studied system."""

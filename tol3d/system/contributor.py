@@ -12,7 +12,7 @@ class Contributor(Protocol):
 
     @property
     def name(self) -> str:
-        """As in the scene."""
+        """Name in the scene."""
         ...
 
     @property
@@ -22,7 +22,7 @@ class Contributor(Protocol):
 
     @property
     def draw(self) -> Draw:
-        """How its components come from uniforms."""
+        """Draw of its components from uniforms."""
         ...
 
     @property
@@ -52,7 +52,7 @@ class Contributor(Protocol):
 
     @property
     def distribution(self) -> DeviationLaw:
-        """The law of the deviation, or of its length where it has a direction."""
+        """The law of the deviation, or of its length if it has a direction."""
         ...
 
 

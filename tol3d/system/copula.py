@@ -1,7 +1,7 @@
 """Contributors that are correlated: a Gaussian copula, a matrix of correlations in the standard normals of their laws.
 
 Each contributor keeps its own law: a uniform u of its stream is taken to Φ⁻¹(u), the normals of a block are mixed by
-the Cholesky factor of its matrix, and what comes out is taken back by Φ. The first of a block is drawn as without it.
+the Cholesky factor of its matrix, and the result is taken back by Φ. The first of a block is drawn as without it.
 
 Source: Nataf 1962; Nelsen, An Introduction to Copulas (2006), 2.8.
 """
@@ -57,7 +57,7 @@ class Copula:
     """Blocks of correlated contributors, none in two of them.
 
     Args:
-        blocks: they; none where all contributors are independent.
+        blocks: of the contributors; none if all are independent.
     """
 
     blocks: tuple[Block, ...] = ()

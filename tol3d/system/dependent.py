@@ -1,6 +1,6 @@
-"""Draws that read what other contributors are in the same trial, such as a zone that a size widens.
+"""Draws that read other contributors of the same trial, such as a zone that a size widens.
 
-They are drawn after what they read; their uniforms stay their own, so that a trial is a pure function of its index.
+They are drawn after those; their uniforms stay their own, so that a trial is a pure function of its index.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +18,7 @@ Given = Mapping[str, Array]
 
 
 class Named(Protocol):
-    """A contributor, as far as the order of drawing hangs on it."""
+    """The part of a contributor on which the order of drawing depends."""
 
     @property
     def name(self) -> str:
@@ -47,7 +47,7 @@ class Dependent(Protocol, metaclass=Remembered):
         ...
 
     def deviations_given(self, given: Given, *uniforms: Array) -> tuple[Array, ...]:
-        """See Draw.deviations; each trial by what it reads in the same trial."""
+        """See Draw.deviations; each trial by the contributors that it reads."""
         ...
 
     def furthest_given(self, given: Given, slopes: Array) -> Array:
@@ -57,7 +57,7 @@ class Dependent(Protocol, metaclass=Remembered):
 
 @runtime_checkable
 class DependentlyJudged(Protocol, metaclass=Remembered):
-    """A Draw that a drawing judges by what other contributors are in the same trial, and does not confine."""
+    """A Draw that a drawing judges by other contributors of the same trial, and does not confine."""
 
     @property
     def reads(self) -> tuple[str, ...]:
@@ -79,7 +79,7 @@ def in_draw_order(contributors: Sequence[Own]) -> tuple[Own, ...]:
     """Contributors so that each comes after those that it reads; else in the order given.
 
     Raises:
-        UnfitError: one reads what is no contributor, or contributors read each other in a ring.
+        UnfitError: one reads an unknown contributor, or contributors read each other in a ring.
     """
     if not any(reads_of(own) for own in contributors):
         return tuple(contributors)

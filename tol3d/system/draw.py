@@ -21,12 +21,12 @@ class Draw(Protocol):
 
     @property
     def distribution(self) -> DeviationLaw:
-        """The law of the deviation, or of its length where it has a direction; of several, that of the first."""
+        """The law of the deviation, or of its length if it has a direction; of several, that of the first."""
         ...
 
     @property
     def uniforms(self) -> int:
-        """How many uniforms a trial takes."""
+        """Number of uniforms per trial."""
         ...
 
     @property
@@ -86,17 +86,17 @@ class MiddleDraw(Protocol, metaclass=Remembered):
 
     @property
     def middle_sigma(self) -> float:
-        """Standard deviation [mm] of the feature's middle along one direction; `zones.zone.Shape` says of what else."""
+        """Standard deviation [mm] of the feature's middle along one direction; see `zones.zone.Shape` for others."""
         ...
 
 
 def told_sigma(draw: Draw) -> float:
-    """Standard deviation that tables tell [mm, rad or K]: of a feature's middle, else of one component."""
+    """Standard deviation that tables show [mm, rad or K]: of a feature's middle, else of one component."""
     return draw.middle_sigma if isinstance(draw, MiddleDraw) else draw.sigma
 
 
 def drawn_each(draw: Draw) -> bool:
-    """Whether its components are several deviations of their own, such as one a feature, not directions."""
+    """True if its components are several independent deviations, such as one per feature, not directions."""
     count, first = len(draw.components), draw.components[0] if draw.components else ""
     directed = first.rpartition(" ")[2] == "x" or isinstance(draw, JointDraw)
     return count > 1 and draw.uniforms == count and not directed
@@ -114,7 +114,7 @@ class JudgedDraw(Protocol, metaclass=Remembered):
     """A Draw that a drawing judges and does not confine."""
 
     def beyond(self, *components: Array) -> NDArray[np.bool_]:
-        """Which draws (trials,) the drawing does not allow, of components (trials,); they stay in their trials."""
+        """True for draws (trials,) that the drawing does not allow, from components (trials,); they stay in trials."""
         ...
 
 
@@ -162,7 +162,7 @@ class Planar:
 
     @property
     def uniforms(self) -> int:
-        """How many uniforms a trial takes: the length, and the direction unless it is fixed."""
+        """Number of uniforms per trial: the length, and the direction unless it is fixed."""
         return 1 if self.direction is not None else 2
 
     @property
@@ -239,7 +239,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Each:
-    """As many independent draws of one distribution as there are features: pins, lobes, planets.
+    """Independent draws of one distribution for each of several features: pins, lobes, planets.
 
     Args:
         distribution: of each of them.
@@ -281,7 +281,7 @@ class Each:
         """See Draw: as far along the steepest direction as the law reaches, by all features together.
 
         All of them at their worst ends at once would be far rarer than the end of one deviation: sqrt(features) times
-        as many sigma of what they do together.
+        as many sigma of their joint effect.
         """
         law, count = self.distribution, len(self.names)
         alone = np.full((2 * count, count), law.mean)

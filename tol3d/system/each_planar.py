@@ -13,7 +13,7 @@ from tol3d.system.normals import Group, groups_of, shifted
 
 
 class EachOwn:
-    """As many draws as there are features, each of its own: components of one after the other; see Draw."""
+    """Draws for several features, each of its own: components of one after the other; see Draw."""
 
     axes: ClassVar[tuple[str, str]] = ("x", "y")
     names: tuple[str, ...]
@@ -21,7 +21,7 @@ class EachOwn:
 
     @property
     def uniforms(self) -> int:
-        """Those of one a feature."""
+        """Number of uniforms of one feature, times the number of features."""
         return len(self.names) * int(self.each.uniforms)
 
     @property
@@ -34,7 +34,7 @@ class EachOwn:
 
     @property
     def components(self) -> tuple[str, ...]:
-        """Both of each."""
+        """Components of each feature."""
         return tuple(f"{name} {axis}" for name in self.names for axis in self.axes)
 
     @property
@@ -54,13 +54,13 @@ class EachOwn:
 
 
 def parts_of(given: Sequence[Array], count: int) -> list[Sequence[Array]]:
-    """So many at a time."""
+    """Groups of `count` at a time."""
     return [given[start : start + count] for start in range(0, len(given), count)]
 
 
 @dataclass(frozen=True)
 class EachPlanar(EachOwn):
-    """As many lengths as there are features, each in a direction of its own.
+    """Lengths for several features, each in a direction of its own.
 
     Args:
         distribution: of each length.
@@ -74,11 +74,11 @@ class EachPlanar(EachOwn):
 
     @property
     def each(self) -> Planar:
-        """That of one feature."""
+        """Draw of one feature."""
         return Planar(self.distribution, self.direction)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
-        """See Draw: all lengths at their ends, along what each one's does alone."""
+        """See Draw: all lengths at their ends, along the effect of each one alone."""
         law, count = self.distribution, len(self.names)
         if self.direction is not None and not turning:
             return np.tile(self.each.ends(values, turning=False), (1, count))

@@ -1,4 +1,4 @@
-"""Faults of a mechanism that tol3d does not bring along: reported under its name, not as the user's or as tol3d's."""
+"""Faults of a mechanism of another package: reported under its name, not as the user's or as tol3d's."""
 
 import traceback
 from collections.abc import Iterator
@@ -17,12 +17,12 @@ OWN_PACKAGE = "tol3d"
 
 @dataclass(frozen=True)
 class Origin:
-    """Which mechanism a system is of.
+    """Mechanism that a system is of.
 
     Args:
         name: of the mechanism.
         module: the Python module that has the function of its system.
-        beside: names of other mechanisms that bring something into it.
+        beside: names of other mechanisms that add to it.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Origin:
         return self.module.partition(".")[0]
 
     def __str__(self) -> str:
-        """For messages."""
+        """Names for messages."""
         return f"mechanism {self.name!r} (Python module {self.module!r})"
 
 
@@ -45,7 +45,7 @@ class UnfitError(Exception):
 
 @contextmanager
 def faults_of(origin: Origin | None) -> Iterator[None]:
-    """Within it, what a mechanism of another package raises is reported under its name.
+    """Report errors of a mechanism of another package under its name.
 
     What passes: errors of tol3d's own kinds, a SceneError of the mechanism among them; what a disk refuses, and
     warnings that a program takes for errors; everything of tol3d's own mechanisms, and of a system made without one.
@@ -72,7 +72,7 @@ def faults_of(origin: Origin | None) -> Iterator[None]:
 
 
 def _is_of(package: str, error: Exception) -> bool:
-    """Whether an error was surely raised by a package's code, or by what it made or failed to make."""
+    """True if an error was surely raised by a package's code, or by what it made or failed to make."""
     if isinstance(error, UnfitError):
         return True
     concerned = [frame.f_globals.get("__name__", "") for frame, _ in traceback.walk_tb(error.__traceback__)]

@@ -4,7 +4,7 @@ from typing import Any
 
 
 class Itself:
-    """A thing as a key; to hash what it holds may take longer than what is kept under it."""
+    """A thing as a key; hashing its content may take longer than computing the value kept under it."""
 
     def __init__(self, thing: Any) -> None:
         self.thing = thing

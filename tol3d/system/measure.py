@@ -11,21 +11,21 @@ Worse = Literal["low", "high"]
 
 
 class Measure(Protocol):
-    """What is read of each trial; values inside are mm, rad or counts, outside in `unit`."""
+    """Quantity read from each trial; values inside are mm, rad or counts, outside in `unit`."""
 
     @property
     def name(self) -> str:
-        """As in the scene."""
+        """Name in the scene."""
         ...
 
     @property
     def positions(self) -> Positions:
-        """Where it is read."""
+        """Positions at which it is read."""
         ...
 
     @property
     def take(self) -> Take:
-        """What is taken of its values at several positions."""
+        """Value taken over several positions."""
         ...
 
     @property
@@ -50,12 +50,12 @@ class Measure(Protocol):
 
     @property
     def worse(self) -> Worse:
-        """Which end is the worse one where there is no limit."""
+        """Worse end if there is no limit."""
         ...
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is a sum of effects at each position; False where load paths or contacts are compared."""
+        """True if it is a sum of effects at each position; False where load paths or contacts are compared."""
         ...
 
     @property
@@ -65,12 +65,12 @@ class Measure(Protocol):
 
     @property
     def spectrum(self) -> Spectrum | None:
-        """Harmonics of its curves whose amplitudes are pooled; None for none, and where it is no curve."""
+        """Harmonics of its curves whose amplitudes are pooled; None for none, and if it is no curve."""
         ...
 
     @property
     def keeps_overlap(self) -> bool:
-        """Whether a trial whose parts overlap has the depth of the overlap as its value.
+        """True if a trial whose parts overlap has the depth of the overlap as its value.
 
         Such a value is negative and continues the gap smoothly through 0, so both methods may be compared there too.
         """

@@ -13,15 +13,15 @@ from tol3d.system.system import System
 
 @dataclass(frozen=True)
 class Mechanism(Vocabulary):
-    """What tol3d can simulate: its words in scenes, and where its code is.
+    """Mechanism that tol3d can simulate: its words in scenes, and the import paths of its code.
 
     Code is named by import paths `package.module:name`, so that opening a scene loads no geometry and no compiler.
 
     Args:
-        system: path of the function that makes of a scene what is simulated; "" where it only adds kinds to the scenes
+        system: path of the function that makes the system of a scene; "" where it only adds kinds to the scenes
             of the mechanisms that it `extends`.
-        links: path of the function that makes of a scene what its moves bring into the systems of those; see `brought`.
-        summary: path of what its measures and sections are in a run's summary.
+        links: path of the function that makes the additions of a scene's moves to the systems of those; see `brought`.
+        summary: path of the classes of its measures and sections in a run's summary.
         presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
         starters: `package:folder` of its starter scenes, YAML files that `tol3d new` writes, see
             `tol3d.system.starter`; "" for none.
@@ -38,26 +38,26 @@ class Mechanism(Vocabulary):
 
     @property
     def origin(self) -> Origin:
-        """Which one it is, for messages and summaries."""
+        """Origin of the mechanism, for messages and summaries."""
         return Origin(self.name, (self.system or self.links).partition(":")[0])
 
     def system_of(self, scene: Scene) -> System:
-        """What a scene means.
+        """System of a scene.
 
         Raises:
-            SceneError: it means nothing that can be simulated, with the place and what to do.
+            SceneError: it cannot be simulated; with the place and the remedy.
         """
         system: System = named(self.system)(scene)
         return system
 
 
 def brought(scene: Scene) -> Iterator[Any]:
-    """What the mechanisms whose kinds a scene has bring into its system, one after the other.
+    """Additions to a scene's system by the mechanisms whose kinds it has, one after the other.
 
-    What that is, says the mechanism that they extend.
+    Their type is defined by the mechanism that they extend.
 
     Raises:
-        SceneError: what nobody can build, with its place.
+        SceneError: something that cannot be built, with its place.
         MechanismError: a mechanism of another package is at fault.
     """
     for own in _bringing(scene):
@@ -66,7 +66,7 @@ def brought(scene: Scene) -> Iterator[Any]:
 
 
 def _bringing(scene: Scene) -> Iterator[Mechanism]:
-    """The mechanisms whose kinds a scene has and that bring something into the system of another one."""
+    """The mechanisms whose kinds a scene has and that add to the system of another one."""
     return (own for own in scene.grammar.vocabularies_of(scene) if isinstance(own, Mechanism) and own.links)
 
 
@@ -87,13 +87,13 @@ def mechanism_of(scene: Scene) -> Mechanism:
 
 
 def origin_of(scene: Scene) -> Origin:
-    """Which mechanism a scene is of, and which others bring something into its system; raises as `mechanism_of`."""
+    """Mechanism of a scene, and the others that add to its system; raises as `mechanism_of`."""
     own = mechanism_of(scene)
     return replace(own.origin, beside=tuple(each.name for each in _bringing(scene) if each.name != own.name))
 
 
 def requires_of(scene: Scene) -> tuple[str, ...]:
-    """The packages whose versions decide its results: of its mechanism, of what extends it, of laws and entries."""
+    """The packages whose versions decide its results: of its mechanism, of its extensions, of laws and entries."""
     own = mechanism_of(scene)
     hosts = {own.name, *own.includes}
     used = (each for each in scene.grammar.vocabularies_of(scene) if hosts & set(each.extends))

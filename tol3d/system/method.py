@@ -1,4 +1,4 @@
-"""A method from deviations to values: what it answers, and what is known of it before it is made."""
+"""A method from deviations to values: its answers, and its properties known before it is made."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ ANALYTIC_METHOD: Final = "analytic"
 
 @dataclass(frozen=True)
 class Answers:
-    """What a method answers of some trials.
+    """Answers of a method for some trials.
 
     Args:
         values: by measure, (trials, positions) [mm or rad].
@@ -48,11 +48,11 @@ def joined_answers(pieces: Sequence[Answers]) -> Answers:
 
 
 class Method(Protocol):
-    """Goes from deviations to values. Made in the worker, for what it holds need not pickle."""
+    """Goes from deviations to values. Made in the worker, as its contents need not pickle."""
 
     @property
     def chord_error(self) -> float:
-        """Largest distance [mm] between its surfaces and the mathematical ones; 0 where it has no facets."""
+        """Largest distance [mm] between its surfaces and the mathematical ones; 0 if it has no facets."""
         ...
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
@@ -64,25 +64,25 @@ class WitnessMethod(Method, Protocol):
     """A method that checks another one, and knows its own errors."""
 
     def reads(self, measure: Measure) -> bool:
-        """Whether it can read a measure; those that it cannot are left out of what it finds."""
+        """True if it can read a measure; those that it cannot are left out of its findings."""
         ...
 
     def bounds(self, measure: Measure) -> tuple[float, float]:
-        """How far it may be off in a measure, in its unit: by its facets, and by all else."""
+        """Largest error of a measure, in its unit: by its facets, and by all else."""
         ...
 
 
 @dataclass(frozen=True)
 class MethodKind:
-    """What is known of a method before it is made.
+    """Properties of a method that are known before it is made.
 
     Args:
-        setup: what goes on while it is made ready, for a progress line.
-        threads: whether workers are threads that take whole blocks; else processes that take pieces of blocks.
-        compiled: whether it loads the compiler of kernels anyway, so that draws and sums may use it too.
-        witness: whether it can check another method.
-        contacts_per_minute: of one core, draws and statistics included; only for the estimate before what takes long.
-        block_contacts: the most that a block of trials takes; None where even large blocks are soon done.
+        setup: activity while it is prepared, for a progress line.
+        threads: True if workers are threads that take whole blocks; else processes that take pieces of blocks.
+        compiled: True if it loads the compiler of kernels anyway, so that draws and sums may use it too.
+        witness: True if it can check another method.
+        contacts_per_minute: of one core, draws and statistics included; only for the estimate before a long study.
+        block_contacts: the most that a block of trials takes; None if even large blocks are quick.
     """
 
     setup: str

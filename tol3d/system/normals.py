@@ -2,7 +2,7 @@
 
 A draw's uniforms are scalars, or lengths with directions. A scalar u is Φ(z) of one normal; a length and an angle in a
 plane come from two normals, a length and a direction of space from three, so that no direction is special and nothing
-jumps where an angle begins anew. A draw that does not say what its uniforms are has no such map.
+jumps where an angle begins anew. A draw that does not state its groups has no such map.
 """
 
 import math
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 GroupKind = Literal["scalar", "phase", "plane", "space"]
 
 NORMALS: Final = {"scalar": 1, "phase": 2, "plane": 2, "space": 3}
-"""How many normals stand for the uniforms of a group."""
+"""Number of normals that stand for the uniforms of a group."""
 UNIFORMS: Final = {"scalar": 1, "phase": 1, "plane": 2, "space": 3}
 LEAST: Final = np.finfo(np.float64).tiny
 MOST: Final = 1.0 - 2.0**-53
@@ -49,7 +49,7 @@ class Drawn(Protocol):
 
 
 class Smooth(Drawn, Protocol):
-    """A Draw that says what its uniforms are."""
+    """A Draw that states the groups of its uniforms."""
 
     @property
     def groups(self) -> tuple[Group, ...]:
@@ -58,7 +58,7 @@ class Smooth(Drawn, Protocol):
 
 
 def scalars(count: int, first: int = 0) -> tuple[Group, ...]:
-    """So many uniforms, each by itself."""
+    """Uniforms, each by itself."""
     return tuple(Group("scalar", (first + k,)) for k in range(count))
 
 
@@ -68,13 +68,13 @@ def shifted(groups: Sequence[Group], first: int) -> tuple[Group, ...]:
 
 
 def groups_of(draw: Drawn) -> tuple[Group, ...] | None:
-    """What a draw's uniforms are; None where it does not say."""
+    """Groups of a draw's uniforms; None if it does not state them."""
     found: tuple[Group, ...] | None = getattr(draw, "groups", None)  # isinstance of a protocol takes long
     return found
 
 
 def normal_count(draw: Drawn) -> int:
-    """How many standard normals stand for a draw; as many as its uniforms where it does not say what these are."""
+    """Number of standard normals for a draw; that of its uniforms if it does not state their groups."""
     groups = groups_of(draw)
     return draw.uniforms if groups is None else sum(NORMALS[own.kind] for own in groups)
 

@@ -17,20 +17,20 @@ from tol3d.system.normals import groups_of
 
 @runtime_checkable
 class Scalable(Protocol, metaclass=Remembered):
-    """A Draw that says itself how it is drawn with another tolerance."""
+    """A Draw that defines its own draw with another tolerance."""
 
     def scaled(self, factor: float) -> Draw:
-        """As many times as wide, about its mean.
+        """Draw of a multiple of the width, about its mean.
 
         Raises:
-            InputError: that cannot be.
+            InputError: it cannot be scaled.
         """
         ...
 
 
 @runtime_checkable
 class Lawful(Protocol, metaclass=Remembered):
-    """A Draw that says itself how it is drawn by another law."""
+    """A Draw that defines its own draw by another law."""
 
     def with_law(self, law: Distribution) -> Draw:
         """The same by another law."""
@@ -43,21 +43,21 @@ class Zoned(Protocol, metaclass=Remembered):
 
     @property
     def width(self) -> float:
-        """Of the zone."""
+        """Width of the zone."""
         ...
 
     def sized(self, width: float) -> Draw:
         """The same in a zone of another width.
 
         Raises:
-            InputError: that is no width, or less than what refines it.
+            InputError: that is no width, or less than the zone that refines it.
         """
         ...
 
 
 @runtime_checkable
 class Following(Protocol, metaclass=Remembered):
-    """A Draw that knows the tolerance of what it reads."""
+    """A Draw that knows the tolerance of the contributor that it reads."""
 
     def following(self, name: str, draw: Draw) -> Draw:
         """The same where a contributor that it reads is drawn otherwise."""
@@ -70,7 +70,7 @@ class Holding(Protocol, metaclass=Remembered):
 
     @property
     def held(self) -> str:
-        """By what, such as the gauge that inspects; "" for nothing."""
+        """Holder of it, such as the gauge that inspects; "" for none."""
         ...
 
 
@@ -90,7 +90,7 @@ def with_law(draw: Draw, law: Distribution) -> Draw:
 
 
 def naturally_stays(draw: Draw) -> Stays:
-    """What stays of a draw that is scaled: its mean; 0 of a length in any direction that begins there."""
+    """Fixed point of a draw that is scaled: its mean; 0 of a length in any direction that begins there."""
     law = draw.distribution
     if any(own.kind in DIRECTED for own in groups_of(draw) or ()) and isinstance(law, Distribution):
         return "low" if law.limits is not None and law.limits[0] == 0.0 else "middle"
@@ -130,7 +130,7 @@ def refuse_held(contributor: Contributor) -> None:
 
 
 def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
-    """Refuse a draw below what is physical.
+    """Refuse a draw below its physical limit.
 
     Raises:
         InputError: naming the contributor.

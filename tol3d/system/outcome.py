@@ -1,4 +1,4 @@
-"""What became of each trial of a measure: which ones seated, which ones lack what is measured and by how much.
+"""Outcome of each trial of a measure: which ones seated, which ones lack what is measured and by how much.
 
 Statistics of values are of the trials that seated. What is out of limits is counted of all of them, and a build that
 lacks what is measured (its parts overlap) is below every lower limit.
@@ -21,7 +21,7 @@ SEATED: Final = "ok"
 ANALYTIC: Final = "analytic"
 GEOMETRIC: Final = "geometric"
 METHODS: Final = (ANALYTIC, GEOMETRIC)
-"""Names of the methods in columns and in summary.json: the stack-up, and the 3D simulation by whatever engine."""
+"""Names of the methods in columns and in summary.json: the stack-up, and the 3D simulation by any engine."""
 
 
 def value_column(method: str, measure: str) -> str:
@@ -30,12 +30,12 @@ def value_column(method: str, measure: str) -> str:
 
 
 def status_column(measure: str) -> str:
-    """Name of the column with what became of each trial of a measure."""
+    """Name of the column with the status of each trial of a measure."""
     return f"status:{measure}"
 
 
 def reason_column(measure: str) -> str:
-    """Name of the column of what decided that a trial of a measure failed, in words of its system.
+    """Name of the column with the cause of a measure's failed trials, in words of its system.
 
     One of the details of a method, "" where nothing decided it; not every measure has it.
     """
@@ -49,7 +49,7 @@ class Outcome:
     Args:
         values: (trials,), or (trials, positions) of a curve, in the measure's unit; nan for trials that did not seat.
         lacking: (trials,), those whose parts overlap; None where every trial seated.
-        deepest: the largest overlap of those that is known, as a value below 0; inf where none is.
+        deepest: the largest overlap of those that is known, as a value below 0; inf if none is.
     """
 
     values: Array
@@ -63,7 +63,7 @@ def outcome_of(columns: Columns, method: str, measure: str, lacking: Collection[
     Args:
         columns: trial on axis 0.
         method, measure: whose column.
-        lacking: the statuses of trials that lack what is measured.
+        lacking: the statuses of trials with less than nothing of the measured quantity.
     """
     column = np.asarray(columns[value_column(method, measure)], dtype=np.float64)
     status = columns.get(status_column(measure))

@@ -18,7 +18,7 @@ from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
 
 Parts = Callable[[Contributor, Array], Array]
-"""What a contributor that lies off its mean (trials, components) adds to a measure (trials,), in mm or rad."""
+"""Effect of a contributor off its mean (trials, components) on a measure (trials,), in mm or rad."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class OutputSystem(PlainSystem):
     """A system with an output that stands anywhere in its period; see System.
 
     Args:
-        own: what turns the output: its name, and the period in turns of the output until everything meets again.
-        implausible: warnings of what is most likely a slip.
+        own: drive of the output: its name, and the period in turns of the output until everything meets again.
+        implausible: warnings of probable slips.
     """
 
     own: Any
@@ -68,7 +68,7 @@ class OutputSystem(PlainSystem):
         return {own.name: own for own in self.measures}
 
     def regressor_key(self, measure: Measure) -> Hashable:
-        """Of its own: contributors are regressed by what they do to it."""
+        """Key of the measure's own: contributors are regressed by their effect on it."""
         return measure.name
 
     def regress_parts(

@@ -1,4 +1,4 @@
-"""A system whose trials are made of deviations alone: what is the same for most mechanisms, to be overridden.
+"""A system whose trials are made of deviations alone: the common part of most mechanisms, to be overridden.
 
 A mechanism of its own gives its kinds of part, tolerance, move and measure, and a PlainSystem with two functions from
 deviations to values: the analytic one, and that of the placed parts. docs/add_a_mechanism.md shows one whole.
@@ -38,7 +38,7 @@ from tol3d.system.trials import Trials
 from tol3d.units import Dimension
 
 Drawn = Callable[[Distribution, Any], Draw]
-"""How components are drawn, from a tolerance's law and the tolerance itself."""
+"""Draw of components, from a tolerance's law and the tolerance itself."""
 
 UNITS: Mapping[Dimension, tuple[str, float]] = {
     "length": ("um", 1e-3),
@@ -46,7 +46,7 @@ UNITS: Mapping[Dimension, tuple[str, float]] = {
     "temperature": ("K", 1.0),
     "count": ("pins", 1.0),
 }
-"""Units of columns, and one of each in mm, rad or K, or in what is counted."""
+"""Units of columns, and one of each in mm, rad or K, or in counted items."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,11 @@ class PlainContributor:
 
     Args:
         name, kind, description: of the tolerance, as in the scene.
-        draw: how its components come from uniforms.
+        draw: of its components from uniforms.
         unit: of its columns in results.
         per_unit: one of that unit in mm, rad or K.
         least: smallest physical deviation [mm, rad or K].
-        held: by what else its tolerance acts, such as the gauge that inspects; "" for nothing.
+        held: other holder of its tolerance, such as the gauge that inspects; "" for none.
     """
 
     name: str
@@ -92,7 +92,7 @@ class PlainMeasure:
         lower_limit, upper_limit: [mm or rad].
         unit: of its columns and of summary.json.
         per_internal: one mm or rad in that unit.
-        worse: which end is the worse one where there is no limit.
+        worse: the worse end if there is no limit.
         adds_up: whether it is a sum of effects; False where load paths or contacts are compared.
         keeps_overlap: whether a trial whose parts overlap has the depth of the overlap as its value, a negative number
             that continues the gap smoothly through 0; False where its value is on another scale or means nothing.
@@ -120,7 +120,7 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
 
     Args:
         scene: the scene.
-        draws: by kind of tolerance, how its components are drawn, from its law and itself; one component from its law
+        draws: by kind of tolerance, the draw of its components, from its law and itself; one component from its law
             if not given.
 
     Raises:
@@ -148,7 +148,7 @@ def measures_of(scene: Scene, *, worse: Worse = "low", adds_up: bool = True) -> 
 
 
 def stated_of(name: str, spec: MeasureEntry) -> tuple[str, str, float | None, float | None, str, float]:
-    """What a scene states of a measure: the first fields of PlainMeasure."""
+    """Properties of a measure that a scene states: the first fields of PlainMeasure."""
     lower, upper = (None if limit is None else limit.internal for limit in (spec.lower_limit, spec.upper_limit))
     unit, per_unit = UNITS[spec.dimension]
     return name, spec.kind, lower, upper, unit, 1.0 / per_unit
@@ -160,7 +160,7 @@ def one_position(over: object) -> Positions:
 
 
 class LengthSpec(MeasureSpec):
-    """A measure of one length a trial as a scene writes it; a kind adds its word and what it is of."""
+    """A measure of one length a trial as a scene writes it; a kind adds its word and its subject."""
 
     dimension: ClassVar[Dimension] = "length"
     gives_curve: ClassVar[bool] = False
@@ -264,7 +264,7 @@ class PlainSystem:
         return None
 
     def cost(self, measures: Sequence[Measure]) -> int:
-        """As a contact for each measure."""
+        """One contact per measure."""
         return len(measures)
 
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
@@ -330,7 +330,7 @@ class PlainSystem:
             trials: whose deviations.
             kind: of tolerance, the scene's word.
             measure: only contributors that act on it; all of the kind if not given.
-            components: how many zeros a trial has where there is no such contributor.
+            components: number of zeros per trial if there is no such contributor.
         """
         slices = component_slices(self)
         acting = self.contributors if measure is None else self.acting(measure)

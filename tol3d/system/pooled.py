@@ -1,4 +1,4 @@
-"""The terms of a sum, pooled over trials: each one's moments, and how they vary together."""
+"""The terms of a sum, pooled over trials: each one's moments, and their covariance."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class PooledTerms:
 
     @classmethod
     def of(cls, breakdown: Breakdown, method: str, columns: Columns, whole: Outcome) -> "PooledTerms | None":
-        """The terms of one block; None where that method was not gone.
+        """The terms of one block; None if that method was not used.
 
         Args:
             breakdown, method: whose terms.
@@ -49,7 +49,7 @@ class PooledTerms:
         return PooledTerms(tuple(mine.merge(its) for mine, its in moments), self.sums.merge(other.sums))
 
     def shares(self, factors: Array) -> Array:
-        """Each term's part of the variance of the sum of factor times term, (terms,); nan where nothing varies."""
+        """Each term's part of the variance of the sum of factor times term, (terms,); nan if nothing varies."""
         with np.errstate(invalid="ignore"):
             parts = factors * (self.sums.comoments @ factors)
             return np.asarray(parts / parts.sum())

@@ -11,11 +11,11 @@ HIGH_SHARE: Final = 0.99865
 
 @dataclass(frozen=True)
 class Pool:
-    """What is known of the trials that seated, in the measure's unit.
+    """Statistics of the trials that seated, in the measure's unit.
 
     Args:
         mean, sigma, minimum, maximum: of the trials.
-        quantile: value below which a share of them lies; None where it lies outside the grid.
+        quantile: value below which a share of them lies; None if it lies outside the grid.
     """
 
     mean: float
@@ -34,7 +34,7 @@ class PooledStatistic(Protocol):
         ...
 
     def of(self, pool: Pool) -> float | None:
-        """The number, in the measure's unit; None where it is unknown."""
+        """The number, in the measure's unit; None if unknown."""
         ...
 
 

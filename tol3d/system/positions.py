@@ -1,4 +1,4 @@
-"""Positions at which a measure is read, and what is taken of its values there."""
+"""Positions at which a measure is read, and the value taken over them."""
 
 import math
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class Positions:
 
     @property
     def closed(self) -> bool:
-        """Whether the first position follows the last: the wheel is not back where it was after one driver turn."""
+        """True if the first position follows the last: the wheel is not back where it was after one driver turn."""
         return self.over == "long_period"
 
     @cached_property
@@ -53,7 +53,7 @@ class Positions:
 
     @property
     def in_a_trial(self) -> int:
-        """At how many positions a trial is read."""
+        """Number of positions at which a trial is read."""
         return 1 if self.fixed is None else len(self.fixed)
 
 

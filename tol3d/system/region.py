@@ -31,19 +31,19 @@ class Independent(Protocol, metaclass=Remembered):
 
 @runtime_checkable
 class Filled(Protocol, metaclass=Remembered):
-    """A Draw that says whether it may lie anywhere between two of its deviations."""
+    """A Draw that states whether it may lie anywhere between two of its deviations."""
 
     @property
     def fills(self) -> bool:
-        """Whether its region is convex; of a draw that does not say, only its ends and its mean are taken."""
+        """True if its region is convex; of a draw that does not say, only its ends and its mean are taken."""
         ...
 
 
 class Region(ABC):
-    """Where the components of one contributor may lie."""
+    """Region of the components of one contributor."""
 
     fills: bool = True
-    """Whether all points between two of its points are of it too, once they are confined."""
+    """True if all points between two of its points belong to it too, once they are confined."""
 
     @abstractmethod
     def furthest(self, slopes: Array) -> Array:
@@ -55,11 +55,11 @@ class Region(ABC):
 
     @property
     def has_nearest(self) -> bool:
-        """Whether `confined` takes any point into the region, not only those between its points."""
+        """True if `confined` takes any point into the region, not only those between its points."""
         return True
 
     def halves(self, slopes: Array) -> Array:
-        """Half of what each of its independent parts does between its ends (parts,), by slopes (components,)."""
+        """Half of the effect of each of its independent parts between its ends (parts,), by slopes (components,)."""
         ends = self.furthest(np.stack([slopes, -slopes]))
         return np.array([abs(float((ends[0] - ends[1]) @ slopes)) / 2])
 
@@ -148,7 +148,7 @@ class EachIn(Region):
 
 @dataclass(frozen=True, eq=False)
 class Asked(Region):
-    """A region known by the ends that its draw says, of whatever kind it is."""
+    """A region known by the ends that its draw gives, of any kind."""
 
     draw: Draw
     turning: bool
@@ -197,7 +197,7 @@ def _inner(law: Distribution) -> float:
 
 
 def _directions(vectors: Array) -> Array:
-    """Of length 1 (rows, components); the first axis where there is none."""
+    """Unit vectors (rows, components); the first axis where there is no direction."""
     sizes = np.linalg.norm(vectors, axis=-1, keepdims=True)
     first = np.eye(vectors.shape[-1])[0]
     return np.where(sizes > 0.0, vectors / np.where(sizes > 0.0, sizes, 1.0), first)

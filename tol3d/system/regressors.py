@@ -1,4 +1,4 @@
-"""Regressors: what a measure's variance is regressed on of each contributor, a few rows each."""
+"""Regressors of a measure's variance: a few rows for each contributor."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -14,12 +14,12 @@ square."""
 
 
 def is_group(contributor: Contributor) -> bool:
-    """Whether it has more components than have a row each."""
+    """True if it has more components than have a row each."""
     return len(contributor.draw.components) > MOST_COMPONENTS
 
 
 def has_square(contributor: Contributor) -> bool:
-    """Whether the second of its two rows is the square of the first: of one component, and of a group."""
+    """True if the second of its two rows is the square of the first: of one component, and of a group."""
     return not 1 < len(contributor.draw.components) <= MOST_COMPONENTS
 
 

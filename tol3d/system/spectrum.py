@@ -28,7 +28,7 @@ class Spectrum:
 
     @classmethod
     def over(cls, positions: Positions, orders: Sequence[Fraction | int] = ()) -> Self:
-        """Those orders of curves over some positions; all that they resolve if none are given.
+        """Spectrum of those orders of curves over some positions; of all that they resolve if none are given.
 
         Raises:
             InputError: the positions are not whole turns, or cannot resolve an order.

@@ -18,9 +18,9 @@ class Starter:
     """A starter scene.
 
     Args:
-        name: by which it is asked for.
+        name: under which it is requested.
         mechanism: that it is of.
-        text: of the scene's file; its first line is a comment that says what it is of.
+        text: of the scene's file; its first line is a comment that names its subject.
     """
 
     name: str
@@ -29,12 +29,12 @@ class Starter:
 
     @property
     def title(self) -> str:
-        """What it is of, without the sign of a comment."""
+        """Title of the scene, without the sign of a comment."""
         return self.text.partition("\n")[0].lstrip("# ").strip()
 
 
 def starters_of(mechanism: Mechanism) -> tuple[Starter, ...]:
-    """The starters that a mechanism brings, by their names; none where it names no folder of them.
+    """The starters that a mechanism brings, by their names; none if it names no folder of them.
 
     Raises:
         InputError: the folder that it names is none, or has none.
@@ -76,7 +76,7 @@ def starter_named(word: str, mechanisms: Iterable[Mechanism]) -> Starter:
 
 
 def starter_lines(mechanisms: Iterable[Mechanism]) -> Iterator[str]:
-    """A line for each starter: the word to ask for it by, and what it is of; then the mechanisms without any."""
+    """A line for each starter: the word to ask for it by, and its subject; then the mechanisms without any."""
     every = tuple(mechanisms)
     starters = [one for own in every for one in starters_of(own)]
     width = max((len(one.name) for one in starters), default=0)

@@ -1,4 +1,4 @@
-"""Trials that nobody drew: stated deviations, every contributor at its mean, no deviation at all."""
+"""Trials that were not drawn: stated deviations, every contributor at its mean, no deviation at all."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -14,11 +14,11 @@ from tol3d.system.positions import Positions
 from tol3d.system.trials import Trials
 
 NO_UNIT: Final = "1"
-"""Unit of columns that are shares of what other deviations leave."""
+"""Unit of columns that are shares of the room left by other deviations."""
 
 
 class Toleranced(Protocol):
-    """What has contributors."""
+    """Object with contributors."""
 
     @property
     def contributors(self) -> Sequence[Contributor]:
@@ -27,7 +27,7 @@ class Toleranced(Protocol):
 
 
 class Varying(Toleranced, Protocol):
-    """A system, or a model of one: what its trials are made of."""
+    """A system, or a model of one: the basis of its trials."""
 
     @property
     def streams(self) -> Sequence[tuple[str, str]]:
@@ -44,7 +44,7 @@ class Varying(Toleranced, Protocol):
 
 
 def component_slices(system: Toleranced) -> Mapping[str, slice]:
-    """Which columns of the deviations belong to each contributor, by its name."""
+    """Columns of the deviations that belong to each contributor, by its name."""
     return _slices(Itself(system.contributors))
 
 
@@ -64,7 +64,7 @@ def component_count(system: Toleranced) -> int:
 
 
 def magnified(system: Toleranced, trials: Trials, factor: float) -> Trials:
-    """Trials whose deviations are so many times as large; shares of a room, which have no unit, stay as they are."""
+    """Trials with scaled deviations; shares of a room, which have no unit, stay as they are."""
     factors = np.full(component_count(system), factor)
     slices = component_slices(system)
     for own in system.contributors:

@@ -1,4 +1,4 @@
-"""What may become of a trial, in the words of its system."""
+"""Statuses of a trial, in the words of its system."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ OK: Final = 0
 """The code of a trial that was assembled and measured, in every system."""
 
 Meaning = Literal["seated", "lacking", "unknown"]
-"""Of a status: values count; the trial has less than nothing of what is measured, and lies below every lower limit; or
+"""Meaning of a status: values count; the trial has less than nothing of what is measured, below every lower limit; or
 nothing is known of it but that it failed."""
 
 
@@ -25,9 +25,9 @@ class Statuses:
 
     Args:
         texts: as columns and summary.json show them; the first is that of OK, "ok".
-        lacking: those of builds that lack what is measured, such as parts that overlap.
-        words: what such builds do, for a sentence: "do not fit".
-        states: what such builds are, for a row or a count: "too long"; the text itself where there is none.
+        lacking: those of builds with less than nothing of the measured quantity, such as overlaps.
+        words: predicate of such builds, for a sentence: "do not fit".
+        states: adjective of such builds, for a row or a count: "too long"; the text itself by default.
 
     Raises:
         InputError: another first text, or one that is not among them.
@@ -61,7 +61,7 @@ class Statuses:
 
     @property
     def meanings(self) -> dict[str, Meaning]:
-        """What each of them means for statistics."""
+        """Meaning of each status for statistics."""
         return {text: self._meaning(text) for text in self.texts}
 
     def _meaning(self, text: str) -> Meaning:

@@ -1,4 +1,4 @@
-"""The seam: what a study asks of a system, and all that it knows of one."""
+"""The seam: requests of a study to a system, and all its knowledge of one."""
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
@@ -20,14 +20,14 @@ from tol3d.system.trials import Trials
 
 Columns = Mapping[str, NDArray[Any]]
 Published = Mapping[str, PublishedColumn]
-"""Columns of others: what they found of each measure, and of the whole."""
+"""Published columns: figures of each measure, and of the whole."""
 
 KeyPath = tuple[str | int, ...]
 StreamKey = tuple[str, str]
 
 
 class Described(Protocol):
-    """What a system is: its contributors, measures and statuses."""
+    """Description of a system: its contributors, measures and statuses."""
 
     @property
     def name(self) -> str:
@@ -46,7 +46,7 @@ class Described(Protocol):
 
     @property
     def statuses(self) -> Statuses:
-        """What may become of a trial."""
+        """Statuses of a trial."""
         ...
 
     @property
@@ -56,20 +56,20 @@ class Described(Protocol):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What may spoil its numbers."""
+        """Warnings of conditions that may spoil its numbers."""
         ...
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
-        """Why it cannot be studied, such as parts that overlap at the mean build: place in the scene, sentence."""
+        """Reasons why it cannot be studied, such as overlaps at the mean build: place in the scene, sentence."""
         ...
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """What a measure is, by keys of summary.json: its kind, of what it is, how it is read."""
+        """Description of a measure, by keys of summary.json: its kind, its subject, its reading."""
         ...
 
 
 class Positioned(Protocol):
-    """Where the shafts of a system stand in its trials."""
+    """Positions of the shafts of a system in its trials."""
 
     @property
     def streams(self) -> Sequence[StreamKey]:
@@ -85,12 +85,12 @@ class Positioned(Protocol):
         ...
 
     def turns_at_random(self, contributor: Contributor, positions: Positions) -> bool:
-        """Whether a deviation's direction turns through all angles from trial to trial, read at these positions."""
+        """True if a deviation's direction turns through all angles from trial to trial, read at these positions."""
         ...
 
 
 class Methods(Protocol):
-    """By which methods a system answers, and what they take."""
+    """Methods by which a system answers, and their cost."""
 
     @property
     def methods(self) -> Mapping[str, MethodKind]:
@@ -98,11 +98,11 @@ class Methods(Protocol):
         ...
 
     def is_compiled(self, method: str) -> bool:
-        """Whether this machine has compiled what a method needs, so that it starts at once."""
+        """True if this machine has compiled the kernels of a method, so that it starts at once."""
         ...
 
     def materials(self, method: str) -> Any:
-        """What a method is made of that takes long to make or needs CAD; None where it needs nothing.
+        """Materials of a method that take long to make or need CAD; None where it needs nothing.
 
         Made once, in the parent process, for the study's engine; it pickles, and `method` gets it in every worker.
         """
@@ -113,21 +113,21 @@ class Methods(Protocol):
 
         Args:
             name: one of `methods`.
-            materials: what `materials(name)` has made; always None for the analytic method, which must do without.
+            materials: those of `materials(name)`; always None for the analytic method, which must do without.
         """
         ...
 
     def cost(self, measures: Sequence[Measure]) -> int:
-        """How many contacts a trial takes, for the size of what is handed out."""
+        """Number of contacts per trial, for the size of the pieces that workers get."""
         ...
 
     def chord_bound(self, measure: Measure, chord_error: float) -> float:
-        """What chord errors [mm] may make of a measure, in its unit."""
+        """Bound on the effect of chord errors [mm] on a measure, in its unit."""
         ...
 
 
 class Theory(Protocol):
-    """What acts on the measures of a system, and what is known of them without trials."""
+    """Effects on the measures of a system, and their properties that are known without trials."""
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """The contributors that act on a measure."""
@@ -140,11 +140,11 @@ class Theory(Protocol):
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]
     ) -> None:
-        """Write what a measure sees of contributors into their rows (regressors, trials), see `regressor_count`."""
+        """Write a measure's regressors of contributors into their rows (regressors, trials), see `regressor_count`."""
         ...
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
-        """Moments of a measure by the analytic method; None where there is no closed form."""
+        """Moments of a measure by the analytic method; None if there is no closed form."""
         ...
 
     def reference_form(self, measure: Measure) -> ClosedForm | None:
@@ -152,19 +152,19 @@ class Theory(Protocol):
         ...
 
     def neglected(self, measure: Measure, trials: Trials) -> Mapping[str, Array]:
-        """What the analytic method leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
+        """Part that the analytic method leaves out on purpose: its size, or a bound (trials,) in the measure's unit."""
         ...
 
 
 class Shown(Protocol):
-    """What a system shows of its results."""
+    """Presentation of a system's results."""
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
-        """Further sections of summary.json, from what was pooled of each breakdown by measure and method."""
+        """Further sections of summary.json, from the pooled terms of each breakdown by measure and method."""
         ...
 
     def display(self, trials: Trials, method: Method) -> Any:
-        """A build with its contacts, for whoever draws or exports it; the system's presenters know what it is."""
+        """A build with its contacts, to be drawn or exported; its type is known to the system's presenters."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""What a measure takes of its values at several positions."""
+"""Value that a measure takes over several positions."""
 
 from collections.abc import Iterable
 
@@ -13,7 +13,7 @@ VALUES_AT_ONCE = 2**22  # the same where positions are read in turn and only the
 
 
 def trials_at_once(measures: Iterable[Measure]) -> int:
-    """How many trials a method is asked at once, as the positions of the measures let it."""
+    """Number of trials asked of a method at once, as the positions of the measures let it."""
     return max(1, min(_rows(own.positions) // own.positions.in_a_trial for own in measures))
 
 
@@ -22,7 +22,7 @@ def _rows(positions: Positions) -> int:
 
 
 def taken(measure: Measure, values: Array) -> Array:
-    """What a measure takes of its values (trials, positions): (trials,), or all of them for a curve.
+    """Value that a measure takes of its values (trials, positions): (trials,), or all of them for a curve.
 
     Extremes are those of a parabola through the extreme sample and its neighbours, on a closed period those
     round its end too: 1.1e-4 of the once-per-turn part at 24 positions a turn, where the sample is 9e-3 off. Of values
@@ -46,7 +46,7 @@ def taken(measure: Measure, values: Array) -> Array:
 
 
 def weights_taken(measure: Measure, curves: Array) -> Array:
-    """What is taken of curves (trials, positions) is the sum of their values times these, near these curves.
+    """Weights near curves (trials, positions): the value taken of curves is the sum of their values times these.
 
     Curves are read from their first position on. A harmonic is read along its own phase, extremes at positions.
     """

@@ -15,7 +15,7 @@ class Trials:
 
     Args:
         deviations: (trials, components) [mm, rad, K]; the components of the contributors in their order.
-        positions: what a system makes of a trial's uniforms, such as the angle of a shaft [rad]: (trials,) by name.
+        positions: from a trial's uniforms, such as the angle of a shaft [rad]: (trials,) by name.
     """
 
     deviations: Array

@@ -1,4 +1,4 @@
-"""Where parts may be nearest, for the analytic method: which pairs there are, and what their least distance is."""
+"""Nearest pairs of parts, for the analytic method, and their least distance."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ UP, DOWN = 1.0, -1.0
 
 
 def faced(start: SolidMesh, end: SolidMesh, at: tuple[float, float, float], sizes: tuple[float, float]) -> Facing:
-    """Of a part at the origin and one elsewhere, which shifts and turns about its middle by normals of these sigmas."""
+    """Pairs of a part at the origin and one that shifts and turns about its middle by normals of these sigmas."""
     rng = np.random.default_rng(1)
     pose = np.eye(4)
     pose[:3, 3] = at

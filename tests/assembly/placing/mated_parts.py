@@ -56,7 +56,7 @@ PIN, HOLE = Axis(20.0, 8.0), Axis(20.0, 8.1, inner=True)
 
 
 def features_seen(relations: Sequence[tuple[str, Side, Side]], row: Array, slices: Sequence[slice]) -> list[list[Both]]:
-    """Of each relation the moving feature in its part and the target in the world: origin and z of each."""
+    """Moving feature in its part and target in the world, for each relation: origin and z of each."""
     found = []
     for k, (_, (_, own_shape, own_at), (_, shape, at)) in enumerate(relations):
         both = (own_shape, np.linalg.inv(NOMINAL) @ own_at), (shape, at)

@@ -94,7 +94,7 @@ def random_contacts(rng: np.random.Generator) -> Contacts:
 
 
 def programme(own: Contacts, turn: Array, points: Array, gaps: Array) -> Array | None:
-    """What contacts carry by HiGHS (contacts,); None where they do not hold the part."""
+    """Forces of contacts by HiGHS (contacts,); None where they do not hold the part."""
     rows = np.hstack([own.normals, np.cross(points, own.normals) / 50])
     pull = np.concatenate([own.force, np.cross(turn @ own.at, own.force) / 50])
     found = linprog(-pull, A_ub=-rows, b_ub=gaps, bounds=(None, None), method="highs")

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 def displacement(features: Sequence[Feature], columns: Columns, datums: Sequence[Datum], row: Array) -> Array:
-    """Of the frame of some datums of a part `p` (4, 4): read off three points that it carries, along x, y and z."""
+    """Displacement of the frame of some datums of a part `p` (4, 4): from three of its points, along x, y and z."""
     frame_of = DatumFrame("p|ABC", "p", tuple(datums))
     tips = [(0, 0, 0), (100, 0, 0), (0, 100, 0), (0, 0, 100)]
     carried = [feature(f"p.tip {k}", Point(), frame(tip), (), "p|ABC") for k, tip in enumerate(tips)]
@@ -219,7 +219,7 @@ def test_an_axis_then_a_plane_then_a_hole() -> None:
 
 
 def test_a_common_datum_is_the_line_through_two_centres() -> None:
-    """Of two bearing seats: the line through their middles comes to the nominal one, its middle stays there."""
+    """For two bearing seats, the line through their middles comes to the nominal one, its middle stays there."""
     columns = Columns()
     seats = [
         feature(f"p.{name}", Axis(20.0), frame((x, 0, 0), (1, 0, 0)), [columns(count=4)])

@@ -98,7 +98,7 @@ def test_a_corner_follows_its_locators_as_their_coefficients_say() -> None:
 
 
 NO_POSE = {(635, "fixture")}
-"""Of which scipy from 200 starts leaves 0.02 mm."""
+"""Seeds for which scipy from 200 starts leaves 0.02 mm."""
 
 
 def random_move(seed: int, points_on: PointsOn = "part") -> tuple[Assembly, Array, Array]:

@@ -29,7 +29,7 @@ Seen = tuple[Array, Array, Array]
 
 
 def trial(relations: list[str], seed: int) -> list[Seen]:
-    """Of a random trial, relation by relation: where the feature is, where it is to be, and the target's direction."""
+    """Features of a random trial, relation by relation: its place, its target, and the target's direction."""
     asked = [RELATIONS[name] for name in relations]
     made, slices = mated(asked)
     row = np.random.default_rng(seed).normal(0, 0.3, made.width)
@@ -69,7 +69,7 @@ def test_two_points_then_a_plane(seed: int) -> None:
 @pytest.mark.parametrize("last", ["wall", "point 2", "oblique"])
 @pytest.mark.parametrize("seed", seeds(2))
 def test_what_a_turn_about_a_place_brings(start: tuple[str, str], last: str, seed: int) -> None:
-    """What comes first is met, what second as far as it is free; the last as nearly as a turn about the normal goes."""
+    """The first is met, the second as far as it is free; the last as nearly as a turn about the normal goes."""
     seen = dict(zip([*start, last], trial([*start, last], seed), strict=True))
     (under, floor, normal), (point, its_target, direction) = seen["floor"], seen[last]
     pivot, target, along = seen["pin" if "pin" in start else "point 0"]

@@ -137,7 +137,7 @@ def inspected(shape: Axis | Plane | RoundPlane | Point, size: int) -> tuple[Asse
 
 
 def frame_of(row: Array) -> Array:
-    """Of the tilted bottom (4, 4): least rotation from its nominal normal, and where its middle lies."""
+    """Frame of the tilted bottom (4, 4): least rotation from its nominal normal, and the place of its middle."""
     normal = np.array([0, 0, -1.0]) - np.array([row[1] / 50, -row[2] / 30, 0])
     normal /= np.linalg.norm(normal)
     axis = np.cross((0, 0, -1), normal)

@@ -281,7 +281,7 @@ def test_what_nothing_holds_stays_by_the_least_turn_and_about_the_middle_of_the_
 
 
 def test_a_ball_before_a_plane_or_an_axis_leaves_it_the_turns_alone() -> None:
-    """Of planes the directions come first, of axes the place across; what is left of the other is asked."""
+    """The directions of planes come first, for axes the place across; the rest of the other is asked."""
     draft = Draft()
     draft.part("base")
     draft.part("lid")

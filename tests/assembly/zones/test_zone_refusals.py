@@ -1,4 +1,4 @@
-"""What no drawing can state is refused in words."""
+"""Requests that no drawing can state are refused in words."""
 
 from collections.abc import Callable
 

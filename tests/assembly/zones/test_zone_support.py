@@ -1,4 +1,4 @@
-"""How far zones reach: against linear programmes over their half spaces, and over what is drawn."""
+"""Support of zones: against linear programmes over their half spaces, and over drawn points."""
 
 import itertools
 import math
@@ -39,7 +39,7 @@ def zone_of(name: str, orientation: float) -> Zone:
 @pytest.mark.parametrize("name", thinned(REFINED, 4))
 @pytest.mark.parametrize("part", [1.0, 0.7, 0.2, 0.01])
 def test_the_support_of_a_refined_zone_is_that_of_a_linear_programme(name: str, part: float) -> None:
-    """Of round limits between that of polygons around them and that of these shrunk into them."""
+    """The support of round limits lies between those of polygons around them and of these shrunk into them."""
     zone = zone_of(name, part * WIDTH)
     half_spaces, limits = facets(name, WIDTH, part * WIDTH, SIDES)
     width = half_spaces.shape[1]

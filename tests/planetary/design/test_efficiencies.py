@@ -171,7 +171,7 @@ def random_set(rng: random.Random) -> ToothSet:
 
 
 def test_published_efficiencies_are_those_of_equilibrium_on_1000_random_sets() -> None:
-    """Of both kinds, I2 below and above 1, driven at either end; relative to 1e-12.
+    """Both kinds, I2 below and above 1, driven at either end; relative to 1e-12.
 
     Sets that lock themselves backwards are counted apart: there both say so, and only forward is compared.
     """
@@ -244,7 +244,7 @@ def test_a_set_of_a_large_ratio_locks_itself_and_still_drives_forward() -> None:
 
 
 def test_at_most_one_equilibrium_of_any_drive_delivers_power() -> None:
-    """Of 1000 sets with any three members as input, output and held: a second one is jammed, by self-locking."""
+    """1000 sets with any three members as input, output and held: a second one is jammed, by self-locking."""
     rng, jammed = random.Random(7), 0
     for _ in range(1000):
         sun, p1, p2 = (rng.randint(12, 50) for _ in range(3))

@@ -64,7 +64,7 @@ def test_every_limit_is_kept_by_every_goal(teeth: ToothSet) -> None:
 
 @pytest.mark.parametrize("shift", [0.0, 0.3])
 def test_tips_pass_each_other_by_what_the_gears_say(shift: float) -> None:
-    """Where tip circles cross, for tooth differences on both sides of trimming: the ring's arc is the gap."""
+    """Crossing tip circles, for tooth differences on both sides of trimming: the ring's arc is the gap."""
     signs = set()
     for teeth in range(26, 37):
         own = WorkingMesh(CentralMesh("ring", 40, teeth, True), BasicRack(), (40 - teeth) / 2, -shift, shift)

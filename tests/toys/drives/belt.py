@@ -81,7 +81,7 @@ class BeltSpec(LinkSpec):
 
 
 class SpanSpec(LinkToleranceSpec):
-    """How far the slack span gives."""
+    """Give of the slack span."""
 
     link_spec: ClassVar[type[Any]] = BeltSpec
 

@@ -37,7 +37,7 @@ class DrumSpec(TurningSpec):
 
 
 class StretchSpec(ToleranceSpec):
-    """How far the rope of a drum gives."""
+    """Give of the rope of a drum."""
 
     kind: Literal["rope_stretch"]
     of: Name

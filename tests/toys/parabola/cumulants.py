@@ -33,7 +33,7 @@ class Cumulants:
 
 
 def parabola(a: float, b: float, s: float) -> Cumulants:
-    """Of a z + b z^2 with z normal of sigma s."""
+    """Cumulants of a z + b z^2 with z normal of sigma s."""
     return Cumulants(
         b * s**2,
         a**2 * s**2 + 2 * b**2 * s**4,
@@ -43,5 +43,5 @@ def parabola(a: float, b: float, s: float) -> Cumulants:
 
 
 def uniform(half: float) -> Cumulants:
-    """Of a uniform from -half to half."""
+    """Cumulants of a uniform from -half to half."""
     return Cumulants(0.0, half**2 / 3, 0.0, -2 * half**4 / 15)

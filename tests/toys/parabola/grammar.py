@@ -1,4 +1,4 @@
-"""What a scene says of springs."""
+"""Vocabulary of springs in scenes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, ClassVar, Literal
@@ -21,7 +21,7 @@ from tol3d.units import Dimension, Of, Quantity
 
 
 class PublishedTerm(Strict):
-    """What others found of a term."""
+    """Published figures of a term."""
 
     mean: Annotated[Quantity, Of("length")] | None = None
     sigma: Length | None = None
@@ -29,7 +29,7 @@ class PublishedTerm(Strict):
 
 
 class PublishedTerms(PublishedFigures):
-    """What others found of the terms of heights."""
+    """Published figures of the terms of heights."""
 
     terms: Mapping[Name, Mapping[Name, PublishedTerm]] = Field(default_factory=dict, description="measure, term")
 
@@ -100,7 +100,7 @@ class LiftSpec(MoveSpec):
 
 
 class LiftMeasureSpec(MeasureSpec):
-    """What is read of a lift."""
+    """A measure of a lift."""
 
     dimension: ClassVar[Dimension] = "length"
 
@@ -120,7 +120,7 @@ class LiftMeasureSpec(MeasureSpec):
 
 
 class HeightSpec(LiftMeasureSpec):
-    """How far the spring lifts: at rest, at a random position, or over a turn."""
+    """Lift of the spring: at rest, at a random position, or over a turn."""
 
     kind: Literal["height"]
     at: Literal["rest", "random", "turn"] = "rest"
@@ -137,7 +137,7 @@ class HeightSpec(LiftMeasureSpec):
 
 
 class RoomSpec(LiftMeasureSpec):
-    """What is left of a room that the spring lifts into; less than nothing is too long."""
+    """Rest of a room that the spring lifts into; less than nothing is too long."""
 
     kind: Literal["room"]
     room: Annotated[Quantity, Of("length")]
@@ -145,6 +145,6 @@ class RoomSpec(LiftMeasureSpec):
 
 
 class SpringOptions(StudyOptions):
-    """How finely chords measure."""
+    """Fineness of the chords that measure."""
 
     knots: int = Field(default=120, ge=2)

@@ -23,7 +23,7 @@ ROUNDING = 1e-9  # um
 
 @dataclass(frozen=True)
 class Deviations:
-    """What the terms are made of, (trials,) [mm]: sums over the contributors of each kind."""
+    """Deviations that make up the terms, (trials,) [mm]: sums over the contributors of each kind."""
 
     x: Array
     ripple: Array
@@ -119,7 +119,7 @@ class Exact:
 
 
 def _status(room: Room | None, x: Array, values: Array) -> NDArray[np.int8]:
-    """What becomes of each trial of a measure."""
+    """Status of each trial of a measure."""
     status = np.zeros(len(x), dtype=np.int8)
     if room is not None:
         status[values[:, 0] < 0.0] = TOO_LONG

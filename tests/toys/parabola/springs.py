@@ -39,7 +39,7 @@ class Spring:
 
 @dataclass(frozen=True)
 class Room:
-    """What a spring lifts into [mm], and the |x| beyond which it is lost [mm]."""
+    """Room that a spring lifts into [mm], and the |x| beyond which it is lost [mm]."""
 
     room: float
     lost_beyond: float

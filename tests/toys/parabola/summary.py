@@ -1,4 +1,4 @@
-"""What a summary holds of springs besides what every one holds."""
+"""Keys of a summary for springs, besides those of every one."""
 
 from collections.abc import Mapping
 from typing import Final, Literal
@@ -12,7 +12,7 @@ PRESENTER: Final = "toys.parabola.showing"
 
 
 class HeightSummary(MeasureSummary):
-    """How far a spring lifts."""
+    """Lift of a spring."""
 
     presenter = PRESENTER
 
@@ -33,7 +33,7 @@ class HeightSummary(MeasureSummary):
 
 
 class RoomSummary(MeasureSummary):
-    """What is left of a room."""
+    """Rest of a room."""
 
     presenter = PRESENTER
 
@@ -43,7 +43,7 @@ class RoomSummary(MeasureSummary):
 
 
 class Term(Section):
-    """What a term adds to a measure, in its unit."""
+    """Contribution of a term to a measure, in its unit."""
 
     mean: Known
     sigma: Known

@@ -96,7 +96,7 @@ class ParabolaSystem:
         return True
 
     def materials(self, method: str) -> Any:
-        """Of the chords: where they meet, and the process that made that."""
+        """Materials of the chords: where they meet, and the process that made that."""
         if method != "chords":
             return None
         knots = np.linspace(-KNOTS_TO, KNOTS_TO, self.springs.chords + 1)
@@ -144,7 +144,7 @@ class ParabolaSystem:
         return self.reference_form(measure) if measure.take == "value" else None
 
     def reference_form(self, measure: Measure) -> ClosedForm | None:
-        """Of its value at one position: at rest, or at a random one."""
+        """Closed form of its value at one position: at rest, or at a random one."""
         sign = -1.0 if (room := self.springs.room(own_measure(measure))) else 1.0
         nominal = room.room if room else 0.0
         shares = tuple(self._share(own, sign) for own in self.acting(measure))
@@ -193,5 +193,5 @@ def _terms(own: PooledTerms) -> dict[str, Any]:
 
 
 def parabola_system(scene: Scene) -> ParabolaSystem:
-    """What a scene of springs means."""
+    """System of a scene of springs."""
     return ParabolaSystem(springs_of(scene))

@@ -1,4 +1,4 @@
-"""What a scene says of a disc between pins."""
+"""Vocabulary of a disc between pins."""
 
 from typing import ClassVar, Literal
 
@@ -31,7 +31,7 @@ class PlateSpec(PartSpec):
 
 
 class RoomSpec(ToleranceSpec):
-    """What all pins leave free round the disc."""
+    """Room that all pins leave round the disc."""
 
     kind: Literal["pin_room"]
     of: Name
@@ -41,14 +41,14 @@ class RoomSpec(ToleranceSpec):
 
 
 class PinSpec(RoomSpec):
-    """What each pin leaves besides."""
+    """Room that each pin leaves besides."""
 
     kind: Literal["pin"]  # type: ignore[assignment]  # a kind of its own
     each: Literal["pin"]
 
 
 class OffCentreSpec(ToleranceSpec):
-    """How far the disc lies off its centre, in a random direction."""
+    """Offset of the disc from its centre, in a random direction."""
 
     kind: Literal["off_centre"]
     of: Name
@@ -84,6 +84,6 @@ class LeastGapSpec(InPinsSpec):
 
 
 class SlideSpec(InPinsSpec):
-    """How far the disc slides along x: what even pins and odd pins, two load paths, both leave."""
+    """Slide of the disc along x: the play that even pins and odd pins, two load paths, both leave."""
 
     kind: Literal["slide"]

@@ -8,7 +8,7 @@ from scipy.optimize import linprog
 
 
 def gaps_of(radius: float, room: float, pins: Sequence[float], off: tuple[float, float]) -> list[float]:
-    """Of each pin [mm]."""
+    """Gap of each pin [mm]."""
     found = []
     for k, own in enumerate(pins):
         angle = 2 * math.pi * (k + 0.25) / len(pins)

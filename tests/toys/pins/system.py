@@ -51,7 +51,7 @@ class PinsMethod:
 
 
 def slides(gaps: Array) -> Array:
-    """How far a disc slides along x (trials,): the intersection of what each load path leaves."""
+    """Slide of a disc along x (trials,): the intersection of the plays of the load paths."""
     along = directions(gaps.shape[1])[:, 0]
     highest, lowest = [], []
     for path in PATHS:
@@ -96,7 +96,7 @@ class PinsSystem(PlainSystem):
 
 
 def pins_system(scene: Scene) -> PinsSystem:
-    """What a scene of a disc between pins means."""
+    """System of a scene of a disc between pins."""
     ((_, plate),) = scene.of(PlateSpec).items()
     ((_, disc),) = scene.of(DiscSpec).items()
 

@@ -1,4 +1,4 @@
-"""What a scene says of a rod."""
+"""Vocabulary of a rod."""
 
 from typing import ClassVar, Literal
 
@@ -20,7 +20,7 @@ class RodSpec(PartSpec):
 
 
 class LengthToleranceSpec(ToleranceSpec):
-    """How much longer a rod is."""
+    """Excess length of a rod."""
 
     kind: Literal["rod_length"]
     of: Name
@@ -30,7 +30,7 @@ class LengthToleranceSpec(ToleranceSpec):
 
 
 class TipSpec(LengthToleranceSpec):
-    """How far its tip strays: what is drawn, times 1 + ten times the deviation of the length [mm]."""
+    """Deviation of its tip: the draw, times 1 + ten times the deviation of the length [mm]."""
 
     kind: Literal["rod_tip"]  # type: ignore[assignment]  # a kind of its own
     length: Name
@@ -40,7 +40,7 @@ class TipSpec(LengthToleranceSpec):
 
 
 class MarkSpec(LengthToleranceSpec):
-    """How far a mark strays: what is drawn [mm], as often as the tip strays by 10 um."""
+    """Deviation of a mark: the draw [mm], as often as the tip strays by 10 um."""
 
     kind: Literal["rod_mark"]  # type: ignore[assignment]  # a kind of its own
     tip: Name
@@ -62,7 +62,7 @@ class StandSpec(MoveSpec):
 
 
 class ReachSpec(LengthSpec):
-    """How far it reaches: length, tip and mark together."""
+    """Reach of a rod: length, tip and mark together."""
 
     kind: Literal["rod_reach"]
     of: Name

@@ -92,7 +92,7 @@ class RodsSystem(PlainSystem):
 
 
 def rods_system(scene: Scene) -> RodsSystem:
-    """What a scene of a rod means."""
+    """System of a scene of a rod."""
     ((_, rod),) = scene.of(RodSpec).items()
     laws = {name: spec.distribution.resolve(scene.files) for name, spec in scene.distributed.items()}
 

@@ -54,7 +54,7 @@ CRANK_TURN: Final = slice(8, 10)  # Q
 
 @dataclass(frozen=True)
 class Bearings:
-    """Centres of what bearings join [mm].
+    """Centres of the bearing seats [mm].
 
     Attributes:
         holes: of the carrier, in its frame, its main bearing's displacement in it (trials, cranks, 2).
@@ -77,7 +77,7 @@ def bearings(
     carrier_holes: Array,
     carrier_offsets: Array,
 ) -> Bearings:
-    """Where errors put what bearings join.
+    """Positions of the bearing seats, with their errors.
 
     Args:
         eccentricity: a [mm].
@@ -104,7 +104,7 @@ def bearings(
 
 
 def linkage(joined: Bearings) -> Array:
-    """What a disc's pose is made of where bearings have no play, (trials, discs, 10) [mm, mm2]: see CENTRE, THROW..."""
+    """Terms of a disc's pose without bearing play, (trials, discs, 10) [mm, mm2]: see CENTRE, THROW..."""
     trials, _, discs = joined.thrown.shape[:3]
     middle = _mean(joined.holes)
     found = np.empty((trials, discs, 10))
@@ -121,7 +121,7 @@ def linkage(joined: Bearings) -> Array:
 
 
 def _mean(points: Array) -> Array:
-    """Over cranks, (trials, 2) of (trials, cranks, 2), in their order."""
+    """Mean over cranks, (trials, 2) of (trials, cranks, 2), in their order."""
     total = points[:, 0]
     for crank in range(1, points.shape[1]):
         total = total + points[:, crank]
@@ -148,7 +148,7 @@ class AsMade:
         pins: centres (trials, pins, 2) [mm].
         pin_radii: (trials, pins) [mm].
         lobe_pitch, lobe_profile: errors (trials, discs, lobes) [mm].
-        leans: how discs lean (trials, discs, 3): see `leaning`; None where they lie flat.
+        leans: lean of the discs (trials, discs, 3): see `leaning`; None where they lie flat.
     """
 
     linkage: Array
@@ -171,14 +171,14 @@ class ContactStage(CycloidStage):
         deflection: float | None = None,
         leans: Array | None = None,
     ) -> Touching:
-        """Where the first working pin stops the carrier, counter-clockwise (+1) and back (-1).
+        """Turns of the carrier at which the first working pin makes contact, counter-clockwise (+1) and back (-1).
 
         Lost motion is the first of `BOTH` turns less the second, negative where a build is tight: where the carrier has
         to turn back before pins of the other flanks are clear.
 
         Args:
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
-            deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
+            deflection: pins with at most this gap are counted then [mm]; None for no count.
             leans: of discs, see `leaning`; None where they lie flat.
         """
         shape = contact_shape(
@@ -188,14 +188,14 @@ class ContactStage(CycloidStage):
         return first_contact(shape, replace(self.as_made(deviated), leans=leans), positions, senses)
 
     def as_made(self, deviated: Deviated) -> AsMade:
-        """Places and sizes of what deviates."""
+        """Places and sizes of the deviated parts."""
         own = self.profile
         pins = pin_centres(own.pin_circle_radius, deviated.pins)
         radii = own.pin_radius + deviated.pin_radii
         return AsMade(linkage(self.joined(deviated)), pins, radii, deviated.lobe_pitch, deviated.lobe_profile)
 
     def joined(self, deviated: Deviated) -> Bearings:
-        """What bearings join, where it lies."""
+        """Positions of the bearing seats, with the errors of the deviated parts."""
         return bearings(
             self.profile.eccentricity,
             self.crank_circle,
@@ -211,7 +211,7 @@ class ContactStage(CycloidStage):
 def contact_shape(
     profile: DiscProfile, window: float, rolling: float, deflection: float = NONE_COUNTED
 ) -> ContactShape:
-    """What the kernels read of a nominal stage; see ContactShape."""
+    """Kernel input of a nominal stage; see ContactShape."""
     ground = profile.ground
     k, pins = ground.shortening, ground.pins
     cosine = ((2 * pins - 1) * k**2 - (pins - 2)) / ((pins + 1) * k)
@@ -278,7 +278,7 @@ def pin_centres(circle: float, errors: Array) -> Array:
 
 
 def leaning(tilts: Array, width: float) -> Array:
-    """How discs lean that are tilted about axes in their plane (trials, discs, 3): slopes, and half their width [mm].
+    """Lean of discs tilted about axes in their plane (trials, discs, 3): slopes, and half their width [mm].
 
     Args:
         tilts: about x and y of the frame of a disc's holes, through the middle of its width (trials, discs, 2) [rad]:

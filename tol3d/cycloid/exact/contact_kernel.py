@@ -22,7 +22,7 @@ FLAT: Final = 1e-9  # mm, by which a gap differs between the sections that may t
 
 @part
 def drift(shape: Any, linkage: Any, throw: float) -> float:
-    """How far errors take a pin's rate in the disc's frame off the nominal one, at most [mm per rad]."""
+    """Largest departure of a pin's rate in the disc's frame from the nominal one, due to errors [mm per rad]."""
     reach = shape.ground_circle + shape.eccentricity + 1.0
     whole = np.sqrt(linkage[6] ** 2 + linkage[7] ** 2)
     other = np.sqrt(linkage[8] ** 2 + linkage[9] ** 2) / whole
@@ -59,7 +59,7 @@ def curvature_within(shape: Any, speed: float, right: float, cos_phase: float, f
 
 @part
 def bound(shape: Any, reach: float, most: float, own: float, bent: float, far: float) -> float:
-    """What curvature and the squares of turns change a gap by at most [mm]; inf where the path bends too much."""
+    """Bound on the change of a gap by curvature and squares of turns [mm]; inf where the path bends too much."""
     moved = (1.0 + abs(shape.rolling)) * most + abs(own)
     curved = 0.5 * bent * far / (1.0 - bent) if bent < 0.5 else np.inf
     found: float = curved + 0.5 * reach * moved**2
@@ -171,7 +171,7 @@ def clear(
     shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, turn: float,
     leans: Any,
 ) -> bool:  # fmt: skip
-    """Whether a pin has a gap where the carrier stands, of a leaning disc at both faces and between."""
+    """True if a pin has a gap at the carrier's position, on a leaning disc at both faces and between them."""
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
     disc, j = place // around.shape[0], place % around.shape[0]
@@ -234,7 +234,7 @@ def near(
     shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
     turn: float, leans: Any,
 ) -> int:  # fmt: skip
-    """How many working pins have a gap of at most shape.deflection at a turn."""
+    """Number of working pins with a gap of at most shape.deflection at a turn."""
     firsts, slacks = screen
     count = 0
     lobes = shape.lobes

@@ -42,7 +42,7 @@ class ContactShape(NamedTuple):
         rolling: turns of the cranks in space per turn of the carrier where its transmission error turns it.
         sharpest: largest curvature of convex parts of the ground path [1/mm].
         sharpest_cosine: cosine of its phase.
-        deflection: a pin counts whose gap in contact is at most so much; below 0 none is counted.
+        deflection: pins with at most this gap in contact are counted; below 0 for no count.
     """
 
     pins: float
@@ -84,7 +84,7 @@ def lobe_at(u: float, lobes: float) -> int:
 
 @part
 def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
-    """By how much a flank is turned about the disc's axis [rad]: its lobe's pitch error, and the modification."""
+    """Turn of a flank about the disc's axis [rad]: its lobe's pitch error, and the modification."""
     turned: float = shape.rotation if right > 0.0 else -shape.rotation
     found: float = lobe_pitch[lobe] * shape.pins / (shape.lobes * shape.pin_circle) + turned
     return found
@@ -92,7 +92,7 @@ def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
 
 @part
 def seen_from_lobe(shape: Any, linkage: Any, phi: float, turn: float, pin: Any, own: float, lean: Any) -> Any:
-    """Where a pin meets a section of a disc, and tau, in the frame of a lobe that is turned by own in its disc."""
+    """Contact point of a pin and a section of a disc, and tau, in the frame of a lobe turned by own in its disc."""
     tau_x, tau_y, height = lean
     crank = phi + shape.rolling * turn
     chi = turn - phi / shape.lobes
@@ -115,7 +115,7 @@ def touched(
     Args:
         shape: ContactShape.
         linkage: of the disc (10,).
-        clock: by which the disc's profile is turned against its crank holes [rad].
+        clock: angle by which the disc's profile is turned against its crank holes [rad].
         flanks: pitch and profile errors of the disc's lobes.
         pin: x and y of its centre, and its radius [mm].
         phi: crank angle [rad].
@@ -124,7 +124,7 @@ def touched(
         lean: tau in the frame of the disc's holes, and the section's height [mm].
 
     Returns:
-        The turn, by how much the gap grows per height, and whether they were found.
+        The turn, the growth of the gap per height, and True if they were found.
     """
     lobe_pitch, lobe_profile = flanks
     longest = LONGEST_STEP * TURN / shape.lobes

@@ -21,11 +21,11 @@ from tol3d.solids import PosedGear, PosedPart, PosedShape
 
 @dataclass(frozen=True)
 class Place:
-    """Of a part in the plane.
+    """Position and orientation of a part in the plane.
 
     Args:
-        at: of its axis, x + i y [mm].
-        turned: counter-clockwise [rad].
+        at: position of its axis, x + i y [mm].
+        turned: angle, counter-clockwise [rad].
     """
 
     at: complex
@@ -73,7 +73,7 @@ class StagePlaces:
 
     @property
     def cranks(self) -> tuple[Place, ...]:
-        """In the carrier's holes."""
+        """Places of the cranks in the carrier's holes."""
         count = self.stage.cranks
         holes = self.stage.crank_circle * np.exp(2j * math.pi * np.arange(count) / count)
         holes = holes + as_complex(self.deviated.carrier_holes[0]) + as_complex(self.deviated.carrier_offsets[0])
@@ -105,7 +105,7 @@ class StagePlaces:
 
     @cached_property
     def _linkage(self) -> Complex:
-        """Of contact.linkage, as complex numbers (discs, 5)."""
+        """Terms of contact.linkage, as complex numbers (discs, 5)."""
         found = self.stage.as_made(self.deviated).linkage[0]
         return np.asarray(found[:, 0::2] + 1j * found[:, 1::2])
 
@@ -143,7 +143,7 @@ class StageShapes:
 
     @property
     def sun_level(self) -> float:
-        """Where the middle of the first stage lies along the axis, the discs' at 0 [mm]; 0 without one."""
+        """Axial position of the middle of the first stage, that of the discs being 0 [mm]; 0 without a first stage."""
         if self.first is None:
             return 0.0
         width = max(gear.face_width for gear in self.first)
@@ -187,7 +187,7 @@ def usual_shapes(
     crank_hole: float | None = None,
     first: tuple[SpurGear, SpurGear] | None = None,
 ) -> StageShapes:
-    """Shapes of a reducer of which only what acts is known; all else by the proportions above.
+    """Shapes of a reducer of which only the acting surfaces are known; all else by the proportions above.
 
     Args:
         width: of a disc [mm].
@@ -223,7 +223,7 @@ def usual_shapes(
 def _sections(
     stage: ContactStage, holes: DiscHoles, width: float, first: tuple[SpurGear, SpurGear] | None
 ) -> Iterator[CrankSection]:
-    """Of a crankshaft: journal, eccentrics with a piece of journal between, journal, seat of a planet."""
+    """Sections of a crankshaft: journal, eccentrics with a piece of journal between, journal, seat of a planet."""
     gap, flange, own = GAP * width, FLANGE * width, stage.profile.eccentricity
     eccentric = max(ECCENTRIC * holes.crank_diameter, (holes.crank_diameter + 2 * own) / 2)
     journal = JOURNAL * (eccentric - 2 * own)
@@ -242,7 +242,7 @@ def _sections(
 
 
 def _bore_radius(profile: DiscProfile) -> float:
-    """Of the ring between the pins [mm]: half of each pin is held, or as much as the lobes leave room for."""
+    """Bore radius of the ring between the pins [mm]: half of each pin is held, or as much as the lobes allow."""
     reach, circle = lobe_reach(profile), profile.pin_circle_radius
     if reach < circle - LOBE_ROOM * profile.pin_radius:
         return circle

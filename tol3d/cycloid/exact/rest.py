@@ -13,7 +13,7 @@ from tol3d.numerics.arrays import Array, Places
 
 @dataclass(frozen=True)
 class Resting:
-    """Where stages rest.
+    """Rest positions of stages.
 
     Attributes:
         turns: of the carrier beyond -phi / Zc (trials, positions) [rad]; NaN where it does not rest.

@@ -37,7 +37,7 @@ CARRIES: Final = 1e-9  # of a gap's multiplier
 
 @part
 def boxed(count: int, basis: Any, loads: Any) -> bool:
-    """Whether the room that is given to a body carries some of the torque."""
+    """True if the room given to a body carries some of the torque."""
     carried = 0.0
     for k in range(count):
         if basis[k] < count:
@@ -54,7 +54,7 @@ def begin(count: int, basis: Any, sides: Any) -> None:
 
 @part
 def room_written(count: int, discs: int, near: float, z: Any, lower: Any, upper: Any) -> None:
-    """Write how far bodies may go next: to the end of their room, and no farther than near."""
+    """Write the limits of the next step of bodies: to the end of their room, and no farther than near."""
     for k in range(count):
         most = TURNS * ROOM if k > 3 * discs and (k - 3 * discs) % 3 == 0 else ROOM
         lower[k], upper[k] = max(-most - z[k], -near), min(most - z[k], near)
@@ -94,7 +94,7 @@ def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any)
 def bends_written(
     step: int, pinned: int, first: int, cuts: int, z: Any, planes: Any, bends: Any, rows: Any, lower: Any, upper: Any
 ) -> int:  # fmt: skip
-    """Write the rows of tangents at pins, and keep those at pins that overlap now; how many planes there are."""
+    """Write the rows of tangents at pins, and keep those at pins that overlap now; the number of planes."""
     for k in range(cuts):
         if planes[k, 0] == PIN:
             bend_written(bends[k], z, first + k, rows, lower, upper)
@@ -109,7 +109,7 @@ def bends_written(
 
 @part
 def begin_planes(bearings: int, planes: Any) -> int:
-    """Put the first planes: across two directions of each bearing; how many."""
+    """Put the first planes: across two directions of each bearing; their number."""
     cuts = 0
     for b in range(bearings):
         for axis in range(2):
@@ -123,7 +123,7 @@ def rested(
     shape: Any, stage: Any, throws: Any, made: Any, base: Any, pins: Any, clearances: Any, working: Any, sense: float,
     rooms: Any,
 ) -> tuple[int, float]:  # fmt: skip
-    """What becomes of a stage that is turned in a sense, and the carrier's turn [rad]."""
+    """Status of a stage that is turned in a sense, and the carrier's turn [rad]."""
     rows, lower, upper, basis, solving, x, z, planes, across, bends = rooms
     discs, cranks, _, _, _ = stage
     radial, meshes = clearances

@@ -173,7 +173,7 @@ def pins_written(
 
 @part
 def working_pins(shape: Any, throws: Any, phi: float, sense: float, working: Any) -> int:
-    """Write the places of pins that stop a disc in a sense; how many."""
+    """Write the places of pins that stop a disc in a sense; their number."""
     found, count = 0, int(shape.pins)
     ratio = shape.eccentricity * shape.pins / shape.pin_circle
     for d in range(throws.shape[0]):

@@ -40,13 +40,13 @@ class LinearStage(CycloidStage):
         aside: Array | None = None,
         deflection: float | None = None,
     ) -> Touching:
-        """Where the first working pin stops the carrier on its way counter-clockwise (1) or back (-1).
+        """Turns of the carrier at which the first working pin makes contact, counter-clockwise (1) or back (-1).
 
         Args:
             phis: crank angles (trials, positions), or (1, positions) that are those of every trial [rad].
             aside: tilts of discs about x and y of their frames, times half their width (trials, discs, 2) [mm]: a pin
-                sees the faces so far off to either side, and the nearer one closes its gap; None for no tilts.
-            deflection: pins are counted whose gap is at most so much then [mm]; None where none are.
+                sees the faces offset by that to either side, and the nearer one closes its gap; None for no tilts.
+            deflection: pins with at most this gap are counted then [mm]; None for no count.
         """
         trials, positions, rows = len(deviated.pins), phis.shape[1], np.arange(len(deviated.pins))
         turns = np.empty((trials, positions))
@@ -67,7 +67,7 @@ class LinearStage(CycloidStage):
         return Touching(turns, places, near)
 
     def rates(self, phis: Array, places: Places) -> Deviated:
-        """What the turn (rows,) [rad] changes by per deviation while a pin touches, in the form of the deviations.
+        """Derivatives of the turn (rows,) [rad] by each deviation while a pin touches, in the form of the deviations.
 
         Args:
             phis: crank angles (rows,) [rad].
@@ -92,12 +92,12 @@ class LinearStage(CycloidStage):
     # one disc -------------------------------------------------------------------------------------------
 
     def gaps(self, phis: Array, disc: int, pins: Places, further: Array) -> Array:
-        """What gaps of a disc's pins close [mm] by further turns of the carrier (trials, pins), at phis (trials,)."""
+        """Closing of the gaps of a disc's pins [mm] by further carrier turns (trials, pins), at phis (trials,)."""
         lever = self.profile.lever(self._parameters(phis + self.throws[disc])[:, pins])
         return np.abs(further * lever * self._giving)
 
     def _within(self, turns: Array, phis: Array, found: Sequence[tuple[Array, Places]], deflection: float) -> Places:
-        """How many pins of all discs have a gap of at most a deflection at turns (trials,)."""
+        """Number of pins of all discs with a gap of at most a deflection at turns (trials,)."""
         count = np.zeros(len(turns), dtype=np.int64)
         for disc, (allowed, pins) in enumerate(found):
             works = np.isfinite(allowed)
@@ -108,7 +108,7 @@ class LinearStage(CycloidStage):
     def _allowed(
         self, deviated: Deviated, disc: int, placed: "PlacedDisc", phis: Array, sense: Sense, aside: Array | None
     ) -> tuple[Array, Places]:
-        """How far each working pin lets one disc turn the carrier, at phis (trials,), or (1,) of every trial.
+        """Turn of the carrier that each working pin of one disc allows, at phis (trials,), or (1,) of every trial.
 
         Returns:
             Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
@@ -144,7 +144,7 @@ class LinearStage(CycloidStage):
     def _gaps(
         self, deviated: Deviated, disc: int, phis: Array, aside: Array | None, at: tuple[Complex, Places]
     ) -> tuple[Array, Array, Complex]:
-        """The same of some pins at a disc that is displaced (trials,), without errors of pitch."""
+        """The same for some pins at a disc that is displaced (trials,), without errors of pitch."""
         profile, (moved, pins) = self.profile, at
         u, azimuths = self._parameters(phis + self.throws[disc])[:, pins], self._azimuths[pins]
         normal = self._normals(u, azimuths)
@@ -158,7 +158,7 @@ class LinearStage(CycloidStage):
         return gap, -profile.lever(u), normal
 
     def _of_linkage(self, found: Deviated, phis: Array, disc: Places, push: Complex) -> None:
-        """Write the rates of what places a disc: `push` is that of its displacement (rows,) in the world."""
+        """Write the rates of a disc's placement: `push` is that of its displacement (rows,) in the world."""
         rows, profile = np.arange(len(phis)), self.profile
         carrier, throw = np.exp(-1j * phis / profile.lobes), np.exp(1j * phis)
         moment = 1j * self.crank_directions / (self.crank_circle * self.cranks) / self._giving
@@ -177,7 +177,7 @@ class LinearStage(CycloidStage):
 
     @property
     def _giving(self) -> float:
-        """1 + rho / Zc: by how much more a gap closes as the cranks turn with the carrier."""
+        """1 + rho / Zc: factor by which a gap closes more as the cranks turn with the carrier."""
         return 1.0 + self.rolling / self.profile.lobes
 
     @property
@@ -198,13 +198,13 @@ class LinearStage(CycloidStage):
         return np.asarray((self.profile.cos_normal(u) - 1j * self.profile.sin_normal(u)) * np.exp(1j * azimuths))
 
     def _lobes(self, u: Array) -> Places:
-        """Which lobe lies there."""
+        """Lobe at each place of the profile."""
         return np.floor(u / self.profile.lobe_pitch).astype(np.int64) % self.profile.lobes
 
 
 @dataclass(frozen=True)
 class PlacedDisc:
-    """By what one disc is displaced and turned (trials,), before any turn of the crank.
+    """Displacement and turn of one disc (trials,), before any turn of the crank.
 
     Args:
         carried: displacement that goes round with the carrier, complex [mm].

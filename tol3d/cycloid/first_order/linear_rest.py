@@ -38,7 +38,7 @@ MOST_STEPS: Final = 120
 
 @dataclass(frozen=True)
 class Forces:
-    """Turns of rests, and what they change by as gaps open (rests, ...), by their forces; a sense is in them.
+    """Turns of rests, and their change as gaps open (rests, ...), by their forces; a sense is in them.
 
     Args:
         turns: of the carrier (rests,) [rad].
@@ -48,7 +48,7 @@ class Forces:
         disc_play, carrier_play: of diametral clearances (rests, cranks, discs) and (rests, cranks) [rad/mm].
         planets: of the least and most turn of each crank (rests, cranks, 2).
         gaps: of working pins there, others far off (rests, rows) [mm].
-        gives: by how much all parts would have to give for the build to fit (rests,) [mm].
+        gives: deformation of all parts that the build would need to fit (rests,) [mm].
     """
 
     turns: Array
@@ -181,5 +181,5 @@ class LinearRest(LinearStage):
 
     @property
     def _unknowns(self) -> int:
-        """The carrier's turn, places and turns of discs and cranks, and what all parts give."""
+        """The carrier's turn, places and turns of discs and cranks, and the deformation of all parts."""
         return 2 + 3 * (self.discs + self.cranks)

@@ -1,1 +1,1 @@
-"""What scenes say of RV reducers besides the kinds of gears."""
+"""Vocabulary of RV reducers in scenes, besides the kinds of gears."""

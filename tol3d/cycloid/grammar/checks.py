@@ -1,4 +1,4 @@
-"""What is most likely a slip in a scene of an RV reducer: discs ground far off, pins far off or into each other."""
+"""Warnings of probable slips in a scene of an RV reducer: discs ground far off, pins far off or overlapping."""
 
 import math
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ OF_DISCS_AND_CRANKS: Final = (
     BearingPlaySpec, CarrierBearingSpec, CarrierHoleSpec, CrankEccentricitySpec, DiscEccentricitySpec, DiscHoleSpec,
     LobePitchSpec, LobeProfileSpec,
 )  # fmt: skip
-"""Lengths by which lobes, discs, cranks and the carrier lie off."""
+"""Offsets of lobes, discs, cranks and the carrier, as lengths."""
 
 
 def implausible_grinding(scene: Scene) -> Iterator[Problem]:

@@ -23,7 +23,7 @@ Reducer = Annotated[Name, Field(description="the RV reducer")]
 
 
 class CycloidMeasureSpec(MeasureSpec):
-    """What is read of one."""
+    """A measure of an RV reducer."""
 
     of: Reducer
 
@@ -77,17 +77,17 @@ class CycloidPinsNearContactSpec(CycloidMeasureSpec):
 
     @property
     def taken(self) -> Literal["value", "min", "max", "range", "curve"]:
-        """What is taken."""
+        """Value taken over the positions."""
         return self.take or ("min" if self.over == "turn" else "value")
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a count at every position instead of one."""
+        """True if a trial gives a count at every position instead of one."""
         return self.taken == "curve"
 
     @property
     def several_positions(self) -> bool:
-        """Over a turn."""
+        """True: it is read over a turn."""
         return self.over == "turn"
 
 
@@ -97,7 +97,7 @@ Order = Annotated[int, Field(ge=1, le=MOST_ORDER)]
 
 
 class CycloidTransmissionErrorSpec(OutputAngleSpec):
-    """An angle: how far the output leads its nominal position while a load on it keeps pins and flanks in touch.
+    """An angle: lead of the output over its nominal position while a load on it keeps pins and flanks in touch.
 
     The output turns counter-clockwise. At one position it is counted from the nominal one; over a turn it is 0 at the
     first position.
@@ -133,7 +133,7 @@ class CycloidTransmissionErrorSpec(OutputAngleSpec):
         return self
 
     def _refuse_orders(self) -> None:
-        """Refuse orders of what has none, and such as the positions do not resolve."""
+        """Refuse orders of a measure without any, and those that the positions do not resolve."""
         if self.order is not None and self.take != "harmonic":
             raise refused("order", f"none beside take: {self.taken}; only a harmonic has an order", self.order)
         if self.orders is not None and self.take != "curve":
@@ -144,15 +144,15 @@ class CycloidTransmissionErrorSpec(OutputAngleSpec):
 
     @property
     def taken(self) -> Literal["value", "min", "max", "range", "harmonic", "curve"]:
-        """What is taken."""
+        """Value taken over the positions."""
         return self.take or ("range" if self.over == "turn" else "value")
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
         return self.taken == "curve"
 
     @property
     def several_positions(self) -> bool:
-        """Over a turn."""
+        """True: it is read over a turn."""
         return self.over == "turn"

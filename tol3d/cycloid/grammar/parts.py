@@ -32,7 +32,7 @@ NO_ANGLE = Quantity(0.0, "deg")
 
 
 class CycloidDiscSpec(PartSpec):
-    """A disc whose profile is the equidistant of a shortened epitrochoid, with what is ground off it for clearance."""
+    """A disc whose profile is the equidistant of a shortened epitrochoid, with its modification for clearance."""
 
     words: ClassVar[str] = "a cycloid disc"
 

@@ -1,4 +1,4 @@
-"""What others found of cycloid stages by formula."""
+"""Published figures of cycloid stages, computed by formula."""
 
 from collections.abc import Iterator, Mapping
 
@@ -49,7 +49,7 @@ class PublishedCycloidStage(Strict):
 
 
 class PublishedCycloidStages(PublishedFigures):
-    """What others found of cycloid stages by formula."""
+    """Published figures of cycloid stages, computed by formula."""
 
     cycloid_stages: Mapping[Name, PublishedCycloidStage] = Field(
         default_factory=dict, description="RV reducers of the scene"

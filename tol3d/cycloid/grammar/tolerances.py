@@ -20,7 +20,7 @@ class OfPart(ToleranceSpec):
     of: Name
 
     def references(self) -> tuple[Reference, ...]:
-        """What it is a tolerance of."""
+        """Reference to the toleranced part."""
         return (Reference(("of",), self.of, self.owners),)
 
 
@@ -57,7 +57,7 @@ class OfCarrier(OfPart):
 
 
 class BearingPlaySpec(OfPart):
-    """A length: the diametral clearance of each bearing, twice what an inner ring may lie off the middle of its hole.
+    """A length: the diametral clearance of each bearing, twice the offset of an inner ring from the middle of its hole.
 
     That is the radial internal clearance of ISO 5753-1, which is stated on the diameter, as it is left when fitted. Of
     a disc it is the bearing of each eccentric in it, of a carrier that of each crankshaft. Less than 0 is none.
@@ -168,7 +168,7 @@ class LobePitchSpec(OfDisc):
 
 
 class LobeProfileSpec(OfDisc):
-    """A length: each lobe has so much more material along the normal; each one's own deviation, on every disc."""
+    """A length: excess material of each lobe along the normal; each one's own deviation, on every disc."""
 
     words: ClassVar[str] = "profiles of lobes"
 

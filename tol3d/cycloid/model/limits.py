@@ -30,11 +30,11 @@ FLAT: Final = 1e-12  # of a distance's second derivative; keeps the step finite
 
 @dataclass(frozen=True)
 class Fault:
-    """Why a disc cannot be made or run.
+    """Reason why a disc cannot be made or run.
 
     Args:
         field: of DiscProfile, or of its Modification, that is at fault.
-        words: what was expected, what came, and what would do.
+        words: what was expected, what came, and the remedy.
     """
 
     field: str
@@ -42,7 +42,7 @@ class Fault:
 
 
 def lobes_fault(lobes: int, pins: int) -> Fault | None:
-    """Why a disc of so many lobes does not run among so many pins; nothing where it does.
+    """Fault of a disc with this number of lobes among the pins; None if it runs.
 
     >>> lobes_fault(38, 40).words
     'expected 39 lobes, one fewer than the 40 pins, got 38; or take 39 pins'
@@ -72,7 +72,7 @@ def largest_window(profile: DiscProfile) -> float:
 
 
 def faults(profile: DiscProfile) -> Iterator[Fault]:
-    """What is wrong with a disc, each fault with the number that would do; nothing where it can be made and run."""
+    """Faults of a disc, each with the number that would do; none if it can be made and run."""
     for asked in (_sizes, _ring, _modified):
         found = list(asked(profile))
         yield from found
@@ -166,7 +166,7 @@ def _modified(profile: DiscProfile) -> Iterator[Fault]:
 
 
 def least_gap(profile: DiscProfile, circle_growth: float = 0.0, pin_growth: float = 0.0) -> float:
-    """Smallest gap [mm] between the lobes and their pins in the middle of their lost motion, at whatever crank angle.
+    """Smallest gap [mm] between the lobes and their pins in the middle of their lost motion, at any crank angle.
 
     Exact: pins stand on the path of their centres, and the nearest point of the profile is found. Flanks are alike, so
     no turn of the disc makes the smallest gap larger than this.
@@ -214,7 +214,7 @@ def _nearest(ground: DiscProfile, ends: tuple[float, float], places: Array) -> A
 
 
 def _below(limit: float) -> str:
-    """A limit, rounded down, so that what is printed keeps to it."""
+    """A limit, rounded down, so that the printed value keeps to it."""
     return f"{math.floor(limit * 1e4) / 1e4:.4f}"
 
 
@@ -231,7 +231,7 @@ def lobe_reach(profile: DiscProfile) -> float:
 
 
 def circle_fault(profile: DiscProfile, cranks: int, radius: float) -> Fault | None:
-    """Why crankshafts do not go through the discs on a circle of this radius [mm]; nothing where they do.
+    """Fault of crankshafts on a circle of this radius [mm], which do not go through the discs; None if they do.
 
     Their holes are wider than twice the eccentricity, for an eccentric reaches round its crankshaft's axis.
 

@@ -22,7 +22,7 @@ from tol3d.numerics.plane import as_points
 
 @dataclass(frozen=True)
 class Modification:
-    """By how much the grinding departs from the profile that touches every pin.
+    """Modification of the ground profile against the one that touches every pin.
 
     First-order clearance between a flank and its pin, along the normal, at the phase t of the pin:
     offset - shift cos(alpha) + rotation |lever|, where cos(alpha) = (1 - K cos t) / sqrt(1 + K^2 - 2 K cos t) is that
@@ -112,12 +112,12 @@ class DiscProfile:
 
     @property
     def tip_radius(self) -> float:
-        """Of the circle through the tips of the lobes [mm], but for the corner that a rotation leaves there."""
+        """Radius of the circle through the tips of the lobes [mm], but for the corner that a rotation leaves there."""
         return self.ground.pin_circle_radius + self.eccentricity - self.ground.pin_radius
 
     @property
     def root_radius(self) -> float:
-        """Of the circle through the roots [mm], but for the corner that a rotation leaves there."""
+        """Radius of the circle through the roots [mm], but for the corner that a rotation leaves there."""
         return self.ground.pin_circle_radius - self.eccentricity - self.ground.pin_radius
 
     # forces ---------------------------------------------------------------------------------------------
@@ -129,7 +129,7 @@ class DiscProfile:
     def lever(self, u: ArrayLike) -> Array:
         """Lever of a pin's force about the disc's axis [mm], positive where it turns the disc counter-clockwise.
 
-        rc' sin t / sqrt(1 + K^2 - 2 K cos t), from -rc' to rc'; the gap at the pin closes by so much per radian that
+        rc' sin t / sqrt(1 + K^2 - 2 K cos t), from -rc' to rc'; the gap at the pin closes by that much per radian as
         the disc turns clockwise.
         """
         t = self.phase(u)

@@ -15,7 +15,7 @@ class DiscHoles:
     """Holes through a disc, on a circle about its axis but for its bore.
 
     Args:
-        cranks: how many bearing holes, at equal angles, the first on +x; windows lie midway between them.
+        cranks: number of bearing holes, at equal angles, the first on +x; windows lie midway between them.
         circle_radius: where holes and windows have their centres [mm].
         crank_diameter: of the bearing holes [mm].
         window_diameter: of the windows that the carrier's posts pass [mm]; 0 for none.
@@ -116,7 +116,7 @@ class Carrier(BuiltShape):
     """Two flanges about z on either side of z = 0, joined by posts midway between the cranks. Lengths in mm.
 
     Args:
-        cranks: how many holes for cranks, the first on +x, and as many posts.
+        cranks: number of holes for cranks, the first on +x, and of posts.
         circle_radius: of the axes of holes and posts.
         hole_diameter, post_diameter, bore_diameter: a bore of 0 is none, posts of 0 leave the lower flange.
         flange_diameter, flange_width: of either flange.
@@ -151,7 +151,7 @@ class LobeStrips:
 
     @property
     def chord_error(self) -> float:
-        """Of either [mm]."""
+        """Chord error of either shape [mm]."""
         return self.right.chord_error
 
 

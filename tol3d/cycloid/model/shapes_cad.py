@@ -98,7 +98,7 @@ def knots(profile: DiscProfile) -> Array:
 
 
 def _graded(profile: DiscProfile, intervals: int) -> Array:
-    """So many steps from end to end of the flank, each of the same integral of du / w."""
+    """Steps from end to end of the flank, each with the same integral of du / w."""
     ground = profile.ground
     looked_at = np.linspace(*profile.flank_ends, LOOKED_AT + 1)
     density = 1.0 / ground.path_speed(looked_at)

@@ -1,4 +1,4 @@
-"""A cycloid stage without bearing play, and what its parts deviate by in some trials, as both methods get them."""
+"""A cycloid stage without bearing play, and the deviations of its parts in some trials, for both methods."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -78,7 +78,7 @@ class CycloidStage:
 
     @classmethod
     def of(cls, own: Any) -> Self:
-        """That of a reducer, or of another method."""
+        """Stage of a reducer, or of another method."""
         return cls(own.profile, own.discs, own.cranks, own.crank_circle, own.rolling, own.window)
 
     @property
@@ -89,14 +89,14 @@ class CycloidStage:
 
 @dataclass(frozen=True)
 class Play:
-    """What lets discs and cranks of a stage move.
+    """Play of the discs and cranks of a stage.
 
     Args:
         disc: diametral clearance of each throw in its disc (trials, cranks, discs) [mm], or what broadcasts to it.
         carrier: the same of each crank in the carrier (trials, cranks) [mm].
         crank: least and most turn that the first stage leaves each crank in the middle of its bearing (trials,
             positions, cranks, 2) [rad], or what broadcasts to it.
-        leaving: by how much both change for a crank that lies off by 1 mm round the carrier, and outwards [rad/mm]:
+        leaving: change of both for a crank that lies off by 1 mm round the carrier, and outwards [rad/mm]:
             flanks lean, so that outwards there is more room either way.
     """
 
@@ -108,7 +108,7 @@ class Play:
 
 @dataclass(frozen=True)
 class Touching:
-    """Which pins stop the carrier, and where.
+    """Pins that stop the carrier, and the carrier's turns there.
 
     Args:
         turns: the carrier's beyond -phi / Zc (trials, positions) [rad], counter-clockwise, of the exact method by sense

@@ -1,4 +1,4 @@
-"""How RV reducers are shown: what a scene's reducer is."""
+"""Presentation of RV reducers: the data of a scene's reducer."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -23,11 +23,11 @@ class CycloidPresenter(GearPresenter):
     """The presenter of RV reducers; see `tol3d.report.presenter.Presenter`."""
 
     def sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
-        """Its cycloid stage by formula, published and by first principles, and what a negative lost motion means."""
+        """Its cycloid stage by formula, published and by first principles, and the sense of a negative lost motion."""
         return (*_lazily("formulas").below_zero(summary), *self.link_sections(summary))
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
-        """What the reducer is, then what any system shows."""
+        """Data of the reducer, then the items of any system."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":
@@ -41,11 +41,11 @@ class CycloidPresenter(GearPresenter):
     # reducers in trains -------------------------------------------------------------------------------
 
     def link_blocks(self, link: "StatedLink", contributors: "Sequence[Contributor]") -> "Sequence[PageItem]":
-        """What a reducer is; see ShowsLinks."""
+        """Data of a reducer; see ShowsLinks."""
         return _lazily("tables").link_blocks(link, contributors)  # type: ignore[no-any-return]
 
     def link_sections(self, summary: "RunSummary") -> "Sequence[PageItem]":
-        """Cycloid stages by formula, and what a negative play of one in a train means; see ShowsLinks."""
+        """Cycloid stages by formula, and the meaning of a negative play of one in a train; see ShowsLinks."""
         return _lazily("formulas").link_sections(summary)  # type: ignore[no-any-return]
 
     def shown_link(self, link: "StatedLink", seen: "LinkTrials", world_from_driver: "Array") -> "ShownLink":

@@ -41,7 +41,7 @@ def motion(shown: ShownReducer, world: World, name: str, frames: int | None) -> 
 
     Args:
         world: its parts, all pins as one body.
-        frames: how many; None: FRAMES.
+        frames: their number; None: FRAMES.
 
     Raises:
         InputError: no pin touches.
@@ -68,7 +68,7 @@ def _frames(shown: ShownReducer, states: Sequence[SeatedReducer], name: str) -> 
 
 
 def touching_words(state: SeatedReducer, angle: float) -> str:
-    """What touches; between the ends of a swing nothing does, or both sides overlap where it goes back (below 0)."""
+    """Contacts in words; between the ends of a swing there are none, or both sides overlap (below 0)."""
     if state.touching is not None:
         disc, pin = state.touching
         return f"disc {disc + 1} touches pin {pin + 1}"
@@ -76,7 +76,7 @@ def touching_words(state: SeatedReducer, angle: float) -> str:
 
 
 def _shots(shown: ShownReducer, world: World, states: Sequence[SeatedReducer]) -> Iterator[Shot]:
-    """Each disc among the pins with its cranks; then what touches, close up."""
+    """Each disc among the pins with its cranks; then the contacts, close up."""
     points = np.concatenate([body.mesh[0] for body in world.bodies])
     everything = around(points, np.zeros(3), FRONT, UP)
     cranks = tuple(f"crank {number + 1}" for number in range(shown.own.cranks))
@@ -199,7 +199,7 @@ def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> 
 
 
 def _names(own: RVSet) -> Callable[[str], str]:
-    """Of bodies in a train, by the names of parts of the scene; several alike are counted."""
+    """Names of bodies in a train, after the parts of the scene; several alike are numbered."""
     first = {} if own.first is None else {"sun": own.first.sun, "planet": own.first.planet}
     known = {"pin ring": own.ring, "carrier": own.carrier, "disc": own.disc, "crank": own.crankshaft, **first}
 

@@ -1,4 +1,4 @@
-"""What a scene's RV reducer is, in tables."""
+"""Tables of a scene's RV reducer."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,14 +21,14 @@ ARC_SECONDS: Final = math.degrees(1.0) * 3.6  # that 1 um turns what is 1 mm awa
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Ratio, profile, levers and transmission error by formula, then what any system shows."""
+    """Ratio, profile, levers and transmission error by formula, then the items of any system."""
     system = simulation.system
     assert isinstance(system, RVSystem)
     return (*_nominal(system.own, system.acts, system.contributors), *system_blocks(simulation))
 
 
 def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    """The same of a reducer in a train, without what any system shows."""
+    """The same of a reducer in a train, without the items of any system."""
     assert isinstance(link, RVLink)
     return _nominal(link.own, link.acts, contributors)
 

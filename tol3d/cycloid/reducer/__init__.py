@@ -1,1 +1,1 @@
-"""The RV reducer: its first stage before its cycloid stage, and what is read of it."""
+"""The RV reducer: its first stage before its cycloid stage, and its measures."""

@@ -1,4 +1,4 @@
-"""What contributors do to an RV reducer: deviations of its cycloid stage, and of the gears before it."""
+"""Effects of contributors on an RV reducer: deviations of its cycloid stage, and of the gears before it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,10 +23,10 @@ Along = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Acts:
-    """What a contributor acts on.
+    """Effect of a contributor on the reducer, and its factor.
 
     Args:
-        factor: what the deviation counts for, such as 1/cos(alpha) of a thickness along the normals.
+        factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
     """
 
     effect: Effect
@@ -35,7 +35,7 @@ class Acts:
 
 @dataclass(frozen=True)
 class RVDeviated(TrialArrays):
-    """Deviations of an RV reducer (trials, ...), or what something changes by per deviation.
+    """Deviations of an RV reducer (trials, ...), or derivatives by each deviation.
 
     Args:
         stage: of pins, discs, cranks and carrier.
@@ -72,7 +72,7 @@ class RVDeviated(TrialArrays):
         )
 
     def add(self, acts: Acts, components: Array) -> None:
-        """Add what a contributor does.
+        """Add the effect of a contributor.
 
         Args:
             components: of the contributor (trials, components) [mm or rad].
@@ -81,7 +81,7 @@ class RVDeviated(TrialArrays):
         into += acts.factor * along(components)
 
     def term(self, acts: Acts, components: Array) -> Array:
-        """What a contributor changes (trials,), where this is the change per deviation.
+        """Change due to a contributor (trials,), where this is the change per deviation.
 
         Args: as of `add`.
         """
@@ -89,7 +89,7 @@ class RVDeviated(TrialArrays):
         return np.asarray(acts.factor * (rates * along(components)).reshape(len(rates), -1).sum(axis=1))
 
     def _reached(self, effect: Effect) -> tuple[Array, Along]:
-        """The array that an effect reaches, and what of it a contributor's components are."""
+        """The array that an effect reaches, and the part of it that a contributor's components are."""
         stage = self.stage
         reached: dict[Effect, tuple[Array, Along]] = {
             "pin circle": (stage.pins[..., 0], _alike),

@@ -1,4 +1,4 @@
-"""What each tolerance of an RV reducer acts on, and how its components are drawn."""
+"""Effect of each tolerance on an RV reducer, and the draw of its components."""
 
 import math
 from typing import Any
@@ -46,10 +46,10 @@ OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec, BearingP
 
 
 def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
-    """What a tolerance acts on.
+    """Effect of a tolerance on the reducer.
 
     Raises:
-        SceneError: nothing of an RV reducer, or what is not told.
+        SceneError: it acts on nothing of an RV reducer, or on something not stated.
     """
     if isinstance(spec, DiscTiltSpec) and own.width is None:
         words = f"expected the width of the disc, over which it tilts by {name!r}, such as 'width: 20 mm'; got none"
@@ -86,7 +86,7 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | E
 
 
 def draw_of(own: RVSet, acts: Acts, law: Distribution) -> Draw:
-    """How the components of a contributor are drawn."""
+    """Draw of the components of a contributor."""
     discs = _numbered("disc", own.discs)
     pins, cranks = _numbered("pin", own.profile.pins), _numbered("crank", own.cranks)
     names: dict[Effect, tuple[str, ...]] = {

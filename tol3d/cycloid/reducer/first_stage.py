@@ -1,4 +1,4 @@
-"""The first stage of an RV reducer: how far planets turn on a sun that stands, and so their cranks.
+"""The first stage of an RV reducer: turns of planets on a standing sun, and so of their cranks.
 
 Discs hold the throws of all cranks parallel, so that they turn together as far as the first planet lets them: load
 paths in parallel, of which one carries. A phase of a crank is a turn of its planet. Both methods find the turn beyond
@@ -23,13 +23,13 @@ from tol3d.numerics.plane import as_complex, as_points
 OneMesh = Callable[[RVSet, RVDeviated, Array, int, Flank], Array]
 
 ROUNDS: Final = 2
-"""How often a planet is turned; each time leaves its eccentricity over its base radius of the error of the last."""
+"""Iterations of a planet's turn; each multiplies the error by its eccentricity over its base radius."""
 
 
 def crank_turns(
     own: RVSet, deviated: RVDeviated, turns: Array, sense: float, one_mesh: OneMesh
 ) -> tuple[Array, Places]:
-    """How far the throws turn beyond their place (trials, positions) [rad], and which planet stops them.
+    """Turn of the throws beyond their place (trials, positions) [rad], and the planet that stops them.
 
     Args:
         turns: of the output (trials, positions) or (1, positions).
@@ -45,7 +45,7 @@ def crank_turns(
 
 
 def throw_turn(own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, one_mesh: OneMesh) -> Array:
-    """How far one crank's throws turn (trials, positions) [rad]: its planet, which they lead by their phase."""
+    """Turn of one crank's throws (trials, positions) [rad]: its planet's, which they lead by their phase."""
     return one_mesh(own, deviated, turns, crank, flank) + deviated.stage.crank_phases[:, crank, None]
 
 
@@ -58,11 +58,11 @@ def held_stage(own: RVSet, deviated: RVDeviated) -> Deviated:
 def placed_mesh(
     own: RVSet, deviated: RVDeviated, turns: Array, crank: int, flank: Flank, carried: float | Array = 0.0
 ) -> Array:
-    """How far one planet turns (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
+    """Turn of one planet (trials, positions) [rad] until its flank touches the sun's, gears as they lie.
 
     Args:
         own, deviated, turns, crank, flank: see OneMesh.
-        carried: how far the carrier has turned beyond its place while the sun stands (trials, positions) [rad]. 100 arc
+        carried: turn of the carrier beyond its place while the sun stands (trials, positions) [rad]. 100 arc
             seconds turn an eccentricity of 10 um by 5 nm.
     """
     pair, shape = own.pair, (len(deviated.sun_thickness), turns.shape[1])
@@ -110,14 +110,14 @@ def first_order_mesh(own: RVSet, deviated: RVDeviated, turns: Array, crank: int,
 def add_rates(
     own: RVSet, rates: RVDeviated, turns: Array, planets: Places, flank: Flank, factor: float | Array
 ) -> None:
-    """Add what the first planet's turn changes by per deviation, times a factor.
+    """Add the derivatives of the first planet's turn by each deviation, times a factor.
 
     Args:
         rates: of the trials; written.
         turns: of the output (trials,).
         planets: which planet stops the cranks (trials,).
         flank: of the sun.
-        factor: what a turn of the cranks counts for, alike or of each trial.
+        factor: of a turn of the cranks, one or by trial.
     """
     if own.first is None:
         return
@@ -139,17 +139,17 @@ def add_rates(
 
 
 def angles(own: RVSet, turns: Array, crank: int) -> tuple[Array, Array]:
-    """Turns of sun and planet in the frame of their mesh [rad], where the output has made so many turns."""
+    """Turns of sun and planet in the frame of their mesh [rad], at turns of the output."""
     sun = _sun_angle(own, turns) - own.azimuths[crank]
     return sun, own.pair.driven_angle(sun)
 
 
 def _sun_angle(own: RVSet, turns: Array) -> Array:
-    """Of the sun against the carrier [rad], whole turns after which the planets stand as before left out."""
+    """Angle of the sun against the carrier [rad], less whole turns after which the planets stand as before."""
     return np.asarray(2 * math.pi * np.mod(float(own.gear_ratio * own.profile.pins) * turns, own.gear_ratio.numerator))
 
 
 def _carried(own: RVSet, deviated: RVDeviated, crank: int) -> Complex:
-    """By how much a crank's axis lies off its place (trials,) in the frame of its mesh [mm]."""
+    """Offset of a crank's axis from its place (trials,) in the frame of its mesh [mm]."""
     off = as_complex(deviated.stage.carrier_offsets) + as_complex(deviated.stage.carrier_holes[:, crank])
     return np.asarray(off * np.exp(-1j * own.azimuths[crank]))

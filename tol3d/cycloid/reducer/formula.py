@@ -36,7 +36,7 @@ class SineSum:
     of the circle, where the midpoint rule converges beyond all powers.
 
     Args:
-        normal: standard deviation of what is normal.
+        normal: standard deviation of the normal part.
         length: standard deviation of the normal length that the sine multiplies.
 
     >>> round(SineSum(0.0, 1.0).sigma, 6)
@@ -95,7 +95,7 @@ RUN_OUT_SIGMAS: Final = 6.0  # a run-out in standard deviations of one component
 
 @dataclass(frozen=True)
 class Term:
-    """What one source does to the output's angle.
+    """Effect of one source on the output's angle.
 
     Args:
         source: of the deviation.
@@ -199,7 +199,7 @@ def sun_held_factor(lobes: int, sun_teeth: int, planet_teeth: int) -> float:
 
 
 def _paper_variance(source: Source, size: float, profile: DiscProfile) -> float:
-    """Of one source by the paper's formula (reconstructed) [rad^2].
+    """Variance of one source by the paper's formula (reconstructed) [rad^2].
 
     D = (dr^2 + du^2 + 2 dk^2 + 4 dt^2) / (36 rp^2) + (K^2 dw^2 + df^2) / (9 rc'^2), with the run-outs of disc r and
     crank u, pin circle radius k, pin pitch t, disc pitch w and profile f; of the carrier (d/6)^2 + (d/18)^2 over rc'^2.
@@ -229,12 +229,12 @@ SOURCES: Final[Mapping[str, Source]] = {
     "carrier circle": "carrier hole centre",
     "carrier offset": "main bearing run-out",
 }
-"""By what a contributor acts on."""
+"""Source of a contributor in the formula, by its effect."""
 
 
 @dataclass(frozen=True)
 class PaperSources:
-    """What of a scene goes into the formula.
+    """Input of the formula from a scene.
 
     Args:
         tolerances: of each source [mm], so large that it scales back to the scene's standard deviations; the root sum
@@ -247,7 +247,7 @@ class PaperSources:
 
     @classmethod
     def of(cls, contributors: Iterable[tuple[str, str, float]]) -> "PaperSources":
-        """From each contributor's name, what it acts on, and the standard deviation of one component [mm]."""
+        """Sources from each contributor's name, its effect, and the standard deviation of one component [mm]."""
         found: dict[Source, float] = {}
         left_out = []
         for name, effect, sigma in contributors:
@@ -266,7 +266,7 @@ THREE_SIGMA: Final = 3.0 * math.degrees(1.0) * 3600.0  # arc seconds a radian of
 def stages_by_formula(
     own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]
 ) -> Mapping[str, CycloidStageSummary]:
-    """That of a reducer by its name; nothing where the formula knows none of its contributors."""
+    """Summary of a reducer's stage by its name; nothing if the formula knows none of its contributors."""
     first = own.first
     drawn = ((each.name, acts[each.name].effect, each.draw.sigma) for each in contributors)
     sources = PaperSources.of(drawn)

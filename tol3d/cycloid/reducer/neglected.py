@@ -1,4 +1,4 @@
-"""What the analytic method of an RV reducer neglects: the path of pin centres bends.
+"""Terms that the analytic method of an RV reducer neglects: the path of pin centres bends.
 
 The method takes every gap along the normal of the place where the pin nominally is. Deviations, the turn and the
 profile's shift put the pin D off that place along the path, whose curvature kappa then leaves kappa D^2/2 more. Near
@@ -40,7 +40,7 @@ class BentStage(LinearStage):
     def _bends(
         self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, pins: Places, turns: Array
     ) -> Array:
-        """What the bend adds to turns of one disc (trials, pins) [rad]."""
+        """Contribution of the bend to the turns of one disc (trials, pins) [rad]."""
         profile, azimuths = self.profile, self._azimuths[pins]
         phases = phis + self.throws[disc]
         towards = profile.eccentricity * np.exp(1j * phases)[:, None]
@@ -61,7 +61,7 @@ BEND: Final = "the bend of flanks, and which pin touches"
 
 @dataclass(frozen=True)
 class BentTurning(LinearTurning):
-    """To first order, with the bend of the path of each pin, and with cranks as the first stage leads them."""
+    """First-order turning with the bend of the path of each pin, and with cranks as the first stage leads them."""
 
     @property
     def stage(self) -> LinearStage:
@@ -74,7 +74,7 @@ class BentTurning(LinearTurning):
 
 
 def neglected(system: RVTrials, measure: RVMeasure, trials: Trials) -> Mapping[str, Array]:
-    """By how much what is left out changes a measure, in its unit: (trials,) by its words; of a curve nothing."""
+    """Effect of the neglected terms on a measure, in its unit: (trials,) by its words; of a curve nothing."""
     if measure.take == "curve" or system.own.plays:
         return {}
     bent, straight = (_taken(system, measure, trials, method(system.own)) for method in (BentTurning, LinearTurning))

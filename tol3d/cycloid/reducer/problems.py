@@ -1,4 +1,4 @@
-"""Why an RV reducer cannot be studied: parts interfere at the mean build, or bearings have less play than none."""
+"""Reasons why an RV reducer cannot be studied: parts interfere at the mean build, or a bearing has negative play."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
@@ -19,7 +19,7 @@ def problems_at(
     """Lobes and pins that overlap with every contributor at its mean, and first stages without backlash there.
 
     Args:
-        acts: what contributors act on, by their names.
+        acts: effect of each contributor, by its name.
     """
     for contributor in contributors:
         mean = contributor.draw.mean(turning=False)[0]

@@ -54,7 +54,7 @@ def regress_touching(
 
 
 def _senses(measure: RVMeasure) -> tuple[tuple[int, float], ...]:
-    """Which turns a measure reads, and how they count."""
+    """Turns that a measure reads, and their signs."""
     return ((1, 1.0), (-1, -1.0)) if measure.reading == "lost motion" else ((measure.sense, 1.0),)
 
 

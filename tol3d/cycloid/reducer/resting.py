@@ -1,4 +1,4 @@
-"""How far the output of an RV reducer turns whose bearings have play, by each method: until a torque on it rests.
+"""Output turn of an RV reducer with bearing play, by each method: until a torque on it rests.
 
 Cranks are taken where first contact without play would have them (see turning.py), and may turn from there between both
 flanks of their planets. The flank that holds all cranks holds; where a planet's other flank overlaps, as of a tight
@@ -53,7 +53,7 @@ def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forc
 
 
 def _of_planets(own: RVSet, found: RVDeviated, turns: Array, forces: Forces) -> None:
-    """Of teeth; where planets lie is that of the cranks, whose bearings hold them."""
+    """Add the rates of the teeth; planets lie where the cranks do, whose bearings hold them."""
     for crank in range(own.cranks):
         planets = np.full(len(turns), crank)
         for side, flank in enumerate((RIGHT, LEFT)):
@@ -100,12 +100,12 @@ MEANS: Final = {OK: OK, NO_ROOM: NO_FIT, STALLED: NO_REST, NOT_HELD: NO_CONTACT}
 
 @dataclass(frozen=True)
 class ExactResting:
-    """In finite geometry."""
+    """Rest of a reducer in finite geometry."""
 
     own: RVSet
 
     def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
-        """See Turning; where it rests, and the pin that carries most."""
+        """See Turning; rest position, and the pin that carries most."""
         own = self.own
         beta, planets = crank_turns(own, deviated, turns, sense, placed_mesh)
         play = play_of(own, deviated, turns, beta, placed_mesh)
@@ -121,7 +121,7 @@ class ExactResting:
 
 
 def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mesh: OneMesh) -> Play:
-    """Of a reducer's bearings and planets, where its cranks stand by beta (trials, positions) ahead."""
+    """Play of a reducer's bearings and planets, with its cranks beta (trials, positions) ahead."""
     disc = np.maximum(np.swapaxes(deviated.disc_play, 1, 2), 0.0)
     carrier = np.maximum(deviated.carrier_play, 0.0)
     free = np.zeros((*beta.shape, own.cranks, 2))
@@ -138,7 +138,7 @@ def play_of(own: RVSet, deviated: RVDeviated, turns: Array, beta: Array, one_mes
 
 @dataclass(frozen=True)
 class LinearResting:
-    """To first order."""
+    """Rest of a reducer to first order."""
 
     own: RVSet
 
@@ -162,7 +162,7 @@ class LinearResting:
         return Turned(found - beta / own.crank_arm, places, planets, counted, shifted)
 
     def rates(self, deviated: RVDeviated, turns: Array, sense: int) -> RVDeviated:
-        """What the turn of trials at turns of the output (trials,) changes by per deviation, by the forces at rest."""
+        """Derivatives of the turn at output turns (trials,) by each deviation, from the forces at rest."""
         own, at, rates = self.own, turns[:, None], RVDeviated.nothing(self.own, len(turns))
         beta, _ = crank_turns(own, deviated, at, sense, first_order_mesh)
         phis = led_angles(own, at, beta)
@@ -175,7 +175,7 @@ class LinearResting:
         return rates
 
     def _forces(self, part: RVDeviated, phis: Array, play: Play, at: tuple[Places, int], sense: int) -> Forces:
-        """Of some trials (rows) at a position, given the play of all."""
+        """Forces of some trials (rows) at a position, given the play of all."""
         own, (rows, position) = self.own, at
         played = Play(play.disc[rows], play.carrier[rows], play.crank[rows, position], play.leaving)
         aside = None if own.width is None else part.disc_tilts * (own.width / 2)
@@ -183,17 +183,17 @@ class LinearResting:
 
 
 def exact_turning(own: RVSet) -> Turning:
-    """How the exact method turns a reducer."""
+    """Turning of a reducer by the exact method."""
     return ExactResting(own) if own.plays else ExactTurning(own)
 
 
 def linear_turning(own: RVSet) -> Turning:
-    """How the analytic method turns it."""
+    """Turning of a reducer by the analytic method."""
     return LinearResting(own) if own.plays else LinearTurning(own)
 
 
 def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, found: Turned, sense: int) -> RVDeviated:
-    """What the turn of trials at turns of the output (trials,) changes by per deviation, where they were found so."""
+    """Derivatives of the turn at output turns (trials,) by each deviation, at the contacts found."""
     if own.plays:
         return LinearResting(own).rates(deviated, turns, sense)
     return LinearTurning(own).rates(deviated.disc_tilts, turns, found, sense)

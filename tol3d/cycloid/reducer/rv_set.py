@@ -107,11 +107,11 @@ class RVSet:
 
     @cached_property
     def azimuths(self) -> Array:
-        """Of the cranks on the carrier (cranks,) [rad]."""
+        """Azimuths of the cranks on the carrier (cranks,) [rad]."""
         return evenly(self.cranks)
 
     def crank_angles(self, turns: Array) -> Array:
-        """Crank angles phi [rad] where the output has made so many turns."""
+        """Crank angles phi [rad] at turns of the output."""
         return np.asarray(-2 * math.pi * self.profile.lobes * turns)
 
     @property

@@ -22,7 +22,7 @@ NOWHERE: Final = -1
 
 @dataclass(frozen=True, eq=False)
 class SeatedReducer:
-    """At one moment.
+    """A reducer at one moment.
 
     Args:
         places: of all parts of the cycloid stage.
@@ -39,7 +39,7 @@ class SeatedReducer:
 
     @property
     def contact(self) -> Array | None:
-        """Where disc and pin touch (2,) [mm]: on the line from the pin to the pole of the disc's rolling."""
+        """Contact point of disc and pin (2,) [mm]: on the line from the pin to the pole of the disc's rolling."""
         if self.touching is None:
             return None
         disc, pin = self.touching
@@ -71,14 +71,14 @@ class ShownReducer:
 
     @cached_property
     def shapes(self) -> StageShapes:
-        """Of its parts."""
+        """Shapes of the reducer's parts."""
         first = self.own.first
         gears = None if first is None else (first.pair.pinion, first.pair.wheel)
         return usual_shapes(self.own.contact, self.width, self.crank_hole, gears)
 
     @cached_property
     def seated(self) -> SeatedReducer:
-        """Where the load turns the output back.
+        """Reducer with the output turned back by the load.
 
         Raises:
             InputError: no pin touches.
@@ -89,7 +89,7 @@ class ShownReducer:
         """Further on, in contact.
 
         Args:
-            beyond: turns of the output (positions,) from where it stands in the trial, nominally.
+            beyond: turns of the output (positions,) from its nominal position in the trial.
             sense: AHEAD where the output has turned counter-clockwise until a pin touches, or BACK.
 
         Raises:

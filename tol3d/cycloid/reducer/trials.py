@@ -1,4 +1,4 @@
-"""Measures and trials of an RV reducer, and the method that reads them; both methods differ in how far they turn it."""
+"""Measures and trials of an RV reducer, and the method that reads them; the methods differ in the turns of it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -38,12 +38,12 @@ class RVMeasure(PlainMeasure):
 
     @property
     def counts(self) -> bool:
-        """Whether pins near contact are counted."""
+        """True if pins near contact are counted."""
         return self.deflection is not None
 
     @property
     def sense(self) -> int:
-        """Which way a load turns the output: back (-1) where it resists."""
+        """Sense in which a load turns the output: back (-1) where it resists."""
         return -1 if self.reading == "drive" else 1
 
 
@@ -63,24 +63,24 @@ STATUSES: Final = Statuses(
 
 @dataclass(frozen=True)
 class RVTrials(OutputSystem):
-    """What a System of an RV reducer knows of trials.
+    """Trial part of the System of an RV reducer.
 
     Args:
-        acts: what each contributor acts on, by its name.
+        acts: effect of each contributor, by its name.
     """
 
     own: RVSet
     acts: Mapping[str, Acts]
 
     def deviated(self, trials: Trials) -> RVDeviated:
-        """What trials deviate by."""
+        """Deviations of the parts in trials."""
         found = RVDeviated.nothing(self.own, len(trials))
         for name, own in component_slices(self).items():
             found.add(self.acts[name], trials.deviations[:, own])
         return found
 
     def gap_bound(self, measure: Measure, error: float) -> float:
-        """What errors of all gaps [mm] may make of a measure, in its unit.
+        """Bound on the effect of errors of all gaps [mm] on a measure, in its unit.
 
         A working pin has a lever of the window's share at least. Of a lost motion both ends may be off, of a curve the
         position and the first one.
@@ -147,7 +147,7 @@ class RVMethod:
         return Answers(values, details=details, status=status)
 
     def _turned(self, measure: RVMeasure, deviated: RVDeviated, trials: Trials, sense: int, known: Curves) -> Turned:
-        """How far the output turns at a measure's positions; measures of the same share it."""
+        """Turn of the output at a measure's positions; measures with the same positions share it."""
         read = measure.positions, sense
         if not measure.counts and (shared := next((own for (key, _), own in known.items() if key == read), None)):
             return shared

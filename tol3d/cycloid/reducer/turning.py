@@ -1,4 +1,4 @@
-"""How far the output of an RV reducer turns, by each method.
+"""Output turn of an RV reducer, by each method.
 
 A crank turned by beta against the carrier's motion is a crank at another angle: with rho turns of the cranks a turn of
 the carrier while the input stands, exactly
@@ -27,7 +27,7 @@ from tol3d.numerics.arrays import Array, Places
 
 @dataclass(frozen=True)
 class Turned:
-    """How far the output turns.
+    """Turn of the output.
 
     Args:
         turns: beyond its nominal position (trials, positions) [rad], counter-clockwise; NaN where no pin touches.
@@ -50,19 +50,19 @@ class Turning(Protocol):
     """One method to it."""
 
     def turned(self, deviated: RVDeviated, turns: Array, sense: int, deflection: float | None = None) -> Turned:
-        """Until the first contact while the input stands.
+        """Turn the output until the first contact while the input stands.
 
         Args:
             turns: of the output (trials, positions) or (1, positions).
             sense: 1 counter-clockwise, -1 back.
-            deflection: pins are counted whose gap is at most so much [mm].
+            deflection: pins with at most this gap are counted [mm].
         """
         ...
 
 
 @dataclass(frozen=True)
 class ExactTurning:
-    """In finite geometry."""
+    """Turning in finite geometry."""
 
     own: RVSet
 
@@ -79,12 +79,12 @@ class ExactTurning:
 
 
 def output_turns(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Array, beta: Array) -> Array:
-    """How far the output turns (trials, positions) [rad] of which the cycloid stage turns a part.
+    """Turn of the output (trials, positions) [rad], given the part found for the cycloid stage.
 
     Args:
         own, deviated, turns, sense: see Turning.
-        found: that part.
-        beta: how far the cranks turn where the carrier is in its place. By its turn they turn less than a thousandth of
+        found: turn of the cycloid stage.
+        beta: turn of the cranks with the carrier in its place. By its turn they turn less than a thousandth of
             that more, which is nothing to the discs.
     """
     there = partial(placed_mesh, carried=found - beta / own.crank_arm)
@@ -92,7 +92,7 @@ def output_turns(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, fou
 
 
 def leans_of(own: RVSet, deviated: RVDeviated) -> Array | None:
-    """How discs lean (trials, discs, 3): see `leaning`; None where they lie flat."""
+    """Lean of the discs (trials, discs, 3): see `leaning`; None if they lie flat."""
     if own.width is None or not np.any(deviated.disc_tilts):
         return None
     return leaning(deviated.disc_tilts, own.width)
@@ -105,7 +105,7 @@ def led_angles(own: RVSet, turns: Array, beta: Array) -> Array:
 
 @dataclass(frozen=True)
 class LinearTurning:
-    """To first order."""
+    """Turning to first order."""
 
     own: RVSet
 
@@ -129,7 +129,7 @@ class LinearTurning:
         return led_angles(self.own, turns, beta) if turns.shape[1] == 1 else self.own.crank_angles(turns)
 
     def rates(self, tilts: Array, turns: Array, found: Turned, sense: int) -> RVDeviated:
-        """What the turn (trials,) changes by per deviation where these pins and planets touch.
+        """Derivatives of the turn (trials,) by each deviation with these pins and planets in contact.
 
         A tilt closes gaps whatever its sign: its rates are those on the side of the discs' tilts (trials, discs, 2).
         """

@@ -163,7 +163,7 @@ def about_z(angle: float) -> Array:
 
 
 MOST_POSITIONS: Final = 24
-"""Of a measure that a witness reads: a turn of 200 would take it a second a trial."""
+"""Largest number of positions of a measure that a witness reads: a turn of 200 would take it a second a trial."""
 ALLOWANCE: Final = 1.5e-5  # mm; what a gap may be off besides chords: FCL's cylinders by 8e-6, the solid by 1e-6
 
 

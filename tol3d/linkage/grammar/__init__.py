@@ -1,1 +1,1 @@
-"""What scenes may say of linkages."""
+"""Vocabulary of linkages in scenes."""

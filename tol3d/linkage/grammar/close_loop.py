@@ -40,7 +40,7 @@ COORDINATES: Final[Mapping[str, tuple[str, ...]]] = {
     "ball": (),
     "rolling": (),
 }
-"""What of a joint may be an input."""
+"""Coordinates of a joint that may be inputs."""
 
 
 class CloseLoopSpec(StatedMoveSpec):
@@ -112,7 +112,7 @@ class CloseLoopSpec(StatedMoveSpec):
             yield Use(("output", "from"), self.output.from_)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """Those that laws read."""
+        """Files that laws read."""
         yield from super().file_names()
         for name, own in self.inputs.items():
             for key, each in own.deviations.items():
@@ -196,12 +196,12 @@ class CloseLoopSpec(StatedMoveSpec):
                     raise refused(f"{at}.distribution", "angles, as the input is", "lengths")
 
     def coordinate_of(self, name: str) -> str:
-        """Which freedom of its joint an input is."""
+        """Freedom of its joint that is an input."""
         own = self.inputs[name]
         return own.coordinate or COORDINATES[self.joints[own.of].kind][0]
 
     def dimension_of(self, name: str) -> Literal["length", "angle"]:
-        """What an input is."""
+        """Dimension of an input."""
         return "length" if self.coordinate_of(name) == "slide" else "angle"
 
     def _refuse_unfit_poses(self) -> None:

@@ -1,4 +1,4 @@
-"""What moves a loop: inputs, how far off they are, and the poses that name them."""
+"""Inputs of a loop, their deviations, and the poses that name them."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -21,7 +21,7 @@ Coordinate = Literal["turn", "slide", "first", "second", "x", "y"]
 
 
 class InputDeviationSpec(Strict):
-    """By how much an input is off."""
+    """Deviation of an input."""
 
     words: ClassVar[str] = "a deviation of an input"
 
@@ -43,7 +43,7 @@ class InputDeviationSpec(Strict):
 
     @property
     def is_angle(self) -> bool:
-        """Whether it is one, not a length."""
+        """True if it is an angle, not a length."""
         return any(own.dimension == "angle" for own in self.distribution.quantities().values())
 
 
@@ -72,7 +72,7 @@ class InputSpec(Strict):
 
 
 class OutputSpec(Strict):
-    """What poses may name instead of inputs: the direction of an axis, or the place and turn of a feature."""
+    """Output that poses may name instead of inputs: the direction of an axis, or the place and turn of a feature."""
 
     words: ClassVar[str] = "an output"
 
@@ -93,14 +93,14 @@ class OutputSpec(Strict):
 
 
 class TiltPoseSpec(Strict):
-    """By the direction of the output."""
+    """Pose by the direction of the output."""
 
     tilt: Angle
     azimuth: Angle
 
 
 class PlacePoseSpec(Strict):
-    """By the place of the output, seen from where it is read."""
+    """Pose by the place of the output, in the frame from which it is read."""
 
     at: Vector
     turned: Annotated[tuple[Angle, Angle, Angle], three("three angles: a rotation vector")] | None = Field(
@@ -138,7 +138,7 @@ def _a_mapping(value: Any) -> Any:
 
 
 class _AnyOf:
-    """Mark of a union whose schema is `anyOf`: what a tag tells apart, two of its schemas may allow."""
+    """Mark of a union whose schema is `anyOf`: a value may match two schemas although a tag separates them."""
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
         found = dict(handler(schema))

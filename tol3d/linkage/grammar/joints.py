@@ -18,7 +18,7 @@ AXES = ("axis", "cylinder")
 
 
 class CentredFloatSpec(Strict):
-    """In the middle of the clearance."""
+    """Float in the middle of the clearance."""
 
     kind: Literal["centred"]
 
@@ -30,7 +30,7 @@ class RandomFloatSpec(Strict):
 
 
 class TowardFloatSpec(Strict):
-    """At the end of the clearance."""
+    """Float at the end of the clearance."""
 
     kind: Literal["toward"]
     along: Direction = Field(description="which way the part after lies, in the frame of the joint's first feature")
@@ -178,7 +178,7 @@ class SwingSpec(JointSpec):
 
 
 class RollingSpec(JointSpec):
-    """Two spherical gears: the one after tilts (1 + r1 / r2) times as far as what carries it, the same way, no spin."""
+    """Two spherical gears: the one after tilts (1 + r1 / r2) times as far as its carrier, the same way, no spin."""
 
     kind: Literal["rolling"]
     feature_kinds: ClassVar[tuple[str, ...]] = ("sphere",)

@@ -1,1 +1,1 @@
-"""How closed loops are shown: tables of their inputs, freedoms and poses; their workspace as a picture."""
+"""Presentation of closed loops: tables of their inputs, freedoms and poses; their workspace as a picture."""

@@ -1,4 +1,4 @@
-"""What a closed loop means without deviations, as tables."""
+"""Tables of a closed loop without deviations."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -25,7 +25,7 @@ CONDITION: Final = (
 
 
 def loop_blocks(move: ClosedLoop) -> Sequence[PageItem]:
-    """Joints and freedoms, inputs, poses, and what inputs and the output have to do with each other."""
+    """Joints and freedoms, inputs, poses, and the relation of inputs and output."""
     return (*_freedoms(move), *_poses(move), *_inverse(move), *_forward(move))
 
 
@@ -110,7 +110,7 @@ def _inverse(move: ClosedLoop) -> Sequence[PageItem]:
 
 
 def _forward(move: ClosedLoop) -> Sequence[PageItem]:
-    """The output by the inputs, over their ranges; those of the poses where none is said."""
+    """The output by the inputs, over their ranges; by default those of the poses."""
     if not move.inputs or len(move.inputs) > 2 or not _has_tilt(move.kinematics):
         return ()
     try:

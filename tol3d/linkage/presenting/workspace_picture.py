@@ -1,4 +1,4 @@
-"""The workspace of a loop as a picture: how far its output tilts, and how well its inputs hold it on the way there."""
+"""The workspace of a loop as a picture: the tilts that its output reaches, and the condition numbers on the way."""
 
 import csv
 import io
@@ -30,22 +30,22 @@ Array = NDArray[np.float64]
 RAYS: Final = 72
 PLACES: Final = 24
 VALUES: Final = 41
-"""Of each input, where the output does not tilt."""
+"""Number of values of each input, where the output does not tilt."""
 COARSE_RAYS: Final = 24
 COARSE_PLACES: Final = 10
-"""Of a picture of a measure's sigma, for which the assembly is made anew in each pose."""
+"""Places per ray in a picture of a measure's sigma, for which the assembly is computed anew in each pose."""
 DRAWS: Final = 2000
 
 
 @dataclass(frozen=True, eq=False)
 class WorkspaceMap:
-    """What a picture of a workspace shows.
+    """Data of a picture of a workspace.
 
     Args:
         move: the loop's name.
-        words: what is shown, with its unit.
-        workspace: where.
-        values: by ray and place.
+        words: quantity shown, with its unit.
+        workspace: its rays and places.
+        values: of the quantity, by ray and place.
     """
 
     move: str
@@ -84,7 +84,7 @@ class WorkspaceMap:
 
 @dataclass(frozen=True, eq=False)
 class InputMap:
-    """What a picture of condition numbers over inputs shows.
+    """Data of a picture of condition numbers over inputs.
 
     Args:
         move: the loop.
@@ -138,7 +138,7 @@ def workspace_map(
         simulation: of the scene.
         name: of the move.
         measure: whose sigma is shown, by first order; the condition number if not given.
-        activity: told what goes on.
+        activity: progress callback.
 
     Raises:
         InputError: its output does not tilt, or no such measure.
@@ -165,7 +165,7 @@ def workspace_map(
 
 
 def _sigmas(system: PosedSystem, move: ClosedLoop, workspace: Workspace, measure: str) -> Array:
-    """Of a measure in all poses of a workspace (rays, places), in its unit."""
+    """Sigma of a measure in all poses of a workspace (rays, places), in its unit."""
     scene = system.scene
     assert scene is not None
     spec = scene.moves[move.name]

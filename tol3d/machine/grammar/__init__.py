@@ -1,1 +1,1 @@
-"""What scenes say of gears in a housing besides the kinds of gears and of assemblies."""
+"""Vocabulary of gears in a housing, besides the kinds of gears and of assemblies."""

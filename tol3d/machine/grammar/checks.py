@@ -1,4 +1,4 @@
-"""What must hold across the entries of a scene of gears in a housing, and what is most likely a slip."""
+"""Checks across the entries of a scene of gears in a housing, and warnings of probable slips."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -22,7 +22,7 @@ from tol3d.scene.place import KeyPath
 Problem = tuple[KeyPath, str]
 
 MOST_JOINTS: Final = 12
-"""Of which a worst error asks both flanks: 4096 builds a trial and pose."""
+"""Largest number of joints of which a worst error tries both flanks: 4096 builds per trial and pose."""
 
 
 def laid_twice(scene: Scene) -> Iterator[Problem]:
@@ -54,7 +54,7 @@ def read_over_paths(scene: Scene) -> Iterator[Problem]:
 
 
 def laid_too_early(scene: Scene) -> Iterator[Problem]:
-    """Shafts in bores of parts that a later move places; each part is said once."""
+    """Shafts in bores of parts that a later move places; each part is reported once."""
     order = list(scene.moves)
     placing: dict[str, str] = {}
     for name, move in reversed(list(scene.moves.items())):

@@ -37,7 +37,7 @@ Angle = Annotated[Quantity, Of("angle")]
 
 
 def turn_name(move: str, joint: str) -> str:
-    """The hidden contributor of how far a joint turns beyond its input; scenes cannot name one so."""
+    """Name of the hidden contributor of a joint's turn beyond its input; scenes cannot use such a name."""
     return f".{move}.{joint} turn"
 
 
@@ -77,10 +77,10 @@ class MassSpec(Strict):
 
 
 class OpenChainSpec(StatedMoveSpec):
-    """Links in series, each turned against the one before by its input and, in its play, by what loads it.
+    """Links in series, each turned against the one before by its input and, in its play, by its load.
 
     A joint that gravity loads lies at that end of its play to which its torque turns it; one that nothing loads lies at
-    either end, by a draw of its own. The middle of the play is where the input says.
+    either end, by a draw of its own. The middle of the play is at the input.
     """
 
     words: ClassVar[str] = "a chain of links"
@@ -112,7 +112,7 @@ class OpenChainSpec(StatedMoveSpec):
         return tuple(self.poses)
 
     def references(self) -> tuple[Reference, ...]:
-        """Links, trains, and what masses are on."""
+        """Links, trains, and loaded parts."""
         found = []
         for name, joint in self.joints.items():
             for k, feature in enumerate(joint.between):
@@ -133,7 +133,7 @@ class OpenChainSpec(StatedMoveSpec):
                     yield Use(path, f"{part_of(joint.between[1])}.{own}", datum.kinds)
 
     def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
-        """Turns of the joints, which nobody draws; then flanks of those that nothing loads in some pose."""
+        """Turns of the joints, which are not drawn; then flanks of those that nothing loads in some pose."""
         hidden = Scalar(Constant(0.0))
         turns = (PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"]) for joint in self.joints)
         words = "the end of its play at which {} lies, for nothing loads it"

@@ -1,4 +1,4 @@
-"""How gears in a housing are shown: the trains, and the features and moves of the parts around them, in one world."""
+"""Presentation of gears in a housing: the trains, and the features and moves of the parts around them, in one world."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -24,7 +24,7 @@ class MachinePresenter(GearPresenter):
         return (*super().sections(summary), *ASSEMBLIES.sections(summary))
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
-        """Features and moves of the parts, gears, meshes, trains, and what any system shows."""
+        """Features and moves of the parts, gears, meshes, trains, and the items of any system."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def parts(self, simulation: "Simulation") -> "Sequence[PageItem]":

@@ -22,7 +22,7 @@ from tol3d.simulate import Replay
 from tol3d.system.stated import magnified
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")
-"""Of housings and other parts: greyer than those of shafts and their gears."""
+"""Colours of housings and other parts: greyer than those of shafts and their gears."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +67,7 @@ class ShownMachine:
         return replace(world, bodies=(*world.bodies, *bodies(placed, COLOURS)), points=points, one_file=True)
 
     def _world_from_parts(self, name: str) -> Array | None:
-        """Where the world of the parts lies in that of a train, or of a mesh; None where the train has no bores."""
+        """Pose of the world of the parts in that of a train, or of a mesh; None if the train has no bores."""
         layout = self.system.gears.model.layout
         if name in layout.root_of:
             root, own = layout.root_of[name], np.eye(4)

@@ -1,4 +1,4 @@
-"""What a scene of gears in a housing means, as tables."""
+"""Tables of a scene of gears in a housing."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -18,7 +18,7 @@ HELD: Final = "bores hold a shaft across its axis and against tilts; along it an
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Features and moves of the parts, shafts in their bores, gears and trains, and what any system shows."""
+    """Features and moves of the parts, shafts in their bores, gears and trains, and the items of any system."""
     system = simulation.system
     assert isinstance(system, MachineSystem)
     shafts, gears = shafts_table(system.bores), mechanics_blocks(system.gears.model)
@@ -39,7 +39,7 @@ def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
 
 
 def shafts_table(bores: Bores) -> Sequence[PageItem]:
-    """Where shafts lie: their bores, and how far along the shaft these are."""
+    """Table of the positions of shafts: their bores, and the bores' places along the shaft."""
     rows = [
         Row(
             own.shaft,

@@ -75,7 +75,7 @@ def mesh_efficiency(mesh: WorkingMesh, friction: float, sharing: Sharing = "form
 
 @dataclass(frozen=True)
 class Drive:
-    """Which members of a set are input, output and held."""
+    """Members of a set that are input, output and held."""
 
     input: str
     output: str
@@ -117,7 +117,7 @@ def balances(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive) -
 
 
 def efficiency(teeth: ToothSet, efficiencies: Mapping[str, float], drive: Drive) -> float:
-    """Of the set in one sense; at most 0 where it locks itself."""
+    """Efficiency of the set in one sense; at most 0 if it is self-locking."""
     found = balances(teeth, efficiencies, drive)
     return found[0].efficiency
 
@@ -159,14 +159,14 @@ def _torques(
 
 
 class Efficiencies(NamedTuple):
-    """Of a set, driven at the sun and driven at ring 2."""
+    """Efficiencies of a set, driven at the sun and driven at ring 2."""
 
     forward: float
     backward: float
 
 
 class MeshEfficiencies(NamedTuple):
-    """Of the meshes a (sun), b (ring 1), c (ring 2)."""
+    """Efficiencies of the meshes a (sun), b (ring 1), c (ring 2)."""
 
     a: float
     b: float

@@ -36,9 +36,9 @@ class Family:
     """One kind of set.
 
     Args:
-        words: what it is.
+        words: its name.
         order: in which its teeth are written.
-        drive: how it is driven.
+        drive: its input, output and held member.
         made: the set of such teeth.
         beside: teeth of the other gears of each set with a sun, (gears, sets) in that order; ratios, (sets,).
     """
@@ -114,7 +114,7 @@ def _beside_compound(sun: int, teeth: Teeth) -> tuple[Places, Array]:
 
 
 def _chosen(right: NDArray[np.bool_], *counts: Places) -> Places:
-    """Those of a grid that are right, (gears, sets)."""
+    """Valid places of a grid, (gears, sets)."""
     return np.stack([own[right] for own in np.broadcast_arrays(*counts)])
 
 
@@ -127,4 +127,4 @@ COMPOUND: Final = Family(
 )
 """A sun on step 1 of the planets, a ring on step 2; driven as a simple set."""
 FAMILIES: Final[Mapping[str, Family]] = {"3k": WOLFROM, "simple": SIMPLE, "compound": COMPOUND}
-"""By their names on the command line."""
+"""Families by their names on the command line."""

@@ -31,7 +31,7 @@ ITERATIONS: Final = 60  # of 330 that ended well on random sets none took 40, ne
 
 
 class Goal(StrEnum):
-    """What shifts are chosen for."""
+    """Goals of a choice of profile shifts."""
 
     SMALLEST = "smallest"
     FORWARD = "forward"
@@ -68,11 +68,11 @@ class Task:
     centre_distance: float | None = None
 
     def efficiency(self, own: ShiftedSet, drive: Drive) -> float:
-        """In the sense of a drive, with losses by the published formula of each mesh."""
+        """Efficiency in the sense of a drive, with losses by the published formula of each mesh."""
         return efficiency(self.teeth, own.mesh_efficiencies(self.friction), drive)
 
     def shifted(self, values: Array) -> ShiftedSet:
-        """Of the variables: centre distance over the module, shifts of the planets' steps."""
+        """Set at the values of the variables: centre distance over the module, shifts of the planets' steps."""
         return ShiftedSet(self.teeth, self.rack, float(values[0]) * self.rack.module, tuple(map(float, values[1:])))
 
     @property
@@ -198,5 +198,5 @@ def _margins(task: Task, values: Array) -> Array:
 
 
 def _kept(task: Task, values: Array) -> float:
-    """By how much the margin is kept that is kept least; negative where it is not."""
+    """Smallest margin of all limits; negative if one is not kept."""
     return task.shifted(values).worst(task.limits, task.planets).kept

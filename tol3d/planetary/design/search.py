@@ -14,14 +14,14 @@ from tol3d.planetary.model.tooth_set import ToothSet
 
 @dataclass(frozen=True)
 class Wish:
-    """What a set is wanted for.
+    """Requirements on a set.
 
     Args:
         ratio: speed of the input over that of the output; negative where they turn in opposite senses.
         tolerance: of the ratio, either way.
-        planets: how many, alike and at equal angles.
+        planets: number of identical planets at equal angles.
         teeth: numbers of teeth allowed.
-        goal: what profile shifts are chosen for.
+        goal: that of the choice of profile shifts.
         centre_distance: stated [mm], or None.
 
     Raises:
@@ -73,7 +73,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Fallen:
-    """Sets that fail one condition: how many, and why one of them does, the nearest to it."""
+    """Sets that fail one condition: their number, and the reason of the nearest one."""
 
     condition: str
     count: int
@@ -82,7 +82,7 @@ class Fallen:
 
 @dataclass(frozen=True)
 class Found:
-    """Candidates, nearest ratio first and small before large; what fell before them; how many were not looked at."""
+    """Candidates, nearest ratio first and small before large; those rejected before; number not looked at."""
 
     candidates: tuple[Candidate, ...]
     fallen: tuple[Fallen, ...]
@@ -93,10 +93,10 @@ def find(wish: Wish, most: int = 10) -> Found:
     """Candidates for a wish.
 
     Args:
-        most: so many candidates are found at most.
+        most: largest number of candidates.
 
     Raises:
-        GeometryError: none; with each condition in turn, how many sets it left out, and the nearest one's numbers.
+        GeometryError: none; with each condition in turn, the number of sets left out, and the nearest one's numbers.
     """
     with_ratio, nearest = wish.family.near(wish.ratio, wish.tolerance, wish.teeth)
     if not with_ratio:
@@ -140,7 +140,7 @@ def teeth_text(teeth: ToothSet) -> str:
 
 
 def in_order(teeth: ToothSet, of_gears: Mapping[str, float]) -> tuple[float, ...]:
-    """What gears have, by their names, in the order in which a family writes them: a sun, its planets, their rings."""
+    """Values of gears, by their names, in the order in which a family writes them: a sun, its planets, their rings."""
     names: list[str] = []
     for mesh in teeth.meshes:
         planet = step_name(teeth, mesh.step)

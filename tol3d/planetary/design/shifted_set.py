@@ -1,4 +1,4 @@
-"""A set at one centre distance: profile shifts without backlash in any mesh, and how far its teeth are from failing."""
+"""A set at one centre distance: profile shifts without backlash in any mesh, and the margins of its teeth."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -40,7 +40,7 @@ NO_CONTACT = 1.0  # rad; a margin that stands for tips whose circles do not cros
 
 @dataclass(frozen=True)
 class Limits:
-    """What the teeth of a set must keep.
+    """Limits on the teeth of a set.
 
     Args:
         tip_thickness: least arc at each tip circle [modules].
@@ -58,7 +58,7 @@ class Limits:
 
 
 class Margin(NamedTuple):
-    """Something that a limit holds: what, its value, the least allowed, its unit."""
+    """A limited quantity: its name, its value, the least allowed, its unit."""
 
     what: str
     value: float
@@ -67,19 +67,19 @@ class Margin(NamedTuple):
 
     @property
     def kept(self) -> float:
-        """By how much, negative where it is not."""
+        """Margin, negative if the limit is not kept."""
         return self.value - self.least
 
     @property
     def words(self) -> str:
-        """With its numbers."""
+        """Limit in words, with its numbers."""
         unit = f" {self.unit}" if self.unit else ""
         return f"{self.what}: {self.value:.4g}{unit}, at least {self.least:.4g}{unit} needed"
 
 
 @dataclass(frozen=True)
 class ShiftedSet:
-    """Tooth numbers, their rack, one centre distance, and how its shift sums are divided.
+    """Tooth numbers, their rack, one centre distance, and the division of its shift sums.
 
     Args:
         centre_distance: a [mm].
@@ -93,7 +93,7 @@ class ShiftedSet:
 
     @cached_property
     def meshes(self) -> tuple[WorkingMesh, ...]:
-        """In the order of the set.
+        """Meshes in the order of the set.
 
         Raises:
             GeometryError: a mesh does not reach the centre distance.
@@ -116,7 +116,7 @@ class ShiftedSet:
         return central | {step_name(self.teeth, k): shift for k, shift in enumerate(self.planet_shifts)}
 
     def mesh_efficiencies(self, friction: float, sharing: Sharing = "formula") -> Mapping[str, float]:
-        """Of each mesh, by its central gear."""
+        """Efficiency of each mesh, by its central gear."""
         return {own.mesh.central: mesh_efficiency(own, friction, sharing) for own in self.meshes}
 
     def planet_gap(self, planets: int) -> float:
@@ -205,7 +205,7 @@ def refuse_interference(own: ShiftedSet) -> None:
     """Raise unless all its gears can be made and run together.
 
     Raises:
-        GeometryError: with the mesh, the radii and what to change.
+        GeometryError: with the mesh, the radii and the remedy.
     """
     for mesh in own.meshes:
         try:

@@ -105,20 +105,20 @@ class WorkingMesh:
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """Of central gear and planet."""
+        """Base radii of central gear and planet."""
         cos = math.cos(self.rack.pressure_angle)
         return self._reference(self.mesh.teeth) * cos, self._reference(self.mesh.planet_teeth) * cos
 
     @property
     def tip_radii(self) -> tuple[float, float]:
-        """Of central gear and planet: m (z/2 + h_a* + x), of a ring m (z/2 - h_a* - x)."""
+        """Tip radii of central gear and planet: m (z/2 + h_a* + x), of a ring m (z/2 - h_a* - x)."""
         m, high = self.rack.module, self.rack.addendum
         central = self._reference(self.mesh.teeth) + self.sign * m * (high + self.central_shift)
         return central, self._reference(self.mesh.planet_teeth) + m * (high + self.planet_shift)
 
     @property
     def root_radii(self) -> tuple[float, float]:
-        """Of central gear and planet: m (z/2 - h_f* + x), of a ring m (z/2 + h_f* - x)."""
+        """Root radii of central gear and planet: m (z/2 - h_f* + x), of a ring m (z/2 + h_f* - x)."""
         m, low = self.rack.module, self.rack.dedendum
         central = self._reference(self.mesh.teeth) - self.sign * m * (low - self.central_shift)
         return central, self._reference(self.mesh.planet_teeth) - m * (low - self.planet_shift)
@@ -176,7 +176,7 @@ class WorkingMesh:
 
     @property
     def involute_margins(self) -> tuple[float, float]:
-        """How far [mm along the line of action] contact stays off the fillets of central gear and planet.
+        """Distance [mm along the line of action] of contact from the fillets of central gear and planet.
 
         A fillet is taken as the arc of 0.38 m between root circle and involute.
         """
@@ -193,7 +193,7 @@ class WorkingMesh:
 
     @property
     def tip_interference_margin(self) -> float:
-        """How far [rad of the ring] tip corners miss each other as a planet's tooth leaves its space; inf outside.
+        """Angle [rad of the ring] between passing tip corners as a planet's tooth leaves its space; inf outside.
 
         Where the tip circles cross, at the azimuths delta_p, delta of planet and ring off the line of centres:
         [z_p (inv alpha_ap + delta_p) - z (inv alpha_a + delta) + (z - z_p) inv alpha_w] / z. Negative: trimming

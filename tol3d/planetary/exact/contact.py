@@ -17,13 +17,13 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 
 @dataclass(frozen=True)
 class Contact:
-    """Sets as they are placed, and how far their shafts turn."""
+    """Placed sets, and free turns of their shafts."""
 
     own: PlanetarySet
 
     @cached_property
     def _meshes(self) -> Array:
-        """Of each mesh r_bC, r_bP, s, inv alpha_w (meshes, 4)."""
+        """Constants r_bC, r_bP, s, inv alpha_w of each mesh (meshes, 4)."""
         return np.array(
             [
                 (mesh.central.base_radius, mesh.planet.base_radius, mesh.sense, involute(mesh.working_pressure_angle))
@@ -32,7 +32,7 @@ class Contact:
         )
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
-        """How far a shaft turns while another one and the held one stand, at turns (trials,) of the output."""
+        """Free turn of a shaft while another one and the held one stand, at turns (trials,) of the output."""
         return self.seated(deviated, turns, shaft, stands)[0]
 
     def seated(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> tuple[Free, Array]:
@@ -69,7 +69,7 @@ class Contact:
         return found
 
     def given(self, deviated: Deviated, turns: Array) -> tuple[Any, ...]:
-        """What gaps_at takes of the set and of trials whose output stands at turns (trials,)."""
+        """Input of gaps_at from the set and from trials whose output stands at turns (trials,)."""
         own = self.own
         directions = np.stack([np.cos(own.azimuths), np.sin(own.azimuths)], axis=-1)
         places = np.array([own.gear_of(mesh) for mesh in own.meshes])

@@ -1,4 +1,4 @@
-"""The exact method: flanks of gears where they really lie, and how far shafts turn until contacts stop them.
+"""The exact method: flanks of gears in their true poses, and turns of shafts until contacts stop them.
 
 Gears are placed: their centres off their axes, pins off their places, all of it turned as far as shafts and planets
 have. What the flanks of a mesh leave along their common normal is exact for rigid involutes on parallel axes: with W
@@ -36,8 +36,8 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
             the pins' circle [mm].
         given: of the trial, before these turns: centres of central gears off the axis (meshes, 2), of planets' gears
             off their pins (gears, planets, 2), places of pins (planets, 2), the planets' circle beside each central
-            gear's axis (meshes, 2), which turns with nothing; what thinning leaves each flank, nominal clearance
-            included, and what clocking moves n by (planets, meshes).
+            gear's axis (meshes, 2), which turns with nothing; clearance of each flank by thinning, the nominal one
+            included, and movement of n by clocking (planets, meshes).
         turns: of central gears, carrier, planets; then displacements by springs [mm].
     """
     meshes, places, planets, senses, distance = shape
@@ -198,7 +198,7 @@ def placed_curve(
         central, planet: offsets (trials, ...) where the first position's are not turned yet.
         centrals_turned, planets_turned: cosine and sine of each central gear's turn against the carrier (positions,
             meshes, 2), and of a planet's (positions, 2).
-        wanted: what is made largest (unknowns,).
+        wanted: objective (unknowns,).
         ends: of the coordinate (trials, positions), written; 0 where the set jams.
         status, decided, amount: the worst position's.
     """

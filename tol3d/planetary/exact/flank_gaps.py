@@ -1,7 +1,7 @@
-"""How far the flanks of placed gears are apart, and where: along the lines of action, from their poses alone.
+"""Gaps between the flanks of placed gears, and their places: along the lines of action, from the poses alone.
 
 Both involutes of a contact are normal to one line that is tangent to both base circles, so that their distance is
-measured along it: what each has been unwound to there, by the azimuth at which it begins on its base circle. Flanks of
+measured along it: the unwound length of each, by the azimuth at which it begins on its base circle. Flanks of
 all teeth lie a base pitch apart, alike for both gears; the pair nearest to the pitch point is taken.
 """
 
@@ -24,7 +24,7 @@ class FlankGap:
     Args:
         planet: counted from 0.
         mesh: place of the mesh among those of the set.
-        flank: of the planet's gear; LEFT is what stops it counter-clockwise.
+        flank: of the planet's gear; LEFT stops it counter-clockwise.
         value: distance [mm], negative where they overlap.
         point: (3,) [mm] where the planet's flank meets the line of action, in the middle of its face.
         bodies: names of both gears.

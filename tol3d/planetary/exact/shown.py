@@ -46,7 +46,7 @@ class ShownSet:
 
 
 def shown_set(own: PlanetarySet, made: Made, deviated: Deviated, turns: float) -> ShownSet:
-    """A set of one trial where its output stands after so many turns.
+    """A set of one trial at some turns of its output.
 
     Args:
         made: its gears by name, nominal.
@@ -107,7 +107,7 @@ def made_gears(scene: Scene, own: PlanetarySet) -> Made:
 
 
 def heights_of(own: PlanetarySet, made: Made) -> Mapping[str, float]:
-    """Where the middle of the face of each central gear lies along the axis of a set [mm]; 0 of the carrier."""
+    """Height of the middle of each central gear's face along the axis of a set [mm]; 0 for the carrier."""
     heights = _heights(own, made)
     return {mesh.central.name: heights[own.gear_of(mesh)] for mesh in own.meshes} | {own.carrier: 0.0}
 
@@ -140,7 +140,7 @@ class MovedSet:
         pins: axes of the planets (2,) [mm].
         turns: of the output, beyond where the trial has it, where no backlash would have it.
         at: turns of shafts and planets [rad] beyond that, and displacements by springs [mm].
-        free: how far the output turns with the input held [rad], at this displacement.
+        free: turn of the output with the input held [rad], at this displacement.
     """
 
     gears: tuple[PlacedGear, ...]
@@ -228,6 +228,6 @@ def _state(shown: ShownSet, own: PlanetarySet, beyond: float, at: Array, ends: A
 
 
 def shaft_turn(own: PlanetarySet, state: MovedSet, shaft: str) -> float:
-    """How far a shaft has turned [rad], counted from where no backlash would have it in the trial."""
+    """Turn of a shaft [rad], counted from its position without backlash in the trial."""
     rate = float((own.turn(shaft) - own.turn(own.held)) * own.planet_turns)
     return 2 * math.pi * rate * state.turns + float(state.at[own.shafts.index(shaft)])

@@ -1,4 +1,4 @@
-"""Where a shaft rests at positions one after another, by first-order gaps: a compiled programme that goes on from each.
+"""Rest positions of a shaft at successive positions, by first-order gaps: a compiled programme that goes on from each.
 
 Contacts are those of `stack_up.py`, worked out position by position. Contacts that are met at one position are those
 that the next one begins with, in the same trial; a trial still has the same bits alone and among thousands. What a sum
@@ -52,7 +52,7 @@ def sides_at(
 def pulled(
     weight: Any, side: float, r: int, across: Any, places: Any, directions: Any, phases: Any, turned: Any, slopes: Any
 ) -> None:
-    """Add what a contact's multiplier makes of its side and of the offsets of its gears; see sides_at."""
+    """Add the contributions of a contact's multiplier to its side and to the offsets of its gears; see sides_at."""
     on_sides, on_central, on_planet = slopes
     centrals, own = turned
     count = places.shape[0]
@@ -78,7 +78,7 @@ def pull(
     coefficient: Any, turn: Any, basis: Any, rooms: Any,
     across: Any, places: Any, directions: Any, phases: Any, turned: Any, slopes: Any,
 ) -> None:  # fmt: skip
-    """Add what the contacts that are met make of an end, times its coefficient; see pulled and programme.farthest."""
+    """Add the derivatives of an end by the contacts met, times its coefficient; see pulled and programme.farthest."""
     for j in range(basis.shape[0]):
         weight = 0.0
         for u in range(basis.shape[0]):
@@ -98,7 +98,7 @@ def first_order_curve(
     coefficients: Any, ends: Any, status: Any, decided: Any, amount: Any,
     on_sides: Any, on_central: Any, on_planet: Any,
 ) -> None:  # fmt: skip
-    """The end of one coordinate at positions of trials, and what a sum of such ends changes with.
+    """The end of one coordinate at positions of trials, and the derivatives of a sum of such ends.
 
     Args:
         rows: of the contacts and springs (rows, unknowns) [mm a rad].

@@ -1,4 +1,4 @@
-"""By how much a shaft's play changes at most where every gap is read a little wrong.
+"""Bound on the change of a shaft's play for a small error of every gap.
 
 Of a planet's rows any two leave its own turn out: a relation between shafts, and springs. As many of them as there are
 unknowns decide where a shaft stops, whichever contacts hold it; so the worst such choice bounds what gaps may do.
@@ -44,7 +44,7 @@ def _coordinates(own: PlanetarySet, shaft: str) -> list[int]:
 
 
 def _relations(own: PlanetarySet, shaft: str, errors: Sequence[float]) -> Iterator[tuple[Array, float]]:
-    """Each with how far it may be off [mm a mm of the planet's base radius]; springs that are set are exact."""
+    """Each with its largest error [mm a mm of the planet's base radius]; springs that are set are exact."""
     coordinates, count = _coordinates(own, shaft), len(own.meshes)
     for planet in range(own.planets):
         rows = own.all_rows[planet * count : (planet + 1) * count]

@@ -1,4 +1,4 @@
-"""The analytic method: how far each flank of each mesh may go, to first order in the deviations, and what that leaves.
+"""The analytic method: travel of each flank of each mesh, to first order in the deviations, and the free turns.
 
 Along the line of action, with alpha_w the working pressure angle and s = 1 of a sun, -1 of a ring: a tooth thicker by
 an arc E takes E cos(alpha)/2 from each flank; a planet displaced against its central gear by d_r outwards and d_t
@@ -20,7 +20,7 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 
 @dataclass(frozen=True)
 class StackUp:
-    """First-order gaps of a set and what they leave free."""
+    """First-order gaps of a set and the free turns that they leave."""
 
     own: PlanetarySet
 
@@ -51,7 +51,7 @@ class StackUp:
         return lower.reshape(len(turns), -1), upper.reshape(len(turns), -1)
 
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
-        """How far a shaft turns while another one and the held one stand."""
+        """Free turn of a shaft while another one and the held one stand."""
         own, found = self.own, Free.of(len(turns))
         sides = zip(self.sides(deviated, turns), own.pushed, strict=True)
         lower, upper = (np.hstack([side, np.tile(push, (len(turns), 1))]) for side, push in sides)
@@ -81,7 +81,7 @@ class StackUp:
     def _run(
         self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
     ) -> tuple[Free, tuple[Array, Array, Array]]:
-        """Ends, and what their sum changes with; see first_order_curve."""
+        """Ends, and the derivatives of their sum; see first_order_curve."""
         own, trials = self.own, len(deviated.pins)
         rates, planet = own.gear_rates
         still = replace(

@@ -1,1 +1,1 @@
-"""What scenes say of planetary sets besides the kinds of gears."""
+"""Vocabulary of planetary sets in scenes, besides the kinds of gears."""

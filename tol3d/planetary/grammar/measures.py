@@ -42,7 +42,7 @@ class PlanetaryLostMotionSpec(PlanetaryFreeTurnSpec):
 
 
 class PlanetaryLowStiffnessSpec(PlanetaryFreeTurnSpec):
-    """An angle: how far a shaft turns against the springs of a flexible carrier alone, both ways together.
+    """An angle: turn of a shaft against the springs of a flexible carrier alone, both ways together.
 
     From where springs hold the planets, beyond the breakaway torque, to where contacts stop them for good: the region
     in which the set is as stiff as its springs. The lost motion that springs leave is not in it.
@@ -52,7 +52,7 @@ class PlanetaryLowStiffnessSpec(PlanetaryFreeTurnSpec):
 
 
 class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
-    """An angle: how far the output leads its nominal position while a load on it keeps the meshes on one side.
+    """An angle: lead of the output over its nominal position while a load on it keeps the meshes on one side.
 
     Counted in the sense in which the output turns, 0 at the first position.
     """
@@ -88,7 +88,7 @@ class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
         return self.take == "curve"
 
     @property

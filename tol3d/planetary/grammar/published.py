@@ -1,4 +1,4 @@
-"""What others found of planetary sets."""
+"""Published figures of planetary sets."""
 
 from collections.abc import Iterator, Mapping
 
@@ -14,7 +14,7 @@ from tol3d.strict import Strict
 
 
 class PublishedEfficiency(Strict):
-    """Of a set [%]."""
+    """Published efficiency of a set [%]."""
 
     forward_percent: Figure | None = Field(default=None, description="driven at the input [%]")
     backward_percent: Figure | None = Field(default=None, description="driven at the output [%]")
@@ -34,7 +34,7 @@ class PublishedPlanetarySet(Strict):
 
 
 class PublishedPlanetarySets(PublishedFigures):
-    """What others found of planetary sets."""
+    """Published figures of planetary sets."""
 
     planetary_sets: Mapping[Name, PublishedPlanetarySet] = Field(
         default_factory=dict, description="planetary sets of the scene"

@@ -23,7 +23,7 @@ class RoundZoneSpec(Strict):
     diameter: Length = Field(description="of the cylinder: ⌀ in the frame of the drawing")
 
     def scaled(self, factor: float) -> Self:
-        """As many times as wide."""
+        """Tolerance of a multiple of the width."""
         return self.model_copy(update={"diameter": self.diameter.like(factor * self.diameter.internal)})
 
 
@@ -50,7 +50,7 @@ class BorePositionSpec(ToleranceEntry):
         return scaled_in_zone(self, factor, stays, files)
 
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
-        """Those that its law reads."""
+        """Files that its law reads."""
         return ((("law", *path), name) for path, name in self.law.file_names())
 
 

@@ -16,13 +16,13 @@ Effect = Literal["thickness", "offset", "clocking", "pin"]
 
 @dataclass(frozen=True)
 class Acts:
-    """What a contributor acts on.
+    """Effect of a contributor on the set, and its factor.
 
     Args:
         effect: thickness and clocking of a gear, offset of its teeth from its axis, or of pins from their places.
         gear: the gear's name; "" of pins.
         direction: of pins, "radial" or "tangential" where the deviation is one of them alone.
-        factor: what the deviation counts for, such as 1/cos(alpha) of a thickness along the normals.
+        factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
     """
 
     effect: Effect
@@ -71,7 +71,7 @@ class Deviated(TrialArrays):
         )
 
     def add(self, own: PlanetarySet, acts: Acts, components: Array) -> None:
-        """Add what a contributor does.
+        """Add the effect of a contributor.
 
         Args:
             components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
@@ -81,7 +81,7 @@ class Deviated(TrialArrays):
         into += _turned(acts.factor * components.reshape(into.shape), acts, facing)
 
     def of(self, own: PlanetarySet, acts: Acts) -> Array:
-        """What stands where a contributor acts, a component each (trials, components): of slopes, its own."""
+        """Values at the place where a contributor acts, a component each (trials, components): of slopes, its own."""
         found, facing = self._reached(own, acts)
         return acts.factor * _turned(found, acts, -facing).reshape(len(found), -1)
 
@@ -101,7 +101,7 @@ class Deviated(TrialArrays):
 
 
 def _turned(components: Array, acts: Acts, angle: float) -> Array:
-    """Offsets of a central gear (trials, 2) turned by an angle [rad]; what is no offset as it is."""
+    """Offsets of a central gear (trials, 2) turned by an angle [rad]; other arrays unchanged."""
     if acts.effect != "offset" or not angle:
         return components
     cos, sin = math.cos(angle), math.sin(angle)
@@ -112,14 +112,14 @@ def _turned(components: Array, acts: Acts, angle: float) -> Array:
 
 @dataclass(frozen=True)
 class Free:
-    """How far a shaft turns in some trials.
+    """Free turn of a shaft in some trials.
 
     Args:
         ends: smallest and largest turn (trials, 2) [rad], nan where the set cannot be assembled; or where the shaft
             rests at positions one after another (trials, positions), 0 where the set jams.
         status: of the programme, the worst position's (trials,).
         row: planet x meshes + mesh that has no room (trials,), -1 where all have.
-        lacking: how much each contact of a closed loop lacks at most [mm] (trials,).
+        lacking: largest shortfall of each contact of a closed loop [mm] (trials,).
     """
 
     ends: Array
@@ -136,11 +136,11 @@ class Free:
 
     @property
     def written(self) -> tuple[Array, NDArray[np.int8], Places, Array]:
-        """What kernels write."""
+        """Arrays that kernels write."""
         return self.ends, self.status, self.row, self.lacking
 
 
 def cosines_and_sines(turns: Array) -> Array:
-    """Of turns (...), (..., 2)."""
+    """Cosines and sines of turns (...), (..., 2)."""
     angles = 2 * np.pi * (turns - np.round(turns))
     return np.ascontiguousarray(np.stack([np.cos(angles), np.sin(angles)], axis=-1))

@@ -1,4 +1,4 @@
-"""Tolerances of planetary sets: which there are, on what each acts, and how it is drawn."""
+"""Tolerances of planetary sets: their kinds, the effect of each, and its draw."""
 
 import math
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ from tol3d.system.each_planar import EachOwn, EachPlanar, parts_of
 
 @dataclass(frozen=True)
 class EachZone(EachOwn):
-    """As many displacements as there are planets, each in a zone of its own: outwards and across, one after the other.
+    """Displacements of all planets, each in a zone of its own: outwards and across, one after the other.
 
     Args:
         each: that of one planet, of two components.
@@ -40,7 +40,7 @@ class EachZone(EachOwn):
 
     @property
     def distribution(self) -> DeviationLaw:
-        """Of one component."""
+        """Distribution of one component."""
         return self.each.distribution
 
     @property
@@ -77,7 +77,7 @@ class EachZone(EachOwn):
         return np.stack([self._reach(slopes), self._reach(-slopes)])
 
     def _reach(self, slopes: Array) -> Array:
-        """How far all of them go along slopes, each as large a part of its own reach as its slopes are of all."""
+        """Reach of all components along slopes, each as large a part of its own reach as its slopes are of all."""
         middle = np.array(self.each.mean(turning=False))
         size = float(np.sqrt((slopes * slopes).sum())) or 1.0
         ends = [
@@ -121,7 +121,7 @@ def refuse_other_tolerance(scene: Scene, name: str) -> None:
 
 
 def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
-    """What a tolerance acts on."""
+    """Effect of a tolerance on the set."""
     if isinstance(spec, PlanetPinSpec | BorePositionSpec):
         if spec.of != own.carrier:
             raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
@@ -140,7 +140,7 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
 
 
 def draw_of(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
-    """How its components are drawn: of planets, pins and bores each one's own."""
+    """Draw of the components: independent ones for each planet, pin and bore."""
     return _bores(scene, own, spec) if isinstance(spec, BorePositionSpec) else _of_distribution(scene, own, spec)
 
 
@@ -153,7 +153,7 @@ def _bores(scene: Scene, own: PlanetarySet, spec: BorePositionSpec) -> Draw:
 
 
 def planet_names(own: PlanetarySet) -> tuple[str, ...]:
-    """Of columns, counted from 1."""
+    """Names of columns, counted from 1."""
     return tuple(f"planet {planet + 1}" for planet in range(own.planets))
 
 

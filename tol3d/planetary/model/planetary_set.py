@@ -24,7 +24,7 @@ MOST_PUSH: Final = 10.0  # mm; no mesh leaves a planet so much
 
 @dataclass(frozen=True)
 class Spring:
-    """What turns some planets on the carrier against others, about the common axis.
+    """Spring that turns some planets on the carrier against others, about the common axis.
 
     Args:
         forward, backward: planets that it pushes counter-clockwise and clockwise, counted from 0.
@@ -38,7 +38,7 @@ class Spring:
 
     @property
     def pushes(self) -> bool:
-        """Whether it pushes, rather than being set."""
+        """True if it pushes, rather than being set."""
         return self.displacement is None
 
     def sense(self, planet: int) -> float:
@@ -85,7 +85,7 @@ class PlanetarySet:
 
     @property
     def centre_distance(self) -> float:
-        """Of all meshes [mm]."""
+        """Centre distance of all meshes [mm]."""
         return self.meshes[0].centre_distance
 
     def arm(self, shaft: str) -> float:
@@ -94,7 +94,7 @@ class PlanetarySet:
         return radii.get(shaft, self.centre_distance)
 
     def gear_of(self, mesh: SetMesh) -> int:
-        """Which of a planet's gears a mesh has."""
+        """Gear of a planet that a mesh has."""
         return [own.name for own in self.gears].index(mesh.planet.name)
 
     @cached_property
@@ -149,7 +149,7 @@ class PlanetarySet:
     def phase(self, planet: int) -> float:
         """Azimuth of x of a planet's gears, off the line to its pin [rad], where the first planet's lies on it.
 
-        All planets are alike; where they cannot be put in so (see ToothSet.assembly_faults), the nearest one.
+        All planets are alike; if that cannot be assembled (see ToothSet.assembly_faults), the nearest one.
         """
         teeth = self.gears[0].teeth
         return min(
@@ -163,7 +163,7 @@ class PlanetarySet:
         return np.array([self.phase(planet) for planet in range(self.planets)])
 
     def _lag(self, planet: int) -> float:
-        """What the first mesh asks of z times the phase of the first gear [rad]."""
+        """Value of z times the phase of the first gear that the first mesh requires [rad]."""
         first = next(mesh for mesh in self.meshes if mesh.planet.name == self.gears[0].name)
         return first.sense * first.central.teeth * self.azimuths[planet]
 
@@ -187,7 +187,7 @@ class PlanetarySet:
 
     @cached_property
     def senses(self) -> Array:
-        """How each spring pushes each planet (planets, springs)."""
+        """Sense in which each spring pushes each planet (planets, springs)."""
         own = [[spring.sense(planet) for spring in self.springs] for planet in range(self.planets)]
         return np.array(own).reshape(self.planets, len(self.springs))
 
@@ -222,11 +222,11 @@ class PlanetarySet:
         return least, np.array([MOST_PUSH if own is None else own for own in set_at])
 
     def wanted(self, stands: str, shaft: str) -> Array:
-        """What is made largest (2, unknowns) where a shaft's turn is smallest, and where it is largest.
+        """Objectives that are maximised (2, unknowns) for the smallest turn of a shaft, and for the largest.
 
         Where springs push, their work and that of a small torque on the shaft: it rests where both is largest. The
-        torque is far less than what moves a spring (12 N mm a N of force at the output of a 3K set with planets of 12
-        mm), and far more than what eccentric gears make of the spring's force.
+        torque is far less than that of a spring (12 N mm a N of force at the output of a 3K set with planets of 12
+        mm), and far more than that of the spring's force by eccentric gears.
         """
         first = len(self.shafts) + self.planets
         force = {first + k: 1.0 / (1.0 + WEAKER * k) for k in range(len(self.springs)) if self.springs[k].pushes}
@@ -238,7 +238,7 @@ class PlanetarySet:
         return np.stack([push - turn, push + turn])
 
     def rows(self, stands: str) -> Array:
-        """The same of what is free while the held shaft and another one stand."""
+        """The same for the freedom while the held shaft and another one stand."""
         return np.ascontiguousarray(self.all_rows[:, self.unknowns(stands)])
 
     def objective(self, stands: str, shaft: str) -> Array:
@@ -246,12 +246,12 @@ class PlanetarySet:
         return np.array([float(place == self.shafts.index(shaft)) for place in self.unknowns(stands)])
 
     def asked(self, stands: str, shaft: str, end: int | slice = slice(None)) -> tuple[Array, Array, Places]:
-        """What a programme takes of a shaft's turn: its objective, what is made largest at an end, its first basis."""
+        """Input of a programme for a shaft's turn: its objective, the quantity maximised at an end, its first basis."""
         wanted = np.ascontiguousarray(self.wanted(stands, shaft)[end])
         return self.objective(stands, shaft), wanted, self.begun(stands)
 
     def opposite(self, shaft: str) -> str:
-        """What stands while a shaft is turned: the input, for the input the output."""
+        """Shaft that stands while another one is turned: the input, for the input the output."""
         return self.output if shaft == self.input else self.input
 
     def begun(self, stands: str) -> Places:

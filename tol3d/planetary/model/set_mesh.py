@@ -59,7 +59,7 @@ class SetMesh:
 
     @property
     def name(self) -> str:
-        """Of both gears."""
+        """Name of both gears."""
         return f"{self.central.name}–{self.planet.name}"
 
     @property
@@ -89,7 +89,7 @@ class SetMesh:
 
     @property
     def clearance(self) -> float:
-        """Half the nominal normal backlash: what each flank of a tooth in the middle of its space leaves [mm].
+        """Half the nominal normal backlash: gap of each flank of a tooth in the middle of its space [mm].
 
         j/2 = s (r_bC + s r_bP)(inv alpha_w - inv alpha_0) with s = 1 of a sun, -1 of a ring, and tooth + tooth = pitch
         at alpha_0: inv alpha_0 = inv alpha + 2 s tan alpha (x_C + x_P)/(z_C + s z_P).

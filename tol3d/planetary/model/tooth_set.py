@@ -1,4 +1,4 @@
-"""Tooth numbers of a planetary set, and what follows from them alone: ratios, and how many planets can be assembled.
+"""Tooth numbers of a planetary set, and results from them alone: ratios, and numbers of planets that can be assembled.
 
 Every central gear k (a sun or a ring) meshes with one step of the planets. Seen from the carrier its turn per turn of
 the planets is u_k = -z_p/z_k for a sun and +z_p/z_k for a ring, and u = 0 for the carrier itself. With h held,
@@ -112,7 +112,7 @@ class ToothSet:
     # assembly ---------------------------------------------------------------------------------------
 
     def assembles(self, planets: int) -> bool:
-        """Whether identical planets can be put in at equal angles."""
+        """True if identical planets can be assembled at equal angles."""
         return not self.assembly_faults(planets)
 
     def assembly_faults(self, planets: int) -> "tuple[AssemblyFault, ...]":
@@ -163,7 +163,7 @@ class AssemblyFault:
         meshes: names of both central gears.
         planets: n.
         divisor: n gcd of the planets' teeth.
-        product: what it should divide.
+        product: number that it should divide.
     """
 
     meshes: tuple[str, str]

@@ -1,4 +1,4 @@
-"""How planetary sets are shown: every gear where it stands, and what a scene's set is."""
+"""Presentation of planetary sets: every gear in its place, and the data of a scene's set."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -37,7 +37,7 @@ class PlanetaryPresenter(GearPresenter):
         return (*super().sections(summary), *self.link_sections(summary))
 
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
-        """Meshes of the set, then what any system shows."""
+        """Meshes of the set, then the items of any system."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def display(self, run: "Run", which: "Which", *, magnify: float) -> "Display":

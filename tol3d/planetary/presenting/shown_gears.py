@@ -52,12 +52,12 @@ def arms_of(shown: ShownSet) -> Iterator[Body]:
 
 
 def arm_name(own: PlanetarySet, planet: int) -> str:
-    """Of the part of the carrier that holds a planet, counted from 0."""
+    """Name of the part of the carrier that holds a planet, counted from 0."""
     return f"{own.carrier} at planet {planet + 1}"
 
 
 def arm_pose(pin: Array, level: float) -> Array:
-    """Of an arm whose pin has its axis there (2,) [mm], as far as it turns about the common axis."""
+    """Pose of an arm from its pin's axis (2,) [mm], as far as it turns about the common axis."""
     return upright_pose(math.atan2(pin[1], pin[0]), level=level)
 
 
@@ -80,7 +80,7 @@ def motion(shown: ShownSet, world: World, name: str, frames: int | None) -> Moti
     """One of them.
 
     Args:
-        frames: how many; None: FRAMES.
+        frames: their number; None: FRAMES.
 
     Raises:
         InputError: the set jams, or its carrier does not open.

@@ -1,4 +1,4 @@
-"""What a scene's planetary set is, in tables."""
+"""Tables of a scene's planetary set."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from tol3d.study.simulation import Simulation
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Ratio and meshes of the set, then what any system shows."""
+    """Ratio and meshes of the set, then the items of any system."""
     system = simulation.system
     assert isinstance(system, PlanetarySystem)
     return (*_nominal(system.own, system.summaries), *system_blocks(simulation))

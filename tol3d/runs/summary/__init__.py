@@ -1,12 +1,12 @@
-"""What summary.json holds, key by key: the one place that says so. `tol3d schema --summary` prints it as JSON Schema.
+"""Contents of summary.json, key by key, defined here alone. `tol3d schema --summary` prints them as JSON Schema.
 
     values      numbers, names and sentences as a summary may hold them; the base of all classes here
     sample      statistics of a measure's trials, by either method
-    agreement   how far both methods differ, and what explains it; what the witness found
+    agreement   difference of both methods and its explanation; findings of the witness
     measure     one measure
-    joint       what the measures do together
+    joint       joint results of the measures
     run         the whole
-    kinds       what mechanisms add: classes of their measures, sections of their own
+    kinds       additions of mechanisms: classes of their measures, sections of their own
     text        reading and writing summary.json
 
 A run's summary is held against it when it is written, so a key that is not here is a warning that fails the tests, and

@@ -1,4 +1,4 @@
-"""How far the methods of a measure differ and what explains it, and what the witness found; in the measure's unit."""
+"""Difference of the methods of a measure, its explanation, and the findings of the witness; in the measure's unit."""
 
 from collections.abc import Mapping
 
@@ -18,7 +18,7 @@ from tol3d.runs.summary.values import (
 
 
 class LinearPart(Section):
-    """What a contributor adds to the difference of the methods."""
+    """Contribution of a contributor to the difference of the methods."""
 
     contributor: Label
     percent: Number = Field(description="of its own effect")
@@ -27,7 +27,7 @@ class LinearPart(Section):
 
 
 class Explanation(Section):
-    """What explains the difference of the methods, in the measure's unit."""
+    """Explanation of the difference of the methods, in the measure's unit."""
 
     undecided: Sentence
     faults: list[Sentence]
@@ -66,7 +66,7 @@ class Witnessed(Section):
 
 
 class WitnessSummary(Section):
-    """What the witness found of some trials."""
+    """Findings of the witness for some trials."""
 
     engine: Label
     trials: Count

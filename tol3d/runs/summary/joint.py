@@ -1,4 +1,4 @@
-"""What the measures of a run do together: the share of trials within all limits, and how measures are correlated."""
+"""Joint results of the measures of a run: the share of trials within all limits, and correlations of measures."""
 
 from collections.abc import Mapping
 from typing import Annotated, Self
@@ -45,7 +45,7 @@ class Correlations(Section):
 
 
 class Joint(Section):
-    """What measures do together."""
+    """Joint results of measures."""
 
     limited: Annotated[list[Label], Field(max_length=MOST_ENTRIES)] = Field(description="measures that have a limit")
     yields: Maybe[Mapping[Method, JointYield]] = LEFT_OUT

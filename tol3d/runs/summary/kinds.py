@@ -1,4 +1,4 @@
-"""What mechanisms add to a summary: classes of their measures, by kind, and sections of their own."""
+"""Additions of mechanisms to a summary: classes of their measures, by kind, and sections of their own."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -22,16 +22,16 @@ HOME = ("tol3d.kinds", "summary_kinds")  # of what summaries hold where nobody s
 
 @dataclass(frozen=True)
 class SummaryKinds:
-    """What summaries may hold besides what every one has.
+    """Contents that summaries may have besides those of every summary.
 
     Args:
         measures: classes of measures; `kind` of each is a Literal of the kinds that it is for.
         runs: classes that add sections to the whole, as keys that may be missing.
-        plain: kinds of measures that add no key, each with the import path of what shows its system, or "".
-        options: classes of what vocabularies add to a study, and so to that of a witness, as keys that may be missing.
-        presenters: names of mechanisms, each with the import path of what shows its systems.
-        published: what others may have found beside measures, as scenes have it; besides that of any run.
-        common: classes that are for all kinds of measures of the mechanism that names them here; `stating` says which.
+        plain: kinds of measures that add no key, each with the import path of its system's presenter, or "".
+        options: classes of the vocabularies' study options, also for a witness, as keys that may be missing.
+        presenters: names of mechanisms, each with the import path of its presenter.
+        published: classes of published figures beside measures, as scenes have them; besides those of any run.
+        common: classes that are for all kinds of measures of the mechanism that names them here; see `stating`.
         stated: the same with these kinds.
     """
 
@@ -76,7 +76,7 @@ class SummaryKinds:
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by what it is made of: classes made of it are made anew."""
+        """Pickled by its parts: classes made from it are made anew."""
         own = (self.measures, self.runs, self.plain, self.options, self.presenters, self.published)
         return SummaryKinds, (*own, self.common, self.stated)
 
@@ -102,7 +102,7 @@ class SummaryKinds:
 
     @property
     def _columns(self) -> Any:
-        """What others found beside measures, by column."""
+        """Published figures beside measures, by column."""
         bases: Any = tuple(in_summary(each) for each in (*self.published, PublishedWhole))
         column: Any = create_model(
             "PublishedOfTheWhole", __base__=bases, __doc__="What somebody else found of the whole."
@@ -141,7 +141,7 @@ def _of_kinds(measure: type[MeasureSummary], words: tuple[str, ...]) -> type[Mea
 
 
 def default_kinds(summary: Mapping[str, Any] | None = None) -> SummaryKinds:
-    """What all mechanisms add, or those of a summary; loaded when it is asked for, since runs/ imports no mechanism."""
+    """Additions of all mechanisms, or of those of a summary; loaded on demand, since runs/ imports no mechanism."""
     module, name = HOME
     found: SummaryKinds = getattr(import_module(module), name)(summary)
     return found

@@ -1,4 +1,4 @@
-"""One measure of a run: what it is, what each method found of it, and what others published."""
+"""One measure of a run: its properties, the findings of each method, and published figures."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class ContributorShare(Section):
 
 
 class Published(Section):
-    """What somebody else found for a measure, in its unit, shares in %: any number that there is of ours."""
+    """Published figures of a measure, in its unit, shares in %: any number that there is of ours."""
 
     description: Maybe[Sentence] = LEFT_OUT
 
@@ -70,7 +70,7 @@ else:
 
 @dataclass(frozen=True)
 class Conversion:
-    """A measure's values in other words: `words`, of what, in `unit`, so many per unit of the measure."""
+    """A measure's values in other words: `words`, subject, `unit`, number per unit of the measure."""
 
     words: str
     of: str
@@ -83,7 +83,7 @@ class MeasureSummary(Section):
     """One measure; every value is in `unit`. Mechanisms declare classes of it, with keys of their own."""
 
     presenter: ClassVar[str] = ""
-    """Import path of what shows more of its system, see `tol3d.report.presenter`."""
+    """Import path of its system's presenter, see `tol3d.report.presenter`."""
     long_in_mm: ClassVar[bool] = False
     """True of lengths that reports show in mm where they are nominally over 1 mm; the file has um."""
 
@@ -122,7 +122,7 @@ class MeasureSummary(Section):
 
     @property
     def words(self) -> str:
-        """Quantity, of what, and at which positions, in a line."""
+        """Quantity, subject and positions, in a line."""
         return self.kind.replace("_", " ")
 
     @property
@@ -132,12 +132,12 @@ class MeasureSummary(Section):
 
     @property
     def position_column(self) -> str | None:
-        """The column with the position of each trial [deg]; None where there is none."""
+        """The column with the position of each trial [deg]; None if there is none."""
         return None
 
     @property
     def jumps(self) -> bool:
-        """Whether it jumps between positions, so that its mean over them says nothing."""
+        """True if it jumps between positions, so that its mean over them says nothing."""
         return False
 
     @property
@@ -147,12 +147,12 @@ class MeasureSummary(Section):
 
     @property
     def jump_words(self) -> str:
-        """Why it jumps there."""
+        """Reason why it jumps there."""
         return "jumps"
 
     @property
     def identity(self) -> tuple[str | None, ...]:
-        """What measures of one name must share, beside unit, positions and what is taken, to be compared."""
+        """Properties that comparable measures of one name share, beside unit, positions and the value taken."""
         return (self.kind,)
 
     @property
@@ -161,14 +161,14 @@ class MeasureSummary(Section):
         return ()
 
     def chord_words(self, chord_error_um: float) -> str:
-        """What chord errors of measuring strips may explain of a difference; nothing where there are no strips."""
+        """Explanation of a difference by chord errors of measuring strips, in words; empty without strips."""
         return ""
 
     # ------------------------------------------------------------------------------------------------------
 
     @property
     def best_method(self) -> Method:
-        """The method by which it is shown: the 3D simulation where there is one."""
+        """The method by which it is shown: the 3D simulation if there is one."""
         return "geometric" if self.geometric or (self.curve and self.curve.geometric) else "analytic"
 
     @property
@@ -178,34 +178,34 @@ class MeasureSummary(Section):
 
     @property
     def has_limits(self) -> bool:
-        """Whether it has any."""
+        """True if it has any limit."""
         return self.limits != (None, None)
 
     @property
     def seated(self) -> int:
-        """How many trials seated."""
+        """Number of trials that seated."""
         return self.status.get(SEATED, self.trials)
 
     def ended_in(self, statuses: Collection[str]) -> int:
-        """How many trials ended in one of some statuses."""
+        """Number of trials that ended in one of some statuses."""
         return sum(self.status.get(text, 0) for text in statuses)
 
     @property
     def trials(self) -> int:
-        """How many trials there were."""
+        """Number of trials."""
         return sum(self.status.values())
 
     def sample(self, method: Method) -> Sample | None:
-        """What a method found of a measure with one value a trial."""
+        """Sample of a measure with one value per trial, by one method."""
         return self.geometric if method == "geometric" else self.analytic
 
     def curve_sample(self, method: Method) -> CurveSample | None:
-        """What a method found of a curve."""
+        """Sample of a curve, by one method."""
         return getattr(self.curve, method, None)
 
     @property
     def shares(self) -> Sample | CurveSample:
-        """What is out of its limits, by the best method."""
+        """Sample for the fractions out of limits, that of the best method."""
         found = self.curve_sample(self.best_method) if self.take == "curve" else self.sample(self.best_method)
         assert found is not None, "a summary that was read has one"
         return found

@@ -20,7 +20,7 @@ class OutputMeasureSummary(MeasureSummary):
 
     @property
     def quantity(self) -> str:
-        """What is taken of what: `largest transmission error`."""
+        """Quantity in words: `largest transmission error`."""
         taken = {
             "min": "least ",
             "max": "largest ",

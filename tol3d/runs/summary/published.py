@@ -1,4 +1,4 @@
-"""What others found, as a summary holds it: the classes of scenes with numbers in place of quantities."""
+"""Published figures as a summary holds them: the classes of scenes with numbers in place of quantities."""
 
 from collections.abc import Mapping
 from functools import cache, reduce
@@ -20,7 +20,7 @@ PER_INTERNAL: Final[Mapping[Dimension, float]] = {
     "expansion": 1.0,
     "count": 1.0,
 }
-"""What one mm, rad, K or 1/K is in the units of summaries, where no measure has one of its own."""
+"""One mm, rad, K or 1/K in the units of summaries, where no measure has one of its own."""
 UNITS: Final[Mapping[Dimension, str]] = {
     "length": "um",
     "angle": "arcmin",
@@ -36,7 +36,7 @@ def in_summary(kind: type[Strict], base: type[Section] = Section) -> type[Sectio
 
     Args:
         kind: their class in scenes.
-        base: what it is a class of, with keys of its own.
+        base: its base class, with keys of its own.
     """
     hints = get_type_hints(kind, include_extras=True)
     fields: dict[str, Any] = {}
@@ -55,11 +55,11 @@ def in_summary(kind: type[Strict], base: type[Section] = Section) -> type[Sectio
 
 
 def converted(value: Any, per_internal: Mapping[Dimension, float], base: type[Section] = Section) -> Any:
-    """Published figures as a summary has them; what was not given is left out.
+    """Published figures as a summary has them; missing ones are left out.
 
     Args:
         value: as a scene has it.
-        per_internal: what one mm, rad, K or 1/K is in the summary's units.
+        per_internal: one mm, rad, K or 1/K in the summary's units.
         base: see `in_summary`.
     """
     if isinstance(value, Quantity):

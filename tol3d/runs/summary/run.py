@@ -1,4 +1,4 @@
-"""The whole of summary.json: what a run of a scene found."""
+"""The whole of summary.json: the findings of a run of a scene."""
 
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal, Self
@@ -40,7 +40,7 @@ class MechanismSummary(Section):
 
 
 class StudySummary(Section):
-    """The study that was run: the scene's, or what was said instead of it."""
+    """The study that was run: the scene's, with its overrides."""
 
     trials: Positive
     seed: int = Field(ge=0, le=MOST_SEED)
@@ -55,14 +55,14 @@ class StudySummary(Section):
 
 
 class Blocks(Section):
-    """How trials are cut into files, and whether those are kept."""
+    """Division of trials into files, and whether those are kept."""
 
     trials: int = Field(ge=1, le=2**20)
     kept: bool
 
 
 class Timing(Section):
-    """How long it took, on how many workers."""
+    """Duration, and number of workers."""
 
     setup_s: NotNegative
     simulate_s: NotNegative
@@ -76,7 +76,7 @@ class Timing(Section):
 
 
 class Findings(Section):
-    """What a study found, whoever ran it."""
+    """Findings of a study, whoever ran it."""
 
     scene: Label
     mechanism: Maybe[MechanismSummary] = LEFT_OUT
@@ -102,10 +102,10 @@ class Findings(Section):
 
 
 class RunSummary(Findings):
-    """summary.json: what a run of a scene found. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
+    """summary.json: the findings of a run of a scene. Lengths um, of a tip mm; angles arcmin; shares ppm or %."""
 
     presenters: ClassVar[Mapping[str, str]] = {}
-    """By mechanism, the import path of what shows its systems."""
+    """Import path of the presenter of each mechanism's systems."""
 
     blocks: Blocks
     files: Mapping[Label, Sha256] = Field(description="SHA-256 of the scene and of every file that it names")
@@ -114,7 +114,7 @@ class RunSummary(Findings):
 
     @property
     def methods(self) -> tuple[Method, ...]:
-        """The methods by which it was measured."""
+        """The methods that measured it."""
         return ("analytic",) if self.engine == ANALYTIC_METHOD else ("analytic", "geometric")
 
     @property
@@ -123,7 +123,7 @@ class RunSummary(Findings):
         return frozenset(text for text, meaning in self.statuses.items() if meaning == "lacking")
 
     def state(self, status: str) -> str:
-        """What trials of a status are, in words: `seated`, and of others what their system calls them."""
+        """State of trials with a status, in words: `seated`, or the system's words for another status."""
         return "seated" if status == SEATED else (self.status_words or {}).get(status, status)
 
     @property

@@ -42,7 +42,7 @@ def parsed(content: bytes, path: Path) -> dict[str, Any]:
 
 
 def written(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
-    """The text of a summary; what the schema does not know is warned of, for a long study is not lost by a fault."""
+    """The text of a summary; unknown keys cause a warning, so that a fault does not lose a long study."""
     text = json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     try:
         typed(json.loads(text), lambda place, words: RunError(f"{place}: {words}"), kinds)
@@ -59,7 +59,7 @@ def typed(
     Args:
         summary: as JSON.
         fault: makes the error of a place and what is wrong there, which is raised.
-        kinds: what it may hold; by default what this package's mechanisms add.
+        kinds: allowed contents; default: those of this package's mechanisms.
     """
     tried = kinds or default_kinds(summary)
     try:
@@ -77,7 +77,7 @@ def typed(
 
 
 def missing_mechanism(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
-    """The message for a summary with kinds of measures that no mechanism here has; "" where it has none such."""
+    """The message for a summary with kinds of measures that no mechanism here has; "" if it has none."""
     unknown = (kinds or default_kinds(summary)).unknown_in(summary)
     maker = summary.get("mechanism")
     name, module = (maker.get("name"), maker.get("module")) if isinstance(maker, Mapping) else (None, None)

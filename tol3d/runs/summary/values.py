@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 else:
 
     class Maybe:
-        """A key that is not in every summary: None in Python where it is missing, and never null in the file."""
+        """A key that is not in every summary: None in Python if it is missing, and never null in the file."""
 
         def __class_getitem__(cls, kind: Any) -> Any:
             return kind
@@ -134,7 +134,7 @@ def _missing_not_null(kind: type[Section]) -> frozenset[str]:
 
 
 def as_json(value: Any) -> Any:
-    """What is made of sections, as it is written: by the file's keys."""
+    """JSON value of sections, as it is written: by the file's keys."""
     if isinstance(value, Section | Mapping):
         return {key: as_json(own) for key, own in value.items()}
     return [as_json(own) for own in value] if isinstance(value, list | tuple) else value

@@ -47,7 +47,7 @@ def _number_or_keys(value: Any) -> Any:
 
 
 class PublishedShare(Strict):
-    """What somebody else found of a contributor: shares of the measure's variance [%]."""
+    """Published figures of a contributor: shares of the measure's variance [%]."""
 
     percent: Percent | None = None
     percent_se: Percent | None = Field(default=None, description="standard error of the share")
@@ -57,7 +57,7 @@ class PublishedShare(Strict):
 
 
 class PublishedCorrelation(Strict):
-    """What somebody else found of two measures together."""
+    """Published figures of two measures together."""
 
     r: R | None = Field(default=None, description="Pearson's")
     r_low_95: R | None = None
@@ -99,8 +99,8 @@ def refuse_uneven(figures: Strict, of: str, count: int, place: str = "") -> None
     Args:
         figures: whose lists.
         of: the key that has as many values.
-        count: how many.
-        place: dotted name of the figures below what is validated, with a dot at its end.
+        count: the length.
+        place: dotted name of the figures below the validated value, with a dot at its end.
 
     Raises:
         PydanticCustomError: one of them is not.
@@ -146,7 +146,7 @@ class PublishedCurve(Strict):
 
     @property
     def is_listed(self) -> bool:
-        """Whether it has a statistic at positions."""
+        """True if it has a statistic at positions."""
         return any(isinstance(getattr(self, name), list) for name in ("mean", "sigma", "min", "max"))
 
 
@@ -165,7 +165,7 @@ class PublishedHistogram(Strict):
 
 
 class PublishedAgreement(Strict):
-    """How far two methods of others differ, trial by trial: simulation less theory."""
+    """Published difference of two methods, trial by trial: simulation less theory."""
 
     max_abs_difference: Quantity | None = None
     rms_difference: Quantity | None = None

@@ -1,4 +1,4 @@
-"""What somebody else found for a measure: any number that a run's summary has of one."""
+"""Published figures of a measure: any number that a run's summary has of one."""
 
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -37,12 +37,12 @@ from tol3d.strict import Strict, refused
 from tol3d.units import Quantity, shown
 
 ORDERED: Final = (("low_3sigma", "mean", "high_3sigma"), ("sample_min", "p0.135", "p50", "p99.865", "sample_max"))
-"""Keys of which each is at least the one before."""
+"""Keys in ascending order of their values."""
 POSITIVE: Final = ("sigma", "mean_se", "sigma_se")
 
 
 class PublishedMeasure(Strict):
-    """What somebody else found for a measure, in its dimension; contributors in percent of the variance."""
+    """Published figures of a measure, in its dimension; contributors in percent of the variance."""
 
     low_3sigma: Quantity | None = Field(default=None, description="mean - 3 sigma, or the lower end at 99.7 %")
     mean: Quantity | None = None
@@ -134,7 +134,7 @@ MEASURES: Final = "/measures"  # where measures stand once they are read; no nam
 
 
 class PublishedColumn(Strict):
-    """Columns of others: a measure's name, or a key of the whole run, and what they found of it.
+    """Columns of others: a measure's name, or a key of the whole run, and their figures for it.
 
     A measure of the name of such a key is meant where all that stands under it may be said of a measure.
     """
@@ -145,7 +145,7 @@ class PublishedColumn(Strict):
 
     @property
     def figures(self) -> dict[str, Any]:
-        """What was given of the whole, by key."""
+        """Stated figures of the whole, by key."""
         own = {name: getattr(self, name) for name in self.keys_of_the_whole()}
         return {name: value for name, value in own.items() if value is not None and value != {}}
 
@@ -163,7 +163,7 @@ class PublishedColumn(Strict):
         return name in self.measures
 
     def items(self) -> list[tuple[str, PublishedMeasure]]:
-        """Measures and what was found of each."""
+        """Measures and the published figures of each."""
         return [*self.measures.items()]
 
     # reading and writing --------------------------------------------------------------------------
@@ -171,7 +171,7 @@ class PublishedColumn(Strict):
     @model_validator(mode="before")
     @classmethod
     def _refuse_unknown_keys(cls, data: Any) -> Any:
-        """Measures apart from the whole; a key near to one of the whole, with what no measure has, is a mistake."""
+        """Measures apart from the whole; a key near to one of the whole, with keys of no measure, is a mistake."""
         if not isinstance(data, dict) or MEASURES in data:
             return data
         whole, measures = dict[str, Any](), dict[str, Any]()
@@ -190,7 +190,7 @@ class PublishedColumn(Strict):
 
     @classmethod
     def _may_be_of(cls, key: str, value: Any) -> bool:
-        """Whether all keys of a value are such as a section has."""
+        """True if all keys of a value may belong to a section."""
         own = _model_in(cls.model_fields[key].annotation)
         return own is not None and isinstance(value, dict) and value.keys() <= _keys(own)
 
@@ -202,7 +202,7 @@ class PublishedColumn(Strict):
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
-        """As it is written: measures beside keys of the whole."""
+        """Schema as it is written: measures beside keys of the whole."""
         found = handler.resolve_ref_schema(handler(schema))
         measures = found["properties"].pop(MEASURES)
         measure = measures["additionalProperties"]
@@ -213,7 +213,7 @@ class PublishedColumn(Strict):
         return {**found, "additionalProperties": measure, **names}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by its sections: the class is made anew where it is read."""
+        """Pickled by its sections: the class is made anew on reading."""
         return _blank, (self.sections,), self.__getstate__()
 
 

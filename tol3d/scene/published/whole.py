@@ -1,4 +1,4 @@
-"""What somebody else found of more than one measure: yields, correlations, how many trials, how long they took."""
+"""Published figures of more than one measure: yields, correlations, numbers of trials, durations."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Self
@@ -29,7 +29,7 @@ class PublishedFigures(Strict):
     """
 
     def problems(self, scene: Any) -> Iterator[Problem]:
-        """What does not fit the rest of the scene, such as names that it does not have: place below the column."""
+        """Conflicts with the rest of the scene, such as names that it does not have: place below the column."""
         return iter(())
 
     @staticmethod
@@ -56,7 +56,7 @@ class PublishedYield(Strict):
 
 
 class PublishedJoint(Strict):
-    """What measures do together."""
+    """Joint results of measures."""
 
     yields: PublishedYield | None = Field(default=None, description="trials within all limits")
     correlations: Mapping[Name, Mapping[Name, Correlation]] = Field(
@@ -90,7 +90,7 @@ class PublishedStudy(Strict):
 
 
 class PublishedTiming(Strict):
-    """How long it took others."""
+    """Published durations."""
 
     setup_s: NotNegative | None = None
     simulate_s: NotNegative | None = None
@@ -102,7 +102,7 @@ class PublishedTiming(Strict):
 
 
 class PublishedWhole(PublishedFigures):
-    """What somebody else may have found of any run."""
+    """Published figures that any run may have."""
 
     seed: Count | None = None
     trials: Count | None = None
@@ -113,7 +113,7 @@ class PublishedWhole(PublishedFigures):
     timing: PublishedTiming | None = None
 
     def problems(self, scene: Any) -> Iterator[Problem]:
-        """Correlations of what is no measure, or of a curve."""
+        """Correlations of unknown measures, or of a curve."""
         correlations = self.joint.correlations if self.joint else {}
         for first, others in correlations.items():
             path: KeyPath = ("joint", "correlations", first)

@@ -1,1 +1,1 @@
-"""How far the two methods lie apart, and what explains it."""
+"""Difference of the two methods, and its explanation."""

@@ -1,8 +1,8 @@
-"""What explains the difference of the two methods: decided contributor by contributor and trial by trial, or warned of.
+"""Explanation of the difference of the two methods: by contributor and by trial, or a warning.
 
 A stack-up is of first order. So the difference (geometric - analytic) may be of second order, which `second_look.py`
 measures; and of first order only where the stack-up leaves something out on purpose, and by how much at most
-(`System.neglected`). Anything else is an error of one of the methods.
+(`System.neglected`). Any other difference is an error of one of the methods.
 """
 
 import math
@@ -44,7 +44,7 @@ REACH = 1e4  # mm; coordinates of a scene, or the measure where it is larger
 
 
 def explanations(simulation: Simulation, method: Method | None, tally: Tally) -> dict[str, Explanation]:
-    """What explains the difference of each scalar measure that both methods gave."""
+    """Explanation of the difference of each scalar measure that both methods gave."""
     system = simulation.system
     measures = [m for m in scalars_of(system) if method is not None and tally.measures[m.name].disagreement]
     if method is None or not measures:
@@ -82,12 +82,12 @@ def _too_few(system: System, measure: Measure, tally: Tally) -> str:
 
 
 def _together(system: System, measure: Measure) -> int:
-    """How many contributors of a measure are regressed on together, at most."""
+    """Largest number of contributors of a measure that are regressed on together."""
     return min(len(regressor_groups(system, measure)), MOST_REGRESSED)
 
 
 def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
-    """How far each contributor's mean shifts each measure on the analytic method, in its unit, by measure and name."""
+    """Shift of each measure by each contributor's mean on the analytic method, in its unit, by measure and name."""
     found = {}
     slices = component_slices(system)
     for _, alike in measures_alike(system, scalars_of(system)):
@@ -105,11 +105,11 @@ class _Case:
     """A measure whose difference is to be explained.
 
     Args:
-        system, measure: what was studied.
+        system, measure: those studied.
         fits: of all its trials.
         look: a second look at `looked` trials and others after them, of which `worst` has the largest difference.
-        means: how far each contributor's mean shifts the measure.
-        chords: what of a difference may be chord error.
+        means: shift of the measure by each contributor's mean.
+        chords: part of a difference that may be chord error.
     """
 
     system: System
@@ -122,7 +122,7 @@ class _Case:
     chords: float
 
     def explained(self, bent: Mapping[str, float]) -> Explanation:
-        """What explains it; `bent` are the second differences of each contributor."""
+        """Explanation of the difference; `bent` are the second differences of each contributor."""
         name, first = self.measure.name, slice(0, self.looked)
         curved = np.where(np.arange(len(self.look.trials)) < self.looked, self.look.second_order[name], np.nan)
         straight = np.where(np.isnan(curved), np.nan, self.look.left(name))
@@ -165,10 +165,10 @@ class _Case:
 
     @property
     def _negligible(self) -> float:
-        """What is left that need not be explained [unit of the measure].
+        """Remainder that need not be explained [unit of the measure].
 
         A share of sigma; of a measure that does not vary, for all that acts on it is constant, rounding and the same
-        share of what its constants shift it by in second order: that of higher order is less.
+        share of the shift by its constants in second order: that of higher order is less.
         """
         rounding = ROUNDINGS * max(REACH * self.measure.per_internal, self.fits.magnitude)
         if self.fits.sigma > rounding:
@@ -178,10 +178,10 @@ class _Case:
     # linear parts -----------------------------------------------------------------------------------
 
     def _linear_parts(self, first_order: LinearFit) -> Iterator[LinearPart]:
-        """Contributors whose linear part is beyond chance and SHARE, with what explains it.
+        """Contributors whose linear part is beyond chance and SHARE, with its explanation.
 
         Args:
-            first_order: what the difference is of first order, less what follows of second order.
+            first_order: first-order part of the difference, less that which follows from second order.
         """
         fit, own = self.fits.difference, self.fits.own
         sure, size = fit.standard_errors, fit.effects
@@ -193,12 +193,12 @@ class _Case:
             )
 
     def _reason(self, k: int, left: float, sure: float) -> str:
-        """What explains a contributor's linear part, "" where nothing does.
+        """Explanation of a contributor's linear part, "" if there is none.
 
         Args:
-            k: which.
-            left: of it beside second order [unit of the measure].
-            sure: of that in standard errors.
+            k: index of the contributor.
+            left: the part beside second order [unit of the measure].
+            sure: that part in standard errors.
         """
         allowed = SHARE * float(self.fits.own[k])
         if left <= allowed:
@@ -217,7 +217,7 @@ class _Case:
         return ""
 
     def _left_out_by(self, k: int) -> Mapping[str, Array]:
-        """What the stack-up leaves out of a contributor's effect, at most.
+        """Largest part of a contributor's effect that the stack-up leaves out.
 
         Where positions or load paths are compared all that is left out helps to choose one of them, and by that what
         any contributor does; its part in the difference is no larger than the difference then. Else it is scaled: the
@@ -288,7 +288,7 @@ class _Case:
     # means ------------------------------------------------------------------------------------------
 
     def _mean(self, curved: Array, first_order: LinearFit, left_out: float) -> "_Mean":
-        """The difference of the means less what is of second order, and how much of it may be left."""
+        """The difference of the means less the second-order part, and the allowed remainder."""
         sums, nominal = self.fits.disagreement.sums, self.look.nominal[self.measure.name][: self.looked]
         known = curved[~np.isnan(curved)]
         if not len(known):
@@ -300,7 +300,7 @@ class _Case:
         return _Mean(sums.target_mean, error, at_nominal, sums.target_mean - float(known.mean()) - at_nominal, allowed)
 
     def _left_out_at_nominal(self) -> float:
-        """What the stack-up leaves out of nominal builds on purpose, in the mean of the positions looked at."""
+        """Part of nominal builds that the stack-up leaves out on purpose, in the mean of the positions looked at."""
         trials = self.look.trials.part(0, self.looked)
         nominal = replace(trials, deviations=np.zeros_like(trials.deviations))
         return sum(float(own.mean()) for own in self.system.neglected(self.measure, nominal).values())
@@ -330,7 +330,7 @@ class _Case:
 
 @dataclass(frozen=True)
 class _Mean:
-    """A difference of means: whole, its standard error, that of the nominal build, what is left beside second order."""
+    """A difference of means: whole, its standard error, that of the nominal build, the rest beside second order."""
 
     difference: float
     error: float

@@ -1,4 +1,4 @@
-"""What explains the difference of the two methods, as it is kept and shown."""
+"""Explanation of the difference of the two methods, as it is kept and shown."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -9,13 +9,13 @@ from tol3d.runs.summary.values import made
 
 @dataclass(frozen=True)
 class LinearPart:
-    """What a contributor adds to the difference, more than chance and a small share of its own effect.
+    """Contribution of a contributor to the difference, beyond chance and a small share of its own effect.
 
     Args:
         contributor: its name.
         percent: of its own effect, the larger of both methods' [%].
-        standard_errors: how sure that is.
-        by: what explains it, "" where nothing does.
+        standard_errors: its size in standard errors.
+        by: its explanation, "" if there is none.
     """
 
     contributor: str
@@ -26,19 +26,19 @@ class LinearPart:
 
 @dataclass(frozen=True)
 class Explanation:
-    """What explains a measure's difference, in its unit.
+    """Explanation of a measure's difference, in its unit.
 
     Args:
-        undecided: why that is not known, "" where it is.
-        faults: what is not explained, a sentence each.
+        undecided: reason why it is unknown, "" if it is known.
+        faults: unexplained differences, a sentence each.
         linear: contributors whose linear part is beyond chance and 2 % of their own effect.
         largest_percent: the largest linear part of the other contributors, of their own effect [%].
-        neglected: what the stack-up leaves out on purpose, and the rms of its largest effect.
-        second_order_rms, second_order_mean: of what is of second order.
+        neglected: effects that the stack-up leaves out on purpose, and the rms of its largest effect.
+        second_order_rms, second_order_mean: of the second-order part.
         second_order_of: contributors with the largest second differences, the largest first.
-        left_rms: rms of what is neither linear nor of second order.
-        mean_left: what of the mean difference is not of second order, and how much of it may be.
-        mean_allowed: as said.
+        left_rms: rms of the part that is neither linear nor of second order.
+        mean_left: part of the mean difference that is not of second order.
+        mean_allowed: allowed size of that part.
         largest_trial: the trial with the largest difference.
     """
 
@@ -56,7 +56,7 @@ class Explanation:
     largest_trial: int | None = None
 
     def summary(self) -> agreement.Explanation:
-        """As summary.json shows it."""
+        """Explanation in the form of summary.json."""
         linear = [
             made(
                 agreement.LinearPart,

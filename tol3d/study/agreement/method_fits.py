@@ -1,4 +1,4 @@
-"""Both methods of a measure, and their difference, on what the measure sees of its contributors."""
+"""Both methods of a measure, and their difference, on the regressors of the measure."""
 
 import math
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ class MethodFits:
     """Both methods and their difference on a measure's regressors, all its trials.
 
     Args:
-        regressed: what they are regressed on.
+        regressed: their regressors.
         disagreement: of the methods.
         difference, analytic, geometric: the fits.
         sigma: of the measure, the larger of both methods'.
@@ -43,7 +43,7 @@ class MethodFits:
 
     @classmethod
     def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "MethodFits | None":
-        """None where there are too few trials."""
+        """None if there are too few trials."""
         if tally.disagreement is None or tally.geometric_regressors is None:
             return None
         regressed = regressor_set(system, measure).of(measure)

@@ -1,4 +1,4 @@
-"""Some trials again with a part of their deviations: how the methods' difference grows shows of what order it is.
+"""Some trials again with a part of their deviations: the growth of the methods' difference shows its order.
 
 A first-order stack-up is right if its difference to the geometry goes as the square of the deviations. Along the ray
 from the nominal build to a trial's the difference is D(t) = D(0) + t L + t^2 Q + ...: two short steps give Q, which a
@@ -38,7 +38,7 @@ NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not name
 
 @dataclass(frozen=True, eq=False)
 class SecondLook:
-    """Differences (geometric - analytic) of some trials, by measure and in its unit; nan where a build did not seat.
+    """Differences (geometric - analytic) of some trials, by measure and in its unit; nan if a build did not seat.
 
     Args:
         trials: which.
@@ -55,11 +55,11 @@ class SecondLook:
     regressors: Mapping[str, Array]
 
     def left(self, measure: str) -> Array:
-        """What is neither there at the nominal build nor of second order, (trials,)."""
+        """Part that is neither there at the nominal build nor of second order, (trials,)."""
         return self.whole[measure] - self.nominal[measure] - self.second_order[measure]
 
     def sums(self, measure: str, regressed: Regressed, target: Array) -> Sums:
-        """What a target (trials,) has in common with a measure's regressors, of the trials that it is known of."""
+        """Sums of a target (trials,) with a measure's regressors, over the trials for which it is known."""
         good = ~np.isnan(target)
         rows = self.regressors[measure][np.ix_(regressed.rows, good)]
         if regressed.picked is None:
@@ -97,7 +97,7 @@ def second_look(simulation: Simulation, method: Method, count: int, others: Sequ
 
 
 def _differences(system: System, method: Method, trials: Trials, measures: Sequence[Measure]) -> Mapping[str, Array]:
-    """Of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
+    """Differences of builds that seat; of a measure that keeps its overlaps, those of builds that overlap too."""
     analytic = Evaluation(system).of(trials, measures)
     geometric = Evaluation(system, method).of(trials, measures, lambda own: own.keeps_overlap)
     return {own.name: geometric[own.name] - analytic[own.name] for own in measures}
@@ -107,7 +107,7 @@ def bends(simulation: Simulation, method: Method) -> Mapping[str, Mapping[str, f
     """Second differences of (geometric - analytic) at +-3 sigma of each contributor alone, by measure and contributor.
 
     Half of f(m + 3 s) - 2 f(m) + f(m - 3 s), averaged over positions, in the measure's unit; a contributor with
-    components: their sum. Its ninth is what it shifts the mean by. nan where a build does not seat.
+    components: their sum. Its ninth is the shift of the mean. nan if a build does not seat.
     """
     system = simulation.system
     measures = scalars_of(system)
@@ -123,14 +123,14 @@ def bends(simulation: Simulation, method: Method) -> Mapping[str, Mapping[str, f
 
 
 def _bends(system: System, values: Array) -> Mapping[str, float]:
-    """Of the differences (positions, 1 + 2 components) of the middle, of all steps forth and of all steps back."""
+    """Bends from the differences (positions, 1 + 2 components) of the middle, all steps forth and all steps back."""
     count = component_count(system)
     half = ((values[:, 1 : count + 1] + values[:, count + 1 :]) / 2 - values[:, :1]).mean(axis=0)
     return {name: float(half[own].sum()) for name, own in component_slices(system).items()}
 
 
 def largest_bends(bent: Mapping[str, float]) -> tuple[str, ...]:
-    """Names of the largest second differences, the largest first; none where they are not known."""
+    """Names of the largest second differences, the largest first; none if unknown."""
     ranked = sorted((name for name, bend in bent.items() if bend), key=lambda name: -abs(bent[name]))
     most = abs(bent[ranked[0]]) if ranked else 0.0
     return tuple(name for name in ranked[:NAMED_BENDS] if abs(bent[name]) > NAMED_SHARE * most)
