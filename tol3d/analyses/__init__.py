@@ -1,1 +1,1 @@
-"""What an engineer decides from: questions that are asked of any scene, by its responses alone."""
+"""Analyses for decisions of an engineer: questions about any scene, answered by its responses alone."""

@@ -40,24 +40,24 @@ LONGEST: Final = 0.3
 LESS: Final = 2e-3
 """Share of the cost by which another round has to be cheaper."""
 AIM: Final = 0.995
-"""Of the target: what is aimed at, so that what is found is rather below."""
+"""Fraction of the target to aim at, so that the result is rather below."""
 NEAR: Final = 0.97
-"""Of the target: nearer than that is near enough."""
+"""Fraction of the target that is near enough."""
 DAMPING: Final = 0.8
 DRAWS: Final = 12_000
 DIGITS: Final = 4
-"""Of factors, which are rounded down."""
+"""Digits of factors, which are rounded down."""
 AT_BOUND: Final = 1e-6
 CURVE: Final = (0.1, 0.3, 3.0, 10.0)
-"""Of the target: where else the cost is told."""
+"""Fractions of the target at which the cost is reported too."""
 PASSES: Final = 2
 """Over tangents, for each point of the curve."""
 LOOKS: Final = 3
 """Last looks; after each that is not content the search goes on below."""
 SURE: Final = 1.03
-"""Of the target: what the last look may say at most."""
+"""Largest result of the last check, over the target."""
 FAR: Final = 0.02
-"""Of a target: what first order has below that is within reach, however far it is off."""
+"""Fraction of a target: a first-order result below that is within reach, however far it is off."""
 STRAIGHT: Final = 1e-3
 
 
@@ -156,7 +156,7 @@ class _Seen:
 
 
 def _sampled(search: Search, x: Array, draws: int, seed: int) -> Array:
-    """How often limits are left (targets,) by importance sampling about the design points, always from a seed."""
+    """Fractions out of limits (targets,) by importance sampling about the design points, always from a seed."""
     search.move_to(x)
     each = {key: own.sampled(draws, seed)[0] for key, own in search.points.items()}
     return np.array([math.fsum(each[key] for key in search.keys(own)) for own in search.targets])

@@ -1,4 +1,4 @@
-"""What a user asks of an allocation: measures with their limits, bounds of factors, limits that stay."""
+"""Input of an allocation by the user: measures with their limits, bounds of factors, limits that stay."""
 
 from collections.abc import Mapping, Sequence
 

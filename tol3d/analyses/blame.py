@@ -37,7 +37,7 @@ FREQUENT_SHARE: Final = 1 / 8
 PLACES: Final = 8
 FEWEST_PLACES: Final = 2
 MOST_MINUTES: Final = 0.02
-"""Of a processor for one step towards the design points at all positions."""
+"""Processor minutes for one step towards the design points at all positions."""
 LEAST_MINUTES: Final = 1e-9
 STARTS, STARTS_ALONE = 1, 8
 

@@ -21,13 +21,13 @@ EXAMPLES: Final = "±10 um, -5 um..+10 um, or 5 um of a zone or a scale"
 
 @dataclass(frozen=True)
 class Change:
-    """Of one contributor.
+    """Change of one contributor.
 
     Args:
-        name: of it.
-        limits: between which it is drawn [mm, rad or K].
-        size: of its zone, or of a law that one number states.
-        factor: by which it is wider.
+        name: its name.
+        limits: new limits of its draw [mm, rad or K].
+        size: new size of its zone, or of a law stated by one number.
+        factor: on its width.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Change:
 
 
 def change_of(response: Response, text: str) -> Change:
-    """What `--set NAME=VALUE` says: `±10um`, `+-10 um`, `-5 um..+10 um`, `5 um`.
+    """Change by `--set NAME=VALUE`: `±10um`, `+-10 um`, `-5 um..+10 um`, `5 um`.
 
     Raises:
         InputError: no such contributor, or no such value of it.
@@ -55,7 +55,7 @@ def change_of(response: Response, text: str) -> Change:
 
 
 def factor_of(response: Response, text: str, option: str = "--factor") -> Change:
-    """What `--factor NAME=0.5` says.
+    """Change by `--factor NAME=0.5`.
 
     Raises:
         InputError: no such contributor, or no factor above 0.

@@ -19,7 +19,7 @@ FIELDS: Final[Mapping[str, tuple[str, ...]]] = {"reciprocal": NUMBERS, "exponent
 
 
 class Cost(Protocol):
-    """What a tolerance of a factor costs."""
+    """Cost of a tolerance at a factor."""
 
     def of(self, factor: float) -> float:
         """The cost, in the user's own money."""
@@ -105,7 +105,7 @@ class Costs:
     other: Cost = field(default_factory=Reciprocal)
 
     def of(self, name: str) -> Cost:
-        """Of a contributor."""
+        """Cost of a contributor."""
         return self.own.get(name, self.other)
 
 

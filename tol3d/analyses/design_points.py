@@ -23,16 +23,16 @@ FURTHEST: Final = 9.0
 """From the origin, where nothing is looked for."""
 HALVINGS: Final = 30
 SHRINKS: Final = 6
-"""How often a step is halved that leads nowhere."""
+"""Halvings of a step that leads nowhere."""
 PENALTY: Final = 2.0
-"""By how much more than needed the merit of a step counts the limit."""
+"""Weight of the limit in the merit of a step, over the weight needed."""
 LEAST: Final = 1e-300
 AT_ORIGIN: Final = 1e-3
-"""Of each normal, where a start is at the origin: there a length has no direction."""
+"""Length of each normal of a start at the origin, where a length has no direction."""
 SAME: Final = 0.1
 """Design points nearer to each other are one, and by this share of their distance from the origin."""
 FARTHER: Final = 2.0
-"""How much farther than the nearest design point another one may be to be drawn about."""
+"""Distance beyond that of the nearest design point up to which builds are drawn about another one."""
 MOST: Final = 24
 """Design points at a position."""
 
@@ -73,7 +73,7 @@ class DesignPoint:
 
 
 def is_same(first: Array, other: Array) -> bool:
-    """Whether two design points are one."""
+    """True if two design points coincide."""
     return float(np.linalg.norm(first - other)) < SAME * max(1.0, float(np.linalg.norm(first)))
 
 
@@ -261,7 +261,7 @@ class _Walk:
             good = 0.5 * (there * there).sum(axis=1) + weights[waiting] * np.abs(inside) < merits[waiting]
             self.normals[own[good]], self.inside[own[good]] = there[good], inside[good]
             waiting, share = waiting[~good], share / 2
-        self.ended[rows[waiting]] = True  # they lead nowhere
+        self.ended[rows[waiting]] = True  # no progress
 
 
 # without gradients ----------------------------------------------------------------------------------

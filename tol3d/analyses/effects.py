@@ -30,9 +30,9 @@ PLACES: Final = 16
 FEWEST_PLACES: Final = 2
 """Positions where builds take long."""
 MOST_EVALUATIONS: Final = 150_000
-"""Of pairs and what is mixed of them, for measures that are asked together."""
+"""Pairs and their mixtures at most, for measures that are evaluated together."""
 MOST_MINUTES: Final = 0.1
-"""Of a processor that these may take, by the contacts a minute of the method."""
+"""Processor minutes for these at most, by the contacts a minute of the method."""
 LEAST_MINUTES: Final = 1e-9
 LEAST_BASE: Final = 128
 MOST_BASE: Final = 2**14
@@ -49,7 +49,7 @@ class Index(Section):
 
 
 class ContributorEffects(Section):
-    """What a contributor does to a measure."""
+    """Effect of a contributor on a measure."""
 
     unit: Label = Field(description="of its deviation")
     slope: Known = Field(

@@ -24,7 +24,7 @@ UNITS: Final[Mapping[str, str]] = {"um": "µm", "arcmin": "′", "1": ""}
 
 
 def effects_report(found: Effects) -> Page:
-    """What contributors do to each measure, the largest first."""
+    """Effects of contributors on each measure, the largest first."""
     head = Line(((found.scene, "bold"), (f" · effects of contributors, {found.evaluations} builds", "")))
     blocks: list[PageItem] = [head]
     for name, own in found.measures.items():

@@ -13,7 +13,7 @@ from tol3d.numerics.arrays import Array
 
 CONFIDENCE: Final = 0.95
 MOST_FACTOR: Final = 1e6
-"""Of an interval of which next to nothing is known."""
+"""Factor of an interval of which next to nothing is known."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What to change, as it stands below the verdict of a run: quick, by what the run found and a few slopes.
+"""Recommended changes below the verdict of a run: quick estimates from its trials and a few slopes.
 
 The run's own trials are shifted, or narrowed about their mean by the root of 1 - 3/4 of a contributor's share of the
 variance, as for a measure that adds up. what_to_change.py simulates each change.
@@ -44,9 +44,9 @@ STEEPEST: Final = 6
 """Contributors with the largest shares, whose slopes are taken."""
 MOST_ROWS: Final = 8
 SECONDS: Final = 0.2
-"""Of builds for a measure, by what the method says that one takes."""
+"""Seconds of builds for a measure, by the method's stated cost of one."""
 MOST_TRIALS: Final = 100_000
-"""Of a run that are shifted and narrowed."""
+"""Trials of a run that are shifted and narrowed."""
 
 
 def not_ok(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> list[str]:
@@ -57,7 +57,7 @@ def not_ok(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> list[str]:
 
 
 def estimated_changes(run: Run, simulation: Simulation, accepted_ppm: float = ACCEPTED_PPM) -> Changes | None:
-    """What to change in the scene of a run, the worst measures; None where none can be estimated."""
+    """Recommended changes to the scene of a run, for the worst measures; None if none can be estimated."""
     bad = [name for name in not_ok(run, accepted_ppm) if run.found.measures[name].has_limits]
     asked = [name for name in bad if _can_be_estimated(run.found.measures[name])]
     if not asked:
@@ -75,7 +75,7 @@ def estimated_changes(run: Run, simulation: Simulation, accepted_ppm: float = AC
 
 
 def _can_be_estimated(measure: MeasureSummary) -> bool:
-    """Whether it is one number a trial that can be anything: no curve, and nothing counted."""
+    """True if it is one unrestricted number per trial: no curve, and no count."""
     return measure.take != "curve" and measure.unit not in COUNTED
 
 
@@ -147,7 +147,7 @@ class _Told(Asked):
 
     @property
     def shares(self) -> dict[str, float]:
-        """Of the variance, the largest first."""
+        """Shares of the variance, the largest first."""
         column = next((own for own in shares_of(self.summary) if own.method == self.summary.best_method), None)
         if column is None:
             return {}

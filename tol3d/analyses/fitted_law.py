@@ -24,14 +24,14 @@ REPLICATES: Final = 200
 LEVEL: Final = 0.05
 LOW, HIGH = 0.00135, 0.99865
 LEAST_POWER: Final = 0.7
-"""Of a beta law: with less it has its trials at its ends, which moments do not find."""
+"""Power of a beta law: with less it has its trials at its ends, which moments do not find."""
 BEYOND: Final = 0.25
 """Trials that a law has beyond any of them: those beyond its fitted ends are not infinitely rare."""
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Of samples, each an array (samples,)."""
+    """Moments of samples, each an array (samples,)."""
 
     mean: Array
     sigma: Array
@@ -40,7 +40,7 @@ class Moments:
 
     @classmethod
     def of(cls, values: Array) -> "Moments":
-        """Of samples (samples, n)."""
+        """Moments of samples (samples, n)."""
         mean, sigma = values.mean(axis=1), values.std(axis=1, ddof=1)
         off = (values - mean[:, None]) / sigma[:, None]
         return cls(mean, sigma, (off**3).mean(axis=1), (off**4).mean(axis=1) - 3.0)

@@ -28,16 +28,16 @@ STARTS: Final = 2
 ALONE: Final = 8
 """Starts where there is one position."""
 STEP: Final = 1e-3
-"""Of central differences, in standard normals and in logarithms of factors."""
+"""Step of central differences, in standard normals and in logarithms of factors."""
 STEPS: Final = 12
 MET: Final = 1e-3
 """A step that is left, in standard normals: a distance is then known to its square."""
 LONGEST: Final = 3.0
-"""Of a step, in standard normals."""
+"""Length of a step, in standard normals."""
 SHARES: Final = (0.1, 1.5)
 """Least and largest share of a step that is gone."""
 SEEN: Final = 0.01
-"""Of the probability: design points that stand for less are left out."""
+"""Fraction of the probability: design points that contribute less are left out."""
 PLAIN: Final = 0.1
 """Share of the draws that are about no design point."""
 LEAST: Final = 1e-300

@@ -166,7 +166,7 @@ def _estimate(state: LimitState, found: Drawn, places: Places, spent: int, notes
     probability = float(np.clip(each.mean(), 0.0, 1.0))
     error = math.sqrt(variance)
     interval = weighted_interval(probability, error, freedoms, unseen)
-    if few and probability <= 0.5:  # what draws in all directions may have missed
+    if few and probability <= 0.5:  # may be missed by draws in all directions
         outer = float(np.mean([Mixture.about(own, state, None).outer for own in places.points]))
         around = max(AROUND * len(own), 1.0)
         interval = interval[0], min(1.0, max(interval[1], probability - math.log(0.025) * outer / around))

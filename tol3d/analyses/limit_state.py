@@ -18,7 +18,7 @@ Positions = Mapping[str, Array]
 STEP: Final = 1e-3
 """Central differences, in standard normals."""
 BUILDS, POSITIONS = 4, 5
-"""By which it is seen whether a limit state reads positions."""
+"""Numbers of builds and positions that show whether a limit state reads positions."""
 
 
 @dataclass(frozen=True, eq=False)

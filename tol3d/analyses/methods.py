@@ -58,26 +58,26 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC, SEATED, value_column
 from tol3d.system.region import region_of
 
 MOST_TRIALS: Final = 20_000
-"""Of a scene whose study has more, where nobody says how many."""
+"""Trials by default of a scene whose study has more."""
 CONTACTS: Final = 6_000_000
-"""Of the worst case of one measure: some seconds."""
+"""Contacts for the worst case of one measure: some seconds."""
 AT_ONCE: Final = 65_536
 """Trials."""
 PLACES: Final = 4
 """Drawn positions at which a worst case begins at the mean build and at random ends."""
 WORST_TRIALS: Final = 3
-"""Of each side, from which it begins too."""
+"""Worst trials of each side, which are starts too."""
 RANDOM: Final = 3
 JUDGED: Final = 256
 """Trials of each side that are taken into the regions for it."""
 FEWEST: Final = 6
 """Rows of a search: the mean build and an end by slopes, each side."""
 TOO_MANY: Final = 20.0
-"""How many times as many builds as are paid for is too many to begin."""
+"""Factor over the affordable number of builds that is too many to begin."""
 NEGLIGIBLE: Final = 1e-9
-"""Of all half tolerances: a contributor that does less does nothing."""
+"""Fraction of all half tolerances: a contributor with less effect has none."""
 CONSTANT: Final = 1e-12
-"""Of values, which are the same if they differ by less."""
+"""Relative difference of values that count as equal."""
 FEWEST_FITTED: Final = 100
 LOW, HIGH = 0.00135, 0.99865
 
@@ -255,7 +255,7 @@ def _built(response: Response) -> Built:
 
 
 def _half_tolerances(space: Space, slopes: Array) -> Array:
-    """Of each contributor that acts, and of each of its features that are drawn by themselves (parts,)."""
+    """Half tolerances of each active contributor, and of each of its features drawn separately (parts,)."""
     found = [np.zeros(0)]
     for own in space.drawings:
         if own.acts and slopes[own.columns].any():
@@ -310,7 +310,7 @@ def _worst_trials(
 
     Laws without limits of their own draw beyond their regions.
     """
-    ranked = np.argsort(-sign * values)  # those that failed are last
+    ranked = np.argsort(-sign * values)  # failed builds are last
     ranked = ranked[np.isfinite(values[ranked])][:JUDGED]
     if not ranked.size:
         return [], []

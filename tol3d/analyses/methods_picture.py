@@ -47,7 +47,7 @@ def _intervals(name: str, own: MeasureMethods, scene: str) -> Intervals:
 
 
 def _used(own: MeasureMethods) -> float:
-    """How far the simulation goes of the way to the nearest limit; 0 without limits."""
+    """3 sigma of the simulation over the distance to the nearest limit; 0 without limits."""
     low, high, mean = own.simulation.low_3sigma, own.simulation.high_3sigma, own.simulation.mean
     if low is None or high is None or mean is None:
         return 0.0

@@ -1,4 +1,4 @@
-"""What methods side by side keep in a run, in units of the measures."""
+"""Section that a run keeps of the comparison of methods, in units of the measures."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What importance sampling draws from at a position: plain builds, and some about design points.
+"""Mixture for importance sampling at a position: plain builds, and some about design points.
 
 Sources: Harbitz 1986 (beyond a distance); Breitung 1984 (the spread of failures along curved directions).
 """
@@ -46,7 +46,7 @@ class Shape:
 
     @classmethod
     def plain(cls, point: DesignPoint) -> "Shape":
-        """Of no curvatures."""
+        """Shape without curvatures."""
         return cls(point.normals, np.zeros((0, len(point.normals))), np.zeros(0))
 
     @classmethod
@@ -76,7 +76,7 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """What is drawn from at a position.
+    """Mixture of draws at a position.
 
     Args:
         shapes: of draws about each point.

@@ -30,7 +30,7 @@ from tol3d.system.normals import LEAST, MOST
 MOST_EVEN: Final = 4096
 """Dimensions up to which points are Sobol's; beyond them they are random."""
 RESAMPLES: Final = 200
-"""Of the bootstrap."""
+"""Resamples of the bootstrap."""
 NORMAL_95: Final = 1.959964
 POSITION: Final = "position"
 """The input that positions are, where they are one."""
@@ -53,7 +53,7 @@ class Builds:
 
 @dataclass(frozen=True)
 class Input:
-    """What is varied together.
+    """Input: contributors varied together.
 
     Args:
         names: of contributors; none where it is the position.
@@ -170,12 +170,12 @@ class Indices:
 
 @dataclass(frozen=True, eq=False)
 class PickFreeze:
-    """What pairs of builds say of their inputs.
+    """Results of pairs of builds for their inputs.
 
     Args:
-        inputs: they.
+        inputs: the inputs.
         values: indices of the measures.
-        failures: of whether a build is beyond its limits, or does not seat.
+        failures: indices of a build out of limits, or not assembled.
         seated: of A and B (2n, measures).
         failing: likewise.
         rows: (measures,) pairs of which both have a value.
@@ -212,7 +212,7 @@ def pick_freeze(pairs: Pairs, inputs: Sequence[Input]) -> PickFreeze:
 
 
 def resampled(count: int, seed: int) -> Array:
-    """How often rows count (RESAMPLES + 1, count): once each, then as bootstraps draw them."""
+    """Counts of each row (RESAMPLES + 1, count): once each, then as bootstraps draw them."""
     generator = np.random.default_rng([seed, count])
     drawn = [np.bincount(generator.integers(count, size=count), minlength=count) for _ in range(RESAMPLES)]
     return np.array([np.ones(count), *drawn], dtype=np.float64)
@@ -227,7 +227,7 @@ class Outcome:
 
 
 def asked(response: Response, deviations: Array, positions: Mapping[str, Array]) -> Outcome:
-    """What becomes of builds."""
+    """Outcome of builds."""
     found = response.values(deviations, positions)
     values = np.where(found.seated, found.values, np.nan)
     return Outcome(values, beyond(response, values).astype(np.float64))
@@ -274,7 +274,7 @@ class _Gathered:
 
     @property
     def indices(self) -> Indices:
-        """Of all inputs that were added."""
+        """Indices of all inputs that were added."""
         shape = (len(self.found), len(self.weights), self.first.shape[1])
         first = np.array([own for own, _ in self.found]).reshape(shape)
         total = np.array([own for _, own in self.found]).reshape(shape)

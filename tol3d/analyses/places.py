@@ -20,7 +20,7 @@ from tol3d.numerics.arrays import Array
 SEEN: Final = 40
 """Other positions at which the design points are looked at."""
 NEARER: Final = 0.5
-"""By how much nearer to failing a position may be than those that were searched."""
+"""Distance by which a position may be nearer to failing than those that were searched."""
 SCREENED: Final = 1024
 CHOSEN: Final = 64
 """Positions chosen among those that were screened."""
@@ -28,7 +28,7 @@ DEFENCE: Final = 0.15
 """Share of them that is chosen alike."""
 FEWEST_PLACES, FEWEST_STARTS = 5, 3
 MOST_MINUTES: Final = 0.01
-"""Of a processor for one step of a walk from all positions: where builds take long there are fewer."""
+"""Processor minutes for one step of a walk from all positions: where builds take long there are fewer."""
 LEAST_MINUTES: Final = 1e-9
 
 
@@ -52,12 +52,12 @@ class Places:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of positions."""
         return len(self.points)
 
     @property
     def beyond(self) -> NDArray[np.bool_]:
-        """Where the build at the origin fails, and what does not is drawn about."""
+        """True where the build at the origin fails; draws are then made about the builds that do not fail."""
         return np.array([any(own.beyond for own in each) for each in self.points], dtype=bool)
 
     @property

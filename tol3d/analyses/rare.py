@@ -1,4 +1,4 @@
-"""How often a measure leaves a limit, where that is too rare to wait for: design points and sampling.
+"""Probability that a measure is out of a limit, where that is rare: design points and sampling.
 
 In standard normals the most likely build that fails is the design point: the one of the limit nearest to the origin. By
 the first order (FORM) the probability is Φ(-β), β its distance; the second order (SORM) knows curvatures too.
@@ -26,17 +26,17 @@ from tol3d.errors import InputError
 Method = Literal["importance", "subset", "form", "sorm"]
 
 DRAWS: Final = 4800
-"""Of importance sampling."""
+"""Draws of importance sampling."""
 LEVEL_DRAWS: Final = 14_000
-"""Of each level of subset simulation: 10 % of error at 1e-7 or so, from 1e5 builds."""
+"""Draws of each level of subset simulation: 10 % of error at 1e-7 or so, from 1e5 builds."""
 
 
 @dataclass(frozen=True, eq=False)
 class RareEvent:
-    """How often a measure leaves a limit.
+    """Probability that a measure is out of a limit.
 
     Args:
-        measure: its name.
+        measure: name.
         limit, side: see LimitState.
         method: by which the probability was found.
         points: design points, the nearest first.
@@ -87,7 +87,7 @@ def rare_event(
     seed: int = 1,
     activity: Callable[[str], None] = lambda text: None,
 ) -> RareEvent:
-    """How often a measure is beyond a limit.
+    """Probability that a measure is beyond a limit.
 
     Args:
         response: of that measure alone.
@@ -96,10 +96,10 @@ def rare_event(
             simulation.
         draws: of importance sampling, or of a level of subset simulation.
         places: positions at which design points are sought, drawn as the study draws them.
-        starts: at each position, from how many builds.
-        alone: the same where there is one position.
+        starts: number of starting builds at each position.
+        alone: the same if there is one position.
         seed: of all draws.
-        activity: told what goes on.
+        activity: progress callback.
 
     Raises:
         InputError: several measures, no such method, or a contributor without a smooth map from normals, by name.
@@ -141,7 +141,7 @@ def rare_event(
 
 
 def _unsure(points: Sequence[Sequence[DesignPoint]], more: tuple[str, ...]) -> tuple[str, ...]:
-    """What an approximation does not see."""
+    """Warnings of what the approximation does not see."""
     lists = [own for own in points if own]
     if not lists:
         return ("no design point was found within 9 standard deviations: nothing is known (--method subset)", *more)
@@ -163,7 +163,7 @@ def limits_left(
     seed: int = 1,
     activity: Callable[[str], None] = lambda text: None,
 ) -> tuple[RareEvent, ...]:
-    """How often each limit of a response's measures is left, or of one of them.
+    """Probability of leaving each limit of a response's measures, or of one of them.
 
     Raises:
         InputError: no such measure, or none with a limit; see `rare_event`.

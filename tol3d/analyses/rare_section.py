@@ -32,7 +32,7 @@ class DesignBuild(Section):
 
 
 class LimitLeft(Section):
-    """How often a limit is left."""
+    """Probability of leaving a limit."""
 
     measure: Label
     side: Side
@@ -54,7 +54,7 @@ class LimitLeft(Section):
 
 
 class RareEvents(Section):
-    """How often limits are left."""
+    """Probabilities of leaving limits."""
 
     scene: Label
     seed: Count
@@ -62,7 +62,7 @@ class RareEvents(Section):
 
 
 def rare_section(name: str, seed: int, response: Response, events: Sequence[RareEvent]) -> RareEvents:
-    """What was found of limits.
+    """Section on limits.
 
     Args:
         name: of the scene.

@@ -31,7 +31,7 @@ def limit_words(own: LimitLeft) -> str:
 
 
 def rare_report(found: RareEvents) -> Page:
-    """How often limits are left, then the design point of each."""
+    """Probabilities of leaving limits, then the design point of each."""
     second = any(own.second_order_ppm is not None for own in found.limits)
     heads = ["limit", "ppm", "95 %", "first order", *(["second order"] if second else []), "β", "points", "builds"]
     rows = [Row(own.measure, _cells(own, second=second)) for own in found.limits]

@@ -17,7 +17,7 @@ MANY_PLACES: Final = 256
 
 
 def covariance_of(draw: Draw) -> Array:
-    """Of the components of a draw (components, components) [mm², rad² or K²]."""
+    """Covariance of the components of a draw (components, components) [mm², rad² or K²]."""
     if isinstance(draw, JointDraw):
         return draw.covariance
     if draw.uniforms == 1 and len(draw.components) > 1:  # a length in one direction
@@ -49,11 +49,11 @@ class Rates:
         return found
 
     def sigmas(self, response: Response) -> Array:
-        """Of the measures, positions included (measures,)."""
+        """Sigmas of the measures, positions included (measures,)."""
         return np.asarray(np.sqrt(sum(self.variances(response).values(), self.of_positions) + self._together(response)))
 
     def _together(self, response: Response) -> Array:
-        """What correlated contributors add to the variances, or take off (measures,)."""
+        """Change of the variances by correlated contributors (measures,)."""
         total = np.zeros(self.slopes.shape[1])
         for block in response.copula.blocks:
             sigmas = np.array([response.draws[name].sigma for name in block.names])

@@ -1,4 +1,4 @@
-"""What every analysis asks of a scene: values of its measures, in batches, of stated deviations or standard normals.
+"""Response of a scene, the basis of every analysis: values of its measures for batches of deviations or normals.
 
 A response is a simulation, one of its methods and some of its measures. It knows no mechanism; deviations are columns
 of the contributors, positions those of the system's streams.
@@ -49,12 +49,12 @@ NUDGE: Final[Mapping[str, float]] = {"um": 1e-3, "arcmin": 1e-5, "K": 0.1, "1": 
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """Of some rows.
+    """Values of some rows.
 
     Args:
-        values: of each measure in its unit (n, measures), not a number where a build does not seat, unless the measure
-            keeps how deep parts overlap.
-        codes: what became of each (n, measures), by `texts`.
+        values: of each measure in its unit (n, measures), NaN where a build cannot be assembled, unless the measure
+            keeps the depth of overlap.
+        codes: status of each (n, measures), an index of `texts`.
         texts: of the statuses.
     """
 
@@ -64,13 +64,13 @@ class Values:
 
     @property
     def seated(self) -> NDArray[np.bool_]:
-        """Whether each is built and measured (n, measures)."""
+        """True where a value is assembled and measured (n, measures)."""
         return np.asarray(self.codes == OK)
 
 
 @dataclass
 class Count:
-    """How many builds were evaluated; shared by what is made of one response."""
+    """Count of evaluated builds; shared by all responses made from one."""
 
     evaluations: int = 0
 
@@ -99,12 +99,12 @@ class Response:
 
     @property
     def evaluations(self) -> int:
-        """How many builds it has evaluated."""
+        """Number of builds evaluated."""
         return self.count.evaluations
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the measures."""
+        """Names of the measures."""
         return tuple(own.name for own in self.measures)
 
     @property
@@ -122,7 +122,7 @@ class Response:
 
     @property
     def minutes(self) -> float:
-        """What an evaluation takes of a processor, by the contacts that its method makes in a minute."""
+        """Processor time of an evaluation [min], by the contacts that its method makes in a minute."""
         asked = list({own.name: own for own in map(self.source, self.measures)}.values())
         return self.simulation.system.cost(asked) / self.simulation.method.contacts_per_minute
 
@@ -255,12 +255,12 @@ class Response:
         return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
 
     def ranges(self, positions: Mapping[str, Array] | None = None) -> Array:
-        """How far each contributor by itself moves each measure, over all of its tolerance (measures, contributors).
+        """Range of each measure over the whole tolerance of each contributor (measures, contributors).
 
-        The others are at their means; nan where a build does not seat. See study/high_low_mean.py.
+        The others are at their means; NaN where a build cannot be assembled. See study/high_low_mean.py.
 
         Args:
-            positions: one of each stream (1,); at rest if not given.
+            positions: one of each stream (1,); default at rest.
         """
 
         def values(rows: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
@@ -290,7 +290,7 @@ class Response:
 
     @property
     def dimension(self) -> int:
-        """How many standard normals there are."""
+        """Number of standard normals."""
         return max((own.stop for own in self.normals.values()), default=0)
 
     @property
@@ -359,7 +359,7 @@ class Response:
         return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(-1, found.shape[1])
 
     def drawn_by(self, name: str) -> Draw:
-        """How a contributor is drawn.
+        """Draw of a contributor.
 
         Raises:
             InputError: no such contributor.

@@ -19,9 +19,9 @@ from tol3d.system.draw import Ball, Planar, component_sigmas, drawn_each
 AT_ONCE: Final = 2**22
 """Numbers of a batch of builds: rows times components, 32 MB."""
 BATCHES: Final = 6
-"""How many builds each row takes for each component: three pairs of differences."""
+"""Builds of each row for each component: three pairs of differences."""
 STEADY: Final = 0.5
-"""Of its rms, the least mean of a slope that acts in one direction, so that a nominal can be moved along it."""
+"""Least mean of a slope over its rms if it acts in one direction, so that a nominal can be moved along it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ class Lever:
     room: float
 
     def allows(self, change: float) -> bool:
-        """Whether its mean stays physical."""
+        """True if its mean stays physical."""
         return change >= self.room
 
 

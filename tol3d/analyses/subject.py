@@ -1,4 +1,4 @@
-"""What an analysis is asked of: a scene, or a finished run of one, in which its section is kept."""
+"""Subject of an analysis: a scene, or a finished run of one, in which its section is kept."""
 
 import json
 from collections.abc import Mapping

@@ -20,7 +20,7 @@ from tol3d.analyses.limit_state import LimitState, Positions, at_place
 from tol3d.numerics.arrays import Array
 
 SHARE: Final = 0.1
-"""Of each event in the former one."""
+"""Fraction of each event in the former one."""
 REPETITIONS: Final = 10
 LEVELS: Final = 24
 """After which it gives up: 1e-24."""

@@ -31,7 +31,7 @@ NAME: Final = "sweep.json"
 
 
 class VariantMeasure(Section):
-    """What a variant's run found of a measure, in its unit, by the 3D simulation where there is one."""
+    """Result of a variant's run for a measure, in its unit, by the 3D simulation if there is one."""
 
     unit: Label
     lower_limit: Known
@@ -69,7 +69,7 @@ class Sweep(Section):
 
 @dataclass(frozen=True)
 class SweepQuestion:
-    """What is varied.
+    """Variables of a sweep.
 
     Args:
         variables: fields with their values, or with ranges for a Latin hypercube.
@@ -95,15 +95,15 @@ class SweepQuestion:
 
 @dataclass(frozen=True)
 class Order:
-    """How variants are simulated.
+    """Simulation settings of variants.
 
     Args:
         out: the folder that keeps them.
-        overrides: what is said otherwise than in the scene's study, for all of them.
+        overrides: changes to the scene's study, for all of them.
         workers: that run the trials of one.
         trust_parts, run_builders: see `tol3d.run_scene`.
         watch: callbacks while one runs.
-        done: is told the number of each variant that is done, of how many, and its values.
+        done: callback after each variant: its number, the number of all, and its values.
     """
 
     out: Path
@@ -212,7 +212,7 @@ def _run(scene: Scene, order: Order) -> Run:
 
 
 def _key(scene: Scene, study: object) -> str:
-    """What tells variants of one sweep, and those of others in the same folder, apart."""
+    """Key that distinguishes variants of one sweep from each other, and from others in the same folder."""
     digest = hashlib.sha256(scene.text.encode())
     for name, file in sorted(scene.files.items()):
         digest.update(f"{name} {file.sha256}".encode())

@@ -95,7 +95,7 @@ def _curve(axes: Axes, found: Sweep, name: str) -> None:
 
 
 def _marks(axes: Axes, found: Sweep, name: str) -> None:
-    """Where variants could not be built."""
+    """Mark variants that could not be built."""
     for own in found.variants:
         if name not in own.measures:
             axes.axvline(own.numbers[0], color=GREY, linewidth=1.0, linestyle=":")

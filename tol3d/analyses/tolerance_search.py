@@ -1,4 +1,4 @@
-"""What an allocation is asked, and what it searches: factors of tolerances, with design points on the way."""
+"""Question and search of an allocation: factors of tolerances, with design points on the way."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -41,7 +41,7 @@ class Target:
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked besides targets.
+    """Question of an allocation, besides its targets.
 
     Args:
         costs: of tolerances.
@@ -49,8 +49,8 @@ class Question:
         own_bounds: of some contributors' factors.
         frozen: contributors that stay as they are.
         stays: of some contributors, which limit does.
-        groups: contributors that have one factor together, by the name of their tolerance; each its own if not given.
-        beyond_least: whether deviations may be drawn below what is physical, as normal laws do anyway.
+        groups: contributors with a common factor, by the name of their tolerance; by default each has its own.
+        beyond_least: True to allow draws below the physical minimum, as normal laws do anyway.
     """
 
     costs: Costs = field(default_factory=Costs)
@@ -64,11 +64,11 @@ class Question:
 
 @dataclass(eq=False)
 class Search:
-    """What is looked for, and design points on the way.
+    """Search of an allocation, and design points on the way.
 
     Args:
         response: with the tolerances of the scene.
-        targets, question: what is asked.
+        targets, question: of the allocation.
         groups: contributors by what has a factor.
         low, high: bounds of the logarithms of the factors.
         points: design points by measure and limit, at the factors that were moved to last.
@@ -88,15 +88,15 @@ class Search:
 
     @property
     def names(self) -> list[str]:
-        """Of what has a factor."""
+        """Names of groups that have a factor."""
         return list(self.groups)
 
     def factors(self, x: Array) -> dict[str, float]:
-        """Of their logarithms."""
+        """Factors from their logarithms."""
         return dict(zip(self.names, np.exp(np.clip(x, self.low, self.high)).tolist(), strict=True))
 
     def cost(self, x: Array) -> float:
-        """Of all of them."""
+        """Total cost."""
         return math.fsum(self.question.costs.of(name).of(own) for name, own in self.factors(x).items())
 
     def cost_slopes(self, x: Array) -> Array:

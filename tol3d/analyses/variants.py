@@ -24,7 +24,7 @@ Point = Mapping[str, Number]
 
 MOST_VARIANTS: Final = 2000
 DIGITS: Final = 6
-"""Of drawn numbers, as people write them."""
+"""Digits of drawn numbers, as people write them."""
 STEP_ROUNDING: Final = 1e-9
 WHOLE: Final = re.compile(r"[+-]?\d+")
 FORMS: Final = 'values such as "10um,20um", "17..25:2" or "10um..30um"'
@@ -47,7 +47,7 @@ class Variable:
 
     @property
     def unit(self) -> str:
-        """Of its numbers; "" where they have none."""
+        """Unit of its numbers; "" if they have none."""
         first = self.values[0] if self.values else self.span[0] if self.span else 0
         return first.unit if isinstance(first, Quantity) else ""
 

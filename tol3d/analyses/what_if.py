@@ -1,9 +1,9 @@
-"""What if a tolerance were another one: sigma by rates and ppm by FORM at once, then by simulation with the same draws.
+"""Effect of another tolerance: sigma by rates and ppm by FORM at once, then by simulation with the same draws.
 
 Rates are slopes at the mean build, taken once; other tolerances change the spreads alone. Design points are sought anew
-with the other laws. The simulation draws the same uniforms before and after, so that what differs is the tolerance; how
-often limits are left is found by importance sampling about the design points, from the same seed. Kept trials are not
-weighed anew: in the tails that is off by a factor.
+with the other laws. The simulation draws the same uniforms before and after, so that only the tolerance differs;
+probabilities are found by importance sampling about the design points, from the same seed. Kept trials are not
+reweighted: in the tails that would be off by a factor.
 """
 
 from collections.abc import Callable, Sequence
@@ -44,7 +44,7 @@ class ChangeMade(Section):
 
 
 class LimitNumbers(Section):
-    """How often a limit is left [ppm]: by the first order, and by importance sampling.
+    """Probability of leaving a limit [ppm]: by the first order, and by importance sampling.
 
     Trials that leave it are counted where draws have no map from normals; None of a simulation that was not asked for.
     """
@@ -83,7 +83,7 @@ class MeasureWhatIf(Section):
 
 
 class WhatIf(Section):
-    """What other tolerances do to measures."""
+    """Effect of other tolerances on measures."""
 
     changes: list[ChangeMade]
     trials: Count
@@ -96,7 +96,7 @@ class WhatIf(Section):
 def first_order_ppm(
     response: Response, side: Side, limit: float, *, seed: int = 1
 ) -> tuple[float | None, float | None]:
-    """How often a limit is left by FORM [ppm], averaged over positions, and the least distance β of a design point.
+    """Probability of leaving a limit by FORM [ppm], averaged over positions, and the least distance β.
 
     Args:
         response: of one measure.
@@ -134,16 +134,16 @@ def what_if(
     seed: int = 1,
     activity: Callable[[str], None] = lambda text: None,
 ) -> WhatIf:
-    """What other tolerances do to measures that depend on them.
+    """Effect of other tolerances on measures that depend on them.
 
     Args:
         response: with the tolerances of the scene.
-        changes: one a contributor.
-        measure: of which; of all that depend on them if not given.
-        trials: of the simulation; the study's if not given, 100 000 at most; 0 for none.
+        changes: one per contributor.
+        measure: its name; default all that depend on them.
+        trials: of the simulation; default the study's, 100 000 at most; 0 for none.
         draws: of importance sampling, for each limit before and after; 0 for none.
         seed: of importance sampling; trials have the study's.
-        activity: callback that gets what goes on, in words.
+        activity: progress callback.
 
     Raises:
         InputError: no change, one that cannot be, or no measure that depends on them.

@@ -1,4 +1,4 @@
-"""What other tolerances do, as tables: a measure before, after, and the change."""
+"""Tables of other tolerances' effect: a measure before, after, and the change."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -44,7 +44,7 @@ def what_if_report(name: str, found: WhatIf) -> Page:
 
 
 def what_if_table(own: MeasureWhatIf) -> Table:
-    """Of one measure."""
+    """Table of one measure."""
     unit = own.unit
     pairs = ((label, own.before.value(key), own.after.value(key)) for label, key in ROWS)
     rows = [_values(*pair, unit) for pair in pairs if pair[1:] != (None, None)]

@@ -1,8 +1,8 @@
-"""What to change where limits are left: which nominal to move, which tolerance to halve, and what takes the mean off.
+"""Recommended changes for measures out of limits: nominals to move, tolerances to halve, causes of a mean off nominal.
 
-Rates say which contributors come into question (slopes.py). What each change does is then simulated: the same builds
-again, as the study draws them, but with a nominal moved, or with a tolerance half as wide. What differs is the change
-alone, for draws are the same. estimated_changes.py says it below a verdict, by rates alone.
+Rates select contributors (slopes.py). Each change is then simulated: the same builds again, as the study draws them,
+but with a nominal moved, or with a tolerance half as wide. As draws are the same, only the change differs.
+estimated_changes.py prints estimates below a verdict, by rates alone.
 """
 
 import math
@@ -31,7 +31,7 @@ Target = Literal["middle of the limits", "accepted share", "Ppk 1.33"]
 
 TARGET_PPK: Final = 1.33
 SECONDS: Final = 20.0
-"""Of builds for a measure, by what the method says that one takes: a result must not hang on the clock."""
+"""Seconds of builds for a measure, by the method's stated cost of one: a result must not depend on the clock."""
 MOST_ROWS: Final = 16
 """At how many builds slopes are taken."""
 MOST_BUILDS: Final = 5000
@@ -43,19 +43,19 @@ TOLD: Final = 5
 LEVERS: Final = 3
 """Contributors by which a mean is moved."""
 NO_SHIFT: Final = 0.01
-"""Of sigma; a mean that is nearer to its target stays."""
+"""Fraction of sigma; a mean that is nearer to its target stays."""
 SURE: Final = 3.0
 """Standard errors of a mean, within which it stays too."""
 MET: Final = 0.01
-"""Of a shift, what may be left of it."""
+"""Fraction of a shift that may be left."""
 SHARE_OF_PLAY: Final = "1"
 """Unit of what is no tolerance: where a part lies in its play."""
 USELESS: Final = 1e-3
-"""Of the steepest slope; by a flatter one no mean is moved."""
+"""Fraction of the steepest slope; a mean is not moved by a flatter one."""
 
 
 class Spread(Section):
-    """How a measure lies in its limits, in its unit."""
+    """Spread of a measure within its limits, in its unit."""
 
     mean: Known
     sigma: Known
@@ -91,7 +91,7 @@ class Halved(Section):
 
 
 class Taken(Section):
-    """How a contributor takes the mean of a measure off the nominal build, in its unit."""
+    """Shift of a measure's mean from the nominal build by a contributor, in its unit."""
 
     contributor: Label
     first_order: Number = Field(description="by its own mean")
@@ -99,7 +99,7 @@ class Taken(Section):
 
 
 class MeasureChanges(Section):
-    """What to change for a measure."""
+    """Recommended changes for a measure."""
 
     unit: Label
     lower_limit: Known
@@ -115,7 +115,7 @@ class MeasureChanges(Section):
 
 
 class Changes(Section):
-    """What to change in a scene, measure by measure."""
+    """Recommended changes to a scene, measure by measure."""
 
     by: By
     accepted_ppm: Ppm
@@ -126,12 +126,12 @@ class Changes(Section):
 
 @dataclass(frozen=True)
 class ChangesQuestion:
-    """What is wanted.
+    """Question for recommended changes.
 
     Args:
-        measure: which; None for all that leave their limits.
+        measure: its name; None for all that leave their limits.
         accepted_ppm: share of builds that may be out of limits.
-        builds: by which each change is judged; None takes as many as are soon made.
+        builds: number that judges each change; None takes as many as are quick to make.
     """
 
     measure: str | None = None
@@ -146,14 +146,14 @@ def changes_of(
     bad: Sequence[str] | None = None,
     activity: Callable[[str], None] = lambda text: None,
 ) -> Changes:
-    """What to change in a scene, each change simulated.
+    """Recommended changes to a scene, each of them simulated.
 
     Args:
         response: of its measures.
-        question: what is wanted.
+        question: the question.
         bad: measures that leave their limits, the worst first, where a run has judged them, of a curve its name; judged
             here if None.
-        activity: is told what goes on.
+        activity: progress callback.
 
     Raises:
         InputError: no such measure, or no limits.
@@ -206,7 +206,7 @@ def _limited(response: Response, measure: str | None) -> Response:
 
 @dataclass(frozen=True)
 class Effort:
-    """How many builds are made.
+    """Number of builds to make.
 
     Args:
         rows: at which slopes are taken.
@@ -279,7 +279,7 @@ class Asked:
         return moments, counts, judged.performance(self.response.simulation.study.ppk_by)
 
     def spread(self, values: Array) -> Spread:
-        """How builds (n,) lie."""
+        """Spread of builds (n,)."""
         moments, counts, performance = self.judged(values)
         out = counts.out_of_limits
         return made(
@@ -292,7 +292,7 @@ class Asked:
         )
 
     def targets(self, now: Array, mean: float, error: float) -> Iterator[tuple[Target, float]]:
-        """How far the mean must be shifted, towards each target that is not reached.
+        """Shift of the mean needed for each target that is not reached.
 
         Args:
             now: builds (n,); nan where one fails.

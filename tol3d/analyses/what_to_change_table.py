@@ -1,4 +1,4 @@
-"""What to change, as tables, and as a few lines below a verdict."""
+"""Recommended changes, as tables, and as a few lines below a verdict."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -20,7 +20,7 @@ from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, 
 MOST_TAKEN: Final = 5
 """Contributors of a mean's shift that are shown."""
 LEAST_TAKEN: Final = 0.005
-"""Of sigma; less takes no mean off."""
+"""Fraction of sigma; a smaller shift of the mean is not shown."""
 BRIEF_TOLD: Final = 3
 ERRORS: Final = 1.96
 """Standard errors of an interval of 95 %."""
@@ -38,7 +38,7 @@ AFTER: Final = (Heading("mean"), Heading("sigma"), Heading("out of limits (95 %)
 
 
 def changes_report(name: str, found: Changes) -> Page:
-    """What to change, measure by measure.
+    """Recommended changes, measure by measure.
 
     Args:
         name: of the scene.
@@ -75,7 +75,7 @@ def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
 
 
 def _taken_table(own: MeasureChanges) -> Table | None:
-    """What takes the mean off nominal; None where nothing does."""
+    """Table of causes of a mean off nominal; None if there are none."""
     unit, sigma = own.unit, own.now.sigma or 0.0
     large = [each for each in own.taken if abs(each.first_order + each.second_order) > LEAST_TAKEN * sigma]
     if not large and abs(own.taken_together or 0.0) <= max(LEAST_TAKEN * sigma, SURE * (own.taken_error or 0.0)):

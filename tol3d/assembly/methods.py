@@ -45,7 +45,7 @@ class PlacingMethod:
 
     @cached_property
     def plan(self) -> PlacingPlan:
-        """What the nominal geometry decides; an assembly in many poses has one in each."""
+        """Plan by nominal geometry; an assembly in several poses has one for each."""
         return planned(self.assembly, self.solids)
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:

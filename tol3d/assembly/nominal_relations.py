@@ -35,7 +35,7 @@ class Miss:
 
     @property
     def sentence(self) -> str:
-        """What is expected, and what there is."""
+        """Expected and actual relation, in a sentence."""
         own = self.relation
         kinds = {"coincident": "meet", "coaxial": "be coaxial", "tangent": "touch", "distance": "lie so"}
         place = ", ".join(f"{round(value, 4) + 0.0:g}" for value in self.at)
@@ -57,7 +57,7 @@ def misses(assembly: Assembly) -> Iterator[Miss]:
         for k, own in enumerate(relations):
             moving, target = (assembly.features[name] for name in (own.moving, own.target))
             amount, at = _missing(own, moving, target, frames[own.moving][0], frames[own.target][0])
-            if amount > MEETS:  # not where a move failed: not a number
+            if amount > MEETS:  # not where a move failed: NaN
                 yield Miss(move.name, k, own, amount, (float(at[0]), float(at[1]), float(at[2])))
 
 
@@ -80,7 +80,7 @@ def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: 
 
 
 def _ends(feature: Feature) -> Array:
-    """Where it is judged, in its frame (ends, 3) [mm]."""
+    """Points at which its position is evaluated, in its frame (ends, 3) [mm]."""
     if isinstance(feature.shape, RoundPlane):
         return feature.shape.radius * np.array([[1.0, 0, 0], [0, 1.0, 0], [-1.0, 0, 0], [0, -1.0, 0]])
     shape: Axis | Plane | Point = feature.shape

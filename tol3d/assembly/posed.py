@@ -231,7 +231,7 @@ class PosedMethod:
 
 
 def has_loops(assembly: Assembly) -> bool:
-    """Whether moves close loops, which then have statuses of their own."""
+    """True if moves close loops, which then have statuses of their own."""
     return any(isinstance(move, StatedMove) and move.closes_loops for move in assembly.moves)
 
 
@@ -243,7 +243,7 @@ def _some(poses: Sequence[str]) -> Sequence[str]:
 
 
 def system_of(scene: Scene) -> AssemblySystem:
-    """What a scene of an assembly means, in all poses in which it is read.
+    """System of a scene of an assembly, in all poses in which it is read.
 
     Raises:
         SceneError: see `assembly_system`.

@@ -1,4 +1,4 @@
-"""What summary.json holds of assemblies: of which features each measure is."""
+"""Assembly entries in summary.json: the features of each measure."""
 
 from typing import Annotated, Final
 

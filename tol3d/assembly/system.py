@@ -51,10 +51,10 @@ SAME: Final = 1e-6
 WITNESS: Final = "fcl"
 MESHED_WITNESS: Final = MethodKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
 FINER: Final = 0.25
-"""Of the chord error that is stated: what meshes of half the step have."""
+"""Fraction of the stated chord error: that of meshes of half the step."""
 
 FRAME: Final = "datum frame "
-"""How messages of the methods begin that are of a datum frame; others begin with a place in the scene."""
+"""Beginning of the methods' messages on a datum frame; others begin with a place in the scene."""
 
 FLAT: Final = 1e-6
 """Change of a measure per deviation that is none: both sides of the mean raise it alike."""
@@ -109,7 +109,7 @@ class AssemblySystem(PlainSystem):
                 text = self.statuses.texts[code]
                 yield ("measures", measure.name), f"cannot be read even without deviations: {text}"
             elif self.assembly.measures[measure.name].over_play is not None or measure.kind == "slack":
-                continue  # of a whole room, not of where parts are `placed`: of second order apart
+                continue  # it depends on the whole clearance, not on `placed`: a second-order difference
             elif abs(value - linear[measure.name][0]) > SAME + self.assembly.measures[measure.name].chord_error:
                 off = abs(value - linear[measure.name][0]) * measure.per_internal
                 words = (
@@ -166,7 +166,7 @@ class AssemblySystem(PlainSystem):
         super().regress(measure, others, columns, rows)
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
-        """Of the torsors; None where the measure is not linear in them."""
+        """Closed form by torsors; None if the measure is not linear in them."""
         if measure.name not in self._known_forms:
             self._known_forms[measure.name] = self._closed_form(measure)
         return self._known_forms[measure.name]
@@ -193,11 +193,11 @@ class AssemblySystem(PlainSystem):
         return ClosedForm(slopes.nominal, middle, sigma, tuple(shares))
 
     def is_linear(self, measure: Measure) -> bool:
-        """Whether a measure is linear in all deviations by the analytic method, which then has a closed form."""
+        """True if a measure is linear in all deviations by the analytic method, which then has a closed form."""
         return not self.slopes_of(measure.name).bends
 
     def slopes_of(self, name: str) -> Slopes:
-        """How a measure of the assembly changes with each deviation, at the means."""
+        """Slopes of a measure of the assembly for each deviation, at the means."""
         known = self._known_slopes
         if name not in known:
             known[name] = torsors.slopes(self.assembly, name, *self._moments)
@@ -269,15 +269,15 @@ class ClearanceSystem(WitnessedSystem):
 
 
 def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = None) -> AssemblySystem:
-    """What a scene of an assembly means.
+    """System of a scene of an assembly.
 
     Args:
         scene: the scene.
-        pose: in which moves that have poses lay their parts, with the measures that are read there; "" for the first.
-        meaning: its drawings and measures, where they are known.
+        pose: pose for moves that have poses, with the measures read in it; "" for the first.
+        meaning: its drawings and measures, if known already.
 
     Raises:
-        SceneError: what it says does not fit together, such as moves that leave a part free.
+        SceneError: the scene is inconsistent, such as moves that leave a part free.
     """
     pose = pose or next(iter(pose_names(scene)), "")
     placed = _asked(scene, lambda: _settled(scene, pose, meaning or understood(scene)))
@@ -320,16 +320,16 @@ def _faced(placed: Meant) -> Assembly:
 
 
 def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
-    """What a scene means, parts at the poses in which its moves lay them without deviations.
+    """Model of a scene, with parts where its moves place them without deviations.
 
-    A part that cannot be laid so, such as by pins beside their holes, stays where it is drawn.
+    A part that cannot be placed so, such as by pins beside their holes, stays as drawn.
     """
     poses = poses_of(scene)
     drawn = meaning.at(poses, pose)
     found = placing.placed(drawn.assembly, np.zeros((1, drawn.assembly.width)))
     settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
     if all(pose.tobytes() == poses[name].tobytes() for name, pose in settled.items()):
-        return drawn  # with what is known of it already
+        return drawn  # with its cached properties
     return meaning.at({**poses, **settled}, pose)
 
 

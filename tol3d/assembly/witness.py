@@ -26,7 +26,7 @@ from tol3d.system.method import Answers
 from tol3d.system.trials import Trials
 
 CORE: Final = 0.5
-"""Of its nominal radius that a surface is made of; so much may overlap."""
+"""Fraction of its nominal radius of which a surface is made; so much may overlap."""
 POINT: Final = 1e-3
 """mm; radius of the ball that stands for a point."""
 FAR: Final = 1e4
@@ -79,7 +79,7 @@ class FclWitness:
         return Answers(values, status=status)
 
     def _gaps(self, measured: Measured, deviations: Array) -> Array:
-        """Of two surfaces (trials,) [mm]; not a number where their parts are not placed."""
+        """Gaps between two surfaces (trials,) [mm]; NaN where their parts are not placed."""
         start, end = (self.assembly.features[name] for name in measured.features)
         frames = placing.features_placed(self.assembly, deviations, measured.after)
         bodies = _bodies(self.assembly, start, end)
@@ -97,10 +97,10 @@ class FclWitness:
 
 
 def _bodies(assembly: Assembly, start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
-    """What stands for two surfaces.
+    """Bodies that represent two surfaces.
 
-    The middle alone counts of a cylinder beside a plane, and of the second of two that lie along each other. Of two
-    that cross the axes stand: between cylinders FCL iterates to some micrometres only.
+    A cylinder beside a plane, and the second of two parallel ones, is represented by its middle. Two that cross are
+    represented by their axes: between cylinders FCL converges to some micrometres only.
     """
     match kind_of(start.shape), kind_of(end.shape):
         case "plane", _:
@@ -128,7 +128,7 @@ def _radius(feature: Feature, deviations: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """What stands for a surface, and its radius [mm]."""
+    """Body that represents a surface, and its radius [mm]."""
 
     surface: Surface
     radius: float

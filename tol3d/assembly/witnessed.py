@@ -5,7 +5,7 @@ from tol3d.assembly.model.moves import is_inner
 
 
 def reads(assembly: Assembly, name: str) -> bool:
-    """Whether FCL reads a measure: a clearance of parts, and a gap of surfaces of which neither is a hole or socket."""
+    """True if FCL reads a measure: a clearance of parts, or a gap of surfaces neither of which is a hole or socket."""
     measured = assembly.measures[name]
     if measured.minus is not None or measured.rocking is not None or measured.over_play is not None:
         return False

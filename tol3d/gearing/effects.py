@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Effect(ABC):
-    """What a deviation acts on. Frozen data.
+    """Effect of a deviation. Frozen data.
 
     The geometric method reads its displacements (builds/), the analytic method its terms (stack_up/terms.py), each
     registered there for the class of the effect.
@@ -29,14 +29,14 @@ class Effect(ABC):
 
     @abstractmethod
     def acts_in(self, mesh: "Mesh") -> bool:
-        """Whether it changes how the gears of a mesh lie to each other, or their flanks."""
+        """True if it changes the relative position of the gears of a mesh, or their flanks."""
 
     def clocking(self, mesh: "Mesh") -> float:
         """Turn of the shaft that a mesh drives, about the driven gear's z, with the teeth in contact [rad per unit]."""
         return 0.0
 
     def acts_on(self, link: str) -> bool:
-        """Whether it is a deviation of a link that is no gear mesh."""
+        """True if it is a deviation of a link that is no gear mesh."""
         return False
 
     @property
@@ -45,12 +45,12 @@ class Effect(ABC):
         return None
 
     def deviates_teeth(self, gear: str) -> bool:
-        """Whether it makes the teeth of a gear differ from each other, so that curves have tooth-mesh orders."""
+        """True if it makes the teeth of a gear differ from each other, so that curves have tooth-mesh orders."""
         return False
 
     @property
     def mirrored(self) -> bool:
-        """Whether the deviation's azimuths count against those of the gear with which it turns."""
+        """True if the deviation's azimuths count against those of the gear with which it turns."""
         return False
 
 
@@ -83,12 +83,12 @@ class Together(Effect):
 
     @property
     def turns_with(self) -> str | None:
-        """Of the first gear: they all turn alike."""
+        """The first gear: they all turn alike."""
         return self.effects[0].turns_with if self.effects else None
 
     @property
     def mirrored(self) -> bool:
-        """Of the same gear."""
+        """Flag of the same gear."""
         return self.effects[0].mirrored if self.effects else False
 
 
@@ -100,11 +100,11 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Plane:
-    """How a gear lies to the frame in which a deviation with a direction is counted, such as its shaft's.
+    """Orientation of a gear to the frame of a deviation with a direction, such as its shaft's frame.
 
     Args:
         azimuth: of that frame's x axis in the gear's frame [rad].
-        mirrored: whether the two count azimuths in opposite senses, as a gear does that faces backward on its shaft.
+        mirrored: True if the two count azimuths in opposite senses, as a gear that faces backward on its shaft.
     """
 
     azimuth: float = 0.0
@@ -203,7 +203,7 @@ SLOPE: Final = 1
 FORM: Final = 2
 HELIX: Final = 3
 SHAPES: Final = 4
-"""How an offset goes over a flank: alike everywhere, along the profile, in its form, along the face."""
+"""Shapes of an offset over a flank: constant, along the profile, in its form, along the face."""
 
 
 @dataclass(frozen=True)
@@ -241,7 +241,7 @@ class FlankDeviation(Effect):
 
     @property
     def terms(self) -> Iterator[tuple[int, Place, int, float]]:
-        """Of each component, flank and shape: the first three, and how much of the shape one of the component adds."""
+        """Component, flank and shape of each term, and the shape's amount per unit of the component."""
         mix = self.mix or tuple(float(shape == self.shape) for shape in range(SHAPES))
         for component, places in enumerate(self.places):
             for place in places:
@@ -291,7 +291,7 @@ class Temperature(Effect):
     parts: tuple[str, ...]
 
     def acts_in(self, mesh: "Mesh") -> bool:
-        """Where a gear of the mesh, or its housing, is one of them."""
+        """True if a gear of the mesh, or its housing, is one of the parts."""
         return not {mesh.driver, mesh.driven, mesh.housing}.isdisjoint(self.parts)
 
 

@@ -233,9 +233,9 @@ def gears_in(system: System) -> GearSystem:
 
 
 def gear_system(scene: Scene) -> GearSystem:
-    """What a scene of gears means, with links that other mechanisms bring into it.
+    """System of a scene of gears, with links added by other mechanisms.
 
     Raises:
-        SceneError: gears that cannot be made or run together, with their numbers and place.
+        SceneError: gears that cannot be made or run together, with their numbers and key.
     """
     return GearSystem(model_from_scene(scene))

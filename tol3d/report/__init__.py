@@ -1,4 +1,4 @@
-"""What a run looks like: tables, pictures, meshes and 3D views, from its summary and from replayed trials.
+"""Presentation of a run: tables, pictures, meshes and 3D views, from its summary and from replayed trials.
 
 Names are loaded when they are first used: a table needs no matplotlib, a picture no trimesh, and only
 `tol3d.report.view` loads pyvista.

@@ -30,11 +30,11 @@ ANIMATIONS: Final = (".gif", ".png", ".webp")
 FRAME_SIZE: Final = (960, 640)  # pixels
 LEFT_SHARE: Final = 2 / 3  # of the width, the larger picture
 SECONDS: Final = 0.08  # a frame
-HELD: Final = 8  # frames that the last one of a motion that goes back is shown
+HELD: Final = 8  # frames for which the last one of a returning motion is held
 COLOURS: Final = 64  # of a GIF; few enough for small files, enough for shaded solids
 SAMPLED: Final = 5  # frames from which they are chosen
 TITLE_SIZE, CAPTION_SIZE = 8, 11
-NEAREST: Final = 0.1  # of the way from the eye to what is seen: nothing that is drawn is nearer
+NEAREST: Final = 0.1  # of the distance from the eye to the scene: nothing drawn is nearer
 MARK_RADIUS: Final = 5.5  # pixels
 
 
@@ -169,7 +169,7 @@ def _begun(plotter: pv.Plotter, motion: Motion, place: int, label: str) -> Mappi
 
 
 def _add_legend(plotter: pv.Plotter, colours: Mapping[str, str]) -> None:
-    """What marks are, in the upper right corner, below each other."""
+    """Add the legend of marks in the upper right corner, one below the other."""
     for row, (text, colour) in enumerate(colours.items()):
         actor = plotter.add_text(
             f" {text} ", position=(0.99, 0.975 - 0.045 * row), viewport=True, font_size=TITLE_SIZE, color="white"
@@ -195,7 +195,7 @@ def _move(
     radius = MARK_RADIUS * 2 * high / tall
     for what, colour in motion.colours.items():
         points = [mark.point for mark in frame.marks if mark.what == what and shot.shows(mark.of)]
-        # before everything: one looks along parallels, so that they are seen where they are
+        # in front of everything: in parallel projection they keep their places
         places = [point + plotter.renderer.length * own.towards for point in points]
         add_dots(plotter, f"{what}, {place}", places, radius, colour)  # pyvista has one namespace for all renderers
     if place == 0:

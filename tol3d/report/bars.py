@@ -34,7 +34,7 @@ class Bars:
 
     @classmethod
     def of(cls, values: Array, edges: Array) -> "Bars":
-        """Of values, of which none is lost."""
+        """Bars of values, all of which are counted."""
         return cls(edges, np.histogram(values, edges)[0].astype(np.float64), len(values))
 
     @property
@@ -78,7 +78,7 @@ def _seated(measure: MeasureSummary, method: Method) -> float:
 
 
 def _neighbours_in_one(bars: int, total: int) -> int:
-    """How many bars make one, for about 2 n^(1/3) of them (the Rice rule)."""
+    """Number of bars to merge into one, for about 2 n^(1/3) bars (the Rice rule)."""
     wanted: float = max(FEWEST_BARS, 2 * total ** (1 / 3))
     return max(1, round(bars / wanted))
 
@@ -90,7 +90,7 @@ def _joined(counts: Array, merged: int) -> Array:
 
 
 MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
-NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest names there may be fit
+NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest possible names fit
 LINE: Final = 0.155  # inch, of a name
 BAR: Final = 0.115  # inch; least thickness of a bar that bears its number
 BETWEEN: Final = 0.06  # inch, between two contributors
@@ -107,7 +107,7 @@ def shown_names(measure: MeasureSummary) -> tuple[list[str], list[str]]:
 
 
 def labels_of(measure: MeasureSummary) -> list[str]:
-    """What stands beside each bar, whole."""
+    """Labels beside the bars, unshortened."""
     shown, rest = shown_names(measure)
     others = [f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else []
     return [wrapped(name, NAME_WIDTH, NAME_SIZE, NAME_LINES) for name in shown] + others
@@ -126,7 +126,7 @@ def height_of_contributors(measure: MeasureSummary) -> float:
 
 
 def legend_text(column: Column) -> str:
-    """What the legend calls a column."""
+    """Name of a column in the legend."""
     return METHOD_WORDS.get(column.method) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
 
 

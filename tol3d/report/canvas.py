@@ -35,7 +35,7 @@ NAME_SIZE: Final = 12.0  # points
 WORDS_SIZE: Final = 9.0
 LINE_SPACING: Final = 1.2
 TITLE_LIFT: Final = 4.0  # points, from the axes to the words above them
-MOST_LINES: Final = 5  # of names and words; enough for the longest names there may be
+MOST_LINES: Final = 5  # of names and words; enough for the longest possible names
 LEGEND_BELOW: Final = 0.5  # inch, from the axis to the first line of the legend below it
 DOTS_PER_INCH: Final = 150
 MINUTES = 60  # of a degree
@@ -150,7 +150,7 @@ def save_figure(figure: Figure, path: Path) -> None:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", r"Glyph \d+ .* missing")  # of a user's name: shown as a box
             is_png = path.suffix.lower() == PNG
-            if is_png:  # laid out here: matplotlib goes through all of it once more for that alone
+            if is_png:  # laid out here: matplotlib would traverse everything once more for that alone
                 if engine := figure.get_layout_engine():
                     engine.execute(figure)
                 figure.set_layout_engine(None)

@@ -1,4 +1,4 @@
-"""What a scene means, before any trial: what its system shows of it, its study, and what should be known of it."""
+"""Check of a scene before any trial: tables of its system, its study, and warnings."""
 
 from collections.abc import Sequence
 from typing import Final, Protocol, runtime_checkable
@@ -9,7 +9,7 @@ from tol3d.study.correlated import correlation_warnings
 from tol3d.study.simulation import Simulation
 from tol3d.system.faults import faults_of
 
-MOST_ROWS: Final = 60  # of a table that says what is written in the scene
+MOST_ROWS: Final = 60  # of a table of the scene's own entries
 LEFT_OUT: Final = "rows that are left out: check --out FILE.csv writes all of it"
 
 

@@ -54,7 +54,7 @@ def columns_of(measure: MeasureSummary) -> list[Column]:
 
 
 def seated_text(measure: MeasureSummary) -> str:
-    """Of how many trials a measure's mean and sigma are, where some of them failed; else nothing."""
+    """Words for the number of trials behind mean and sigma, if some trials failed; else ""."""
     return f"of {measure.seated} of {measure.trials} that seated" if measure.seated != measure.trials else ""
 
 

@@ -29,14 +29,14 @@ SMALLEST_SPAN = 1e-6  # um or arc minutes; for methods that agree to the last bi
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """How the two methods of one measure differ.
+    """Difference of the two methods for one measure.
 
     Args:
         bars: histogram of the differences, in the measure's unit.
-        at: (n,) where the first trials were read: the driver's position [deg] within a turn, or the
-            analytic value where a measure has many positions; n at most POINTS_SHOWN.
+        at: (n,) abscissa of the first trials: the driver's position [deg] within a turn, or the
+            analytic value if a measure has many positions; n at most POINTS_SHOWN.
         values: (n,) their differences.
-        by_position: whether `at` is a position.
+        by_position: True if `at` is a position.
         largest, rms: of all trials, in the measure's unit.
     """
 
@@ -214,7 +214,7 @@ def _end_of(path: Path, others: Sequence[Path]) -> str:
 
 @dataclass(frozen=True)
 class _Found:
-    """What a method of a run found; of a curve the average over its positions."""
+    """Result of a method in a run; for a curve the average over its positions."""
 
     count: int
     trials: int
@@ -226,7 +226,7 @@ class _Found:
 
     @property
     def trials_text(self) -> str:
-        """How many trials its mean and sigma are of, and of how many there were where some failed."""
+        """Number of trials behind its mean and sigma, and of all trials if some failed."""
         if not self.trials:
             return ""
         return f"{self.count} of {self.trials}" if self.trials != self.count else str(self.count)
@@ -252,12 +252,12 @@ def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
 
 
 def _judged(measure: MeasureSummary) -> bool:
-    """Whether trials of a measure can be out: it has a limit, or some of them failed."""
+    """True if trials of a measure can be out: it has a limit, or some of them failed."""
     return measure.has_limits or bool(seated_text(measure))
 
 
 def _found(measure: MeasureSummary) -> Iterator[tuple[Method, _Found]]:
-    """What each method found."""
+    """Result of each method."""
     if measure.take != "curve":
         for method in SHORT:
             if own := measure.sample(method):

@@ -1,4 +1,4 @@
-"""How mean and sigma of a measure settle with the number of trials, read piece by piece."""
+"""Convergence of a measure's mean and sigma with the number of trials, read piece by piece."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Convergence:
 
 
 def convergence_of(run: Run, name: str, points: int) -> Convergence:
-    """How a measure settles, at so many numbers of trials; memory does not grow with them.
+    """Convergence of a measure at so many numbers of trials; memory does not grow with them.
 
     Raises:
         InputError: a curve, which has no one mean, or too few trials seated. RunError: the run kept no trials.

@@ -1,4 +1,4 @@
-"""How a measure's values are distributed: histograms of both methods, limits, and the range of every column."""
+"""Distribution of a measure: histograms of both methods, limits, and the range of every column."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -114,7 +114,7 @@ def _draw_published(axes: Axes, bars: Bars, colour: str) -> float:
 
 
 def shown_span(measure: MeasureSummary, bars: Sequence[Bars]) -> tuple[float, float]:
-    """What the axis shows: every bar, the ends of every column, and limits that are not far off."""
+    """Range of the axis: every bar, the ends of every column, and limits that are not far off."""
     lows = [float(b.edges[0]) for b in bars]
     highs = [float(b.edges[-1]) for b in bars]
     bounded = is_bounded(measure)
@@ -138,7 +138,7 @@ def shown_span(measure: MeasureSummary, bars: Sequence[Bars]) -> tuple[float, fl
 
 
 def out_text(ppm: float | None, side: str) -> str:
-    """What share of all trials is on the wrong side of a limit.
+    """Fraction of all trials on the wrong side of a limit.
 
     >>> out_text(0.0, "below"), out_text(27_000.0, "above")
     ('none below', '2.7 % above')

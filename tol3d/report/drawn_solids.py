@@ -1,4 +1,4 @@
-"""What pictures in 3D are drawn with: solids with their edges, labels and titles."""
+"""Elements of 3D pictures: solids with their edges, labels and titles."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -66,7 +66,7 @@ def add_painted_solid(plotter: pv.Plotter, mesh: pv.PolyData, paint: Sequence[st
 
 
 def add_section(plotter: pv.Plotter, outline: pv.PolyData, colour: str) -> None:
-    """What a plane cuts of a solid, filled, and its outline."""
+    """Add a plane section of a solid, filled, with its outline."""
     filler = vtkContourTriangulator()
     filler.SetInputData(outline)
     filler.Update()
@@ -117,7 +117,7 @@ def add_label(plotter: pv.Plotter, place: Array, text: str, colour: str) -> None
 
 
 def add_names_below(plotter: pv.Plotter, left: str, right: str) -> None:
-    """What stands at the left and at the right, in the lower corners: letters are as large as both have room for."""
+    """Add texts in the lower left and right corners, in letters as large as both have room for."""
     names = plotter.add_text(f" {left} ", position="lower_left", font_size=NAME_SIZE, color="white")
     names.set_text("lower_right", f" {right} ")
     names.prop.bold, names.prop.background_color, names.prop.background_opacity = True, EDGE_COLOUR, 0.9
@@ -133,7 +133,7 @@ def add_title(plotter: pv.Plotter, text: str, size: int) -> None:
 FRONT: Final = np.array([0.0, 0.0, 1.0])
 UP: Final = np.array([0.0, 1.0, 0.0])
 VIEW_ANGLE: Final = 12.0  # deg; enough perspective to show depth, little enough to look through a gap
-FAR: Final = 4.0  # diagonals of all that is drawn, from what is seen to the eye; along parallels any distance does
+FAR: Final = 4.0  # diagonals of all that is drawn, from the scene to the eye; in parallel projection any distance does
 
 
 def look(plotter: pv.Plotter, middle: Array, high: float, towards: Array, up: Array = UP) -> None:

@@ -9,7 +9,7 @@ from tol3d.report.number import COUNTED
 from tol3d.runs.summary.measure import MeasureSummary
 
 SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this is no end of a normal law
-BY_CHANCE: Final = 1e-3  # at most, that so many trials of a normal law would all stay that near to their mean
+BY_CHANCE: Final = 1e-3  # probability, at most, that so many trials of a normal law all stay that near to their mean
 QUANTILES: Final = ("p0.135", "p99.865")
 THREE_SIGMA: Final = ("low_3sigma", "high_3sigma")
 QUANTILES_MEAN: Final = "; marked are 0.135 % and 99.865 % of the trials, which end before mean ± 3 sigma"
@@ -25,7 +25,7 @@ class Ends:
 
     @classmethod
     def of(cls, column: Column, *, bounded: bool) -> "Ends":
-        """Of a column of a measure that is `bounded` or not."""
+        """Ends of a column of a measure, `bounded` or not."""
         if bounded and all(column.value(key) is not None for key in QUANTILES):
             low, high = (column.value(key) for key in QUANTILES)
             return cls(low, high, ("0.135 %", "99.865 %"))
@@ -34,7 +34,7 @@ class Ends:
 
 
 def is_bounded(measure: MeasureSummary) -> bool:
-    """Whether mean ∓ 3 sigma lies where a measure has no values.
+    """True if mean ∓ 3 sigma lies where a measure has no values.
 
     Below 0 that is of counts and ranges, else where trials end before: a range near 0, a sum of a few uniform laws.
     """
@@ -46,7 +46,7 @@ def is_bounded(measure: MeasureSummary) -> bool:
 
 
 def _is_never_negative(measure: MeasureSummary) -> bool:
-    """What is counted, and peak to peak."""
+    """True for counts and peak-to-peak values."""
     return measure.unit in COUNTED or measure.take in ("range", "harmonic")
 
 
@@ -57,7 +57,7 @@ def _reaches_below_0(mean: float | None, sigma: float | None) -> bool:
 def _ends_early(
     mean: float | None, sigma: float | None, count: int | None, low: float | None, high: float | None
 ) -> bool:
-    """Whether an outer quantile of a sample lies nearer to its mean than that of a normal law ever would.
+    """True if an outer quantile of a sample lies nearer to its mean than for any normal distribution.
 
     Within SHORT_OF_3_SIGMA of it, with trials enough to be sure: n of a normal law all stay within k sigma on one side
     of their mean with a chance of (1 − Φ(−k))^n.

@@ -26,11 +26,11 @@ METRES_PER_MM: Final = 1e-3  # glTF 2.0, 3.4: all linear distances are in metres
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written.
+    """Exported files.
 
     Args:
         files: the files.
-        notes: what the user should know, such as the magnification in use.
+        notes: notes for the user, such as the magnification in use.
     """
 
     files: tuple[Path, ...]

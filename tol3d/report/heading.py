@@ -11,7 +11,7 @@ ENDS: Mapping[Worse, str] = {"low": "smallest", "high": "largest"}
 
 
 def worst_words(run: RunSummary) -> str:
-    """What makes a trial the worst, see `worst_trial`: `the nearest to a limit of play, or the furthest beyond it`."""
+    """Criterion of the worst trial, see `worst_trial`: `the nearest to a limit of play, or the furthest beyond it`."""
     measures = run.measures
     limited = [name for name, measure in measures.items() if measure.has_limits]
     judged = limited or [*measures][:1]
@@ -35,7 +35,7 @@ def limits_text(measure: MeasureSummary) -> str:
 
 
 def heading(measure: MeasureSummary) -> str:
-    """What a measure is, in a line."""
+    """Description of a measure, in a line."""
     return measure.words
 
 

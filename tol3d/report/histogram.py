@@ -126,7 +126,7 @@ def _headed(summary: RunSummary, height: float, more: str = "") -> Figure:
 
 
 def _words(measure: MeasureSummary) -> str:
-    """What a measure is, and of how many trials its picture is where some of them failed."""
+    """Description of a measure, with the number of trials in its picture if some of them failed."""
     seated = seated_text(measure)
     if not seated:
         return heading(measure)

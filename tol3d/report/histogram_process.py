@@ -36,13 +36,13 @@ FEWEST_EACH: Final = 5  # pictures of a process; for fewer a further one does no
 SUMMARIES = tuple(
     f"tol3d.{path.parent.name}.{path.stem}" for path in sorted(Path(__file__).parents[1].glob("*/summary_types.py"))
 )
-"""What runs of this package's mechanisms have in their summaries."""
+"""Modules of the summaries of this package's mechanisms."""
 
 
 def main() -> None:
     """Wait for what is drawn, and draw it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a terminal interrupts both processes; the study says what is done
-    for module in SUMMARIES:  # of which most orders have the kinds: loaded while waiting
+    for module in SUMMARIES:  # most orders need them: loaded while waiting
         import_module(module)
     order = io.BytesIO(sys.stdin.buffer.read())
     if not order.getbuffer():
@@ -114,4 +114,4 @@ if __name__ == "__main__":
     try:
         main()
     finally:
-        gc.freeze()  # else Python looks through all of it again while it ends
+        gc.freeze()  # else Python traverses all of it again on exit

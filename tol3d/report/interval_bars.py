@@ -13,7 +13,7 @@ from tol3d.report.number import UNIT_SIGNS
 COLUMNS: Final = 2
 WIDTH, BAR, ABOVE = 6.4, 0.24, 1.15  # inch; of a measure, of a bar, and of its title and axis
 BAR_SHARE: Final = 0.62
-NAMES: Final = 2.4  # inch; of what stands beside bars
+NAMES: Final = 2.4  # inch; of words beside bars
 MARGIN: Final = 0.04
 
 

@@ -1,4 +1,4 @@
-"""What the measures of a run do together: their common yield in a line, and a table of the largest correlations."""
+"""Joint results of a run's measures: their common yield in a line, and a table of the largest correlations."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,14 +13,14 @@ from tol3d.runs.summary.values import Method
 
 MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in correlations.csv
 NORMAL_95: Final = 1.959964  # sigma; a normal's 95 % lie within
-FISHER_FREEDOM: Final = 3  # trials that Fisher's artanh r takes
+FISHER_FREEDOM: Final = 3  # trials used up by Fisher's artanh r
 YIELD_DECIMALS: Final = 2  # of a yield in %, more where less than a hundredth is lost
 HEADINGS: Final[Mapping[Method, str]] = {"analytic": "analytic", "geometric": "3D simulation"}
 Pair = tuple[int, int]
 
 
 def joint_of(run: RunSummary) -> Joint | None:
-    """What is shown of measures together: nothing where fewer than two have limits, or in a run made before."""
+    """Joint results to show; None if fewer than two measures have limits, or for an older run."""
     return run.joint if run.joint and len(run.joint.limited) > 1 else None
 
 

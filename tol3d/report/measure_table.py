@@ -83,7 +83,7 @@ def _statistic(measure: MeasureSummary, columns: Sequence[Column], key: str, lab
 
 
 def _build_cell(column: Column, key: str, build: Methods, unit: str) -> Shown:
-    """Of one build: by both methods, and what others say of it."""
+    """Cell of one build: by both methods, and as published."""
     value = column.value(key) if column.method == "published" else build.value(column.method)
     return published_cell(column, value, unit)
 
@@ -93,7 +93,7 @@ def _index_cell(value: float | None) -> Shown:
 
 
 def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:
-    """How many trials seated, and how the others failed; nothing where all of them seated."""
+    """Numbers of assembled and of failed trials, by reason; nothing if all could be assembled."""
     others = [published_counts(column) for column in columns]
     if not seated_text(measure) and not any(others):
         return
@@ -141,7 +141,7 @@ def _converted_rows(measure: MeasureSummary, columns: Sequence[Column]) -> Itera
 
 
 def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit: str) -> Iterator[Row]:
-    """What the system's presenter adds."""
+    """Rows added by the system's presenter."""
     for own in further:
         keys = (column.heading if column.method == "published" else column.method for column in columns)
         values = [own.values.get(key) for key in keys]
@@ -180,13 +180,13 @@ def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> fl
 
 
 def _varies(measure: MeasureSummary, column: Column) -> bool:
-    """Whether there is a variance to share: one of our methods finds none where all that acts is constant."""
+    """True if there is a variance to attribute: a method finds none if all that acts is constant."""
     own = measure.sample(column.method) if column.method in ("analytic", "geometric") else None
     return own is None or own.sigma != 0.0
 
 
 def not_attributed(measure: MeasureSummary) -> list[float | None]:
-    """What each method leaves to no contributor [%], None for other columns; empty where that is nothing in print."""
+    """Percentage that each method attributes to no contributor, None for other columns; [] if it prints as zero."""
     left = [
         100 - sum(share or 0.0 for share in column.percents.values())
         if column.method in ATTRIBUTING and _varies(measure, column)

@@ -76,7 +76,7 @@ class Shot:
         return self.looks[frame if len(self.looks) > 1 else 0]
 
     def shows(self, names: Sequence[str]) -> bool:
-        """Whether all these bodies are seen."""
+        """True if all these bodies are visible."""
         return not self.bodies or all(name in self.bodies for name in names)
 
 

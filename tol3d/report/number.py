@@ -121,7 +121,7 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def tip_mm(arcmin: float | None, lever_mm: float | None) -> float | None:
-    """How far a small turn moves a point at a lever [mm]: the arc, as the paper's section 4 reads it.
+    """Displacement of a point at a lever by a small turn [mm]: the arc, as the paper's section 4 reads it.
 
     >>> round(tip_mm(1.0, 763.0), 4)
     0.2219

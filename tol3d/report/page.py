@@ -1,4 +1,4 @@
-"""What a command shows, as plain data: lines of text and tables. `sheet.py` lays it out for a terminal."""
+"""Output of a command as plain data: lines of text and tables. `sheet.py` lays it out for a terminal."""
 
 import csv
 import io
@@ -15,7 +15,7 @@ MOST_TEXTS = 20  # warnings below each other
 TITLE = "bold cyan"  # style of titles
 
 Style = str
-"""Of a terminal: "bold", "dim", "red" ..., "" for none."""
+"""Terminal style: "bold", "dim", "red" ..., "" for none."""
 
 
 class Shown(str):
@@ -161,7 +161,7 @@ class Page:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is left out where it is shown."""
+        """True if nothing is left out where it is shown."""
         return not any(
             block.further if isinstance(block, Table) else isinstance(block, Line) and block.stands_for
             for block in self.blocks
@@ -211,7 +211,7 @@ def note(text: str) -> Line:
 
 
 def warning(text: str) -> Line:
-    """What may spoil a result."""
+    """Line that warns of something that may spoil a result."""
     return line(f"warning: {text}", "yellow")
 
 

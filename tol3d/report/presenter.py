@@ -1,4 +1,4 @@
-"""What a kind of system shows of itself, besides what is shown of every run."""
+"""Presentation of a kind of system, in addition to that of every run."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -31,12 +31,12 @@ Panel = Callable[["pv.Plotter", float], None]
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What the 3D window shows.
+    """Content of the 3D window.
 
     Args:
-        panels: the first one large, at the left, the others below each other at its right; one alone fills the window.
-            Without any the window shows the first world, its bodies named.
-        notes: what the window does not show.
+        panels: the first one large, on the left, the others one below the other on its right; one alone fills the
+            window. Without any the window shows the first world, its bodies named.
+        notes: on all that the window does not show.
     """
 
     panels: tuple[Panel, ...] = ()
@@ -61,12 +61,12 @@ class Display(Protocol):
 
     @property
     def label(self) -> str:
-        """What it is, such as "trial-17" or "nominal", good as the start of a file's name."""
+        """Label, such as "trial-17" or "nominal", usable as the start of a file's name."""
         ...
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know, such as the magnification in use."""
+        """Notes for the user, such as the magnification in use."""
         ...
 
     @property
@@ -99,7 +99,7 @@ class Presenter(Protocol):
         ...
 
     def check(self, simulation: "Simulation") -> Sequence[PageItem]:
-        """What a scene means, before any trial: `tol3d.report.system_check.system_blocks`, or more than that.
+        """Tables of a scene, before any trial: `tol3d.report.system_check.system_blocks`, or more than that.
 
         Args:
             simulation: whose system is of the presenter's own kind.

@@ -1,4 +1,4 @@
-"""What others published of a measure besides its usual rows: further rows, notes, columns of curves."""
+"""Published figures for a measure in addition to its usual rows: further rows, notes, columns of curves."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Final
@@ -93,7 +93,7 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
 
 
 def published_counts(column: Column) -> Mapping[str, int]:
-    """How many trials of somebody's ended how; nothing where he does not say."""
+    """Published numbers of trials by status; empty if there are none."""
     if column.method != "published" or column.values is None:
         return {}
     found: Mapping[str, int] = column.values.get("status") or {}
@@ -114,7 +114,7 @@ def published_cell(column: Column, value: float | None, unit: str) -> Shown:
 
 
 def published_notes(measure: MeasureSummary) -> Iterator[str]:
-    """What others say of their numbers, of their own two methods, and of whole curves."""
+    """Published remarks on figures, on their two methods, and on whole curves."""
     for name, values in measure.published.items():
         if agreement := values.get("agreement"):
             known = {word: agreement.value(key) for key, word in AGREEMENT.items() if agreement.value(key) is not None}
@@ -145,7 +145,7 @@ def at_places(places: Sequence[float], theirs: Sequence[float], values: Sequence
 
 
 def curve_columns(measure: MeasureSummary) -> Iterator[tuple[str, list[float | None]]]:
-    """What others published of a curve, at its positions: headings and values."""
+    """Published values of a curve at its positions: headings and values."""
     for name, own in measure.published.items():
         curve, places = own.get("curve"), own.get("position_deg")
         for key, word in (("mean", "mean"), ("sigma", "sigma"), ("min", "smallest"), ("max", "largest")):
@@ -154,7 +154,7 @@ def curve_columns(measure: MeasureSummary) -> Iterator[tuple[str, list[float | N
 
 
 def spectrum_columns(measure: MeasureSummary, orders: Sequence[float]) -> list[tuple[str, list[float | None]]]:
-    """What others published of a spectrum, at some orders: headings and values."""
+    """Published values of a spectrum at some orders: headings and values."""
     spectra = {name: own["curve"].get("spectrum") for name, own in measure.published.items() if "curve" in own}
     return [
         (f"{name}: {key}", at_places(orders, own["order"], own[key]))
@@ -216,7 +216,7 @@ def found_at(own: Any, place: Sequence[str], method: Method) -> Any:
 
 
 def _correlation(joint: Joint, place: Sequence[str], method: Method) -> float | None:
-    """Of two measures by name: r, or what a key behind them names."""
+    """Correlation of two measures by name: r, or the value of a key behind them."""
     first, second, key = (*place, "r")[:3]
     names, own = joint.correlated, (joint.correlations or {}).get(method)
     matrix = own.get(key) if own else None

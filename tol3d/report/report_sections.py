@@ -1,4 +1,4 @@
-"""What a report says, section by section: a page shows it between its charts, its tables go into files too."""
+"""Sections of a report: a page shows them between its charts, their tables go into files too."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -65,12 +65,12 @@ def report_sections(
 
 
 def more_blocks(run: RunSummary, presenter: Presenter) -> list[PageItem]:
-    """What its system shows besides, and what others have published."""
+    """Further blocks of its system, and published figures."""
     return [*presenter.sections(run), *published_blocks(run)]
 
 
 def trials_blocks(run: RunSummary) -> list[PageItem]:
-    """How many trials ended how, and why."""
+    """Numbers of trials by status, with reasons."""
     found: list[PageItem] = [status_line(run)]
     reasons = [
         Row(name, (reason, Shown(str(count), count)))
@@ -84,7 +84,7 @@ def trials_blocks(run: RunSummary) -> list[PageItem]:
 
 
 def provenance_blocks(run: Run) -> list[PageItem]:
-    """What a run was made from: seed, engine, checksums, versions."""
+    """Provenance of a run: seed, engine, checksums, versions."""
     found = run.found
     rows = [
         Row("seed", (str(found.seed),)),

@@ -14,12 +14,12 @@ from rich.tree import Tree
 from tol3d.report.page import Branch, Heading, Page, PageItem, Table
 
 GAP = 2  # blanks between two columns
-TIGHT_LABELS = 14  # characters; what labels keep before they wrap, where that saves a table below
+TIGHT_LABELS = 14  # characters kept by labels before they wrap, if that saves a table below
 LABELS_SHARE = 3  # else they keep a third of the width
 
 
 def rendered(shown: Page | PageItem) -> RenderableType:
-    """What is shown, for rich's console."""
+    """Renderable of a page or item, for rich's console."""
     if isinstance(shown, Page):
         return Group(*map(rendered, shown.blocks))
     if isinstance(shown, Table):
@@ -38,7 +38,7 @@ def _tree(branch: Branch) -> Tree:
 
 
 def as_text(shown: Page | PageItem, width: int) -> str:
-    """What is shown, in so many columns, without colours."""
+    """Text of a page or item, in so many columns, without colours."""
     console = Console(file=StringIO(), width=width, highlight=False, markup=False, color_system=None)
     with console.capture() as captured:
         console.print(rendered(shown))
@@ -77,7 +77,7 @@ class Sheet:
         return [self.table.headings[index - 1].text, *(row.cells[index - 1] for row in self.table.rows)]
 
     def _whole(self, index: int) -> int:
-        """How wide a column is that wraps nothing."""
+        """Width of a column that wraps nothing."""
         return max(map(cell_len, self._column(index)))
 
     def _least(self, index: int, most: int) -> int:

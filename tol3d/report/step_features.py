@@ -44,7 +44,7 @@ def features_report(file: StepFile) -> Page:
 
 
 def _uses(file: StepFile) -> Table:
-    """Where each part stands, as `use` and `placed` of a scene have it."""
+    """Pose of each part, as in `use` and `placed` of a scene."""
     products = {own.body.product: shown(own.name) for own in file.parts}
     rows = []
     for own in file.uses:
@@ -55,7 +55,7 @@ def _uses(file: StepFile) -> Table:
 
 
 def _counted(part: StepPart) -> str:
-    """How many solids, faces and features it has, and what is left aside."""
+    """Numbers of its solids, faces and features, and of those left aside."""
     solids, faces = len(part.body.solids), len(part.body.faces)
     found = [f"{solids} solid{'s' * (solids != 1)}", f"{faces} faces", f"{len(part.features)} features"]
     repeated = sum(len(own.repeated) for own in part.features)
@@ -90,7 +90,7 @@ def _row(part: StepPart, name: str, feature: FoundFeature) -> Row:
 
 
 def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
-    """What the drawing names on a feature: datums, tolerances and dimensions."""
+    """Names in the drawing on a feature: datums, tolerances and dimensions."""
     own = {*feature.faces, *feature.repeated}
     return [
         shown(each.words if each.what == "datum" else f"{each.name} {each.words}".strip())

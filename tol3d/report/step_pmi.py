@@ -1,4 +1,4 @@
-"""What a STEP file says of tolerances, as tables: datums, tolerances with what they mean in a scene, dimensions."""
+"""Tables of tolerances in a STEP file: datums, tolerances with their meaning in a scene, dimensions."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -87,7 +87,7 @@ def _block(title: str, counted: str, corner: str, headings: Sequence[Heading], r
 
 
 def _counted(found: Sequence[Meaning]) -> str:
-    """How many tolerances there are, and what becomes of them."""
+    """Numbers of tolerances, by use."""
     counts = Counter(each.how for each in found)
     listed = ", ".join(f"{counts[how]} {how}" for how in ("said", "approximately", "left out") if counts[how])
     return f"{len(found)}: {listed}"

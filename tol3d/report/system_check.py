@@ -1,4 +1,4 @@
-"""What any scene means, as tables: contributors, measures, and what each contributor does to each measure."""
+"""Tables of any scene: contributors, measures, and the effect of each contributor on each measure."""
 
 import math
 import re
@@ -31,7 +31,7 @@ MIDDLE = (
 )
 NO_SUM = "no sum of effects, so no RSS: its slopes are means over two sigma; run draws its trials"
 MEASURE_WORDS = ("kind", "limits")
-BESIDE = 1e-6  # um or arcmin; a value that is nearer to a limit lies on it
+BESIDE = 1e-6  # um or arcmin; a value nearer to a limit lies on it
 
 
 def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> list[PageItem]:
@@ -153,7 +153,7 @@ def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
 def _measure_row(
     measure: Measure, shown: str, kind: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
 ) -> Row:
-    """What a measure is, and its nominal and mean builds by each method."""
+    """Row of a measure: its description, and its nominal and mean builds by each method."""
     values = [_value(measure, getattr(found.get(method), build, None), shown)
               for build in ("nominal", "mean") for method in headings]  # fmt: skip
     return Row(
@@ -172,7 +172,7 @@ def _outside(measure: Measure, unit: str, found: Mapping[str, FirstOrder]) -> It
 
 
 def _is_outside(measure: Measure, value: float) -> bool:
-    """Whether a value [unit of the measure] is out of limits; what is not known is not."""
+    """True if a value [unit of the measure] is out of limits; False if it is unknown."""
     low, high, per = measure.lower_limit, measure.upper_limit, measure.per_internal
     return (low is not None and value < low * per - BESIDE) or (high is not None and value > high * per + BESIDE)
 
@@ -207,7 +207,7 @@ def _coefficients(
     sizes = {k: effects[-1].variance for k, effects in enumerate(every) if not math.isnan(effects[-1].variance)}
 
     def shares(parts: Sequence[tuple[float, float]]) -> list[str]:
-        """Of variances and reaches by method: in percent of the whole."""
+        """Shares of variances and reaches by method, in percent of the whole."""
         kinds = range(2) if measure.adds_up else ()
         return [
             _number(_percent(part[k], whole[k]), ".1f")

@@ -62,7 +62,7 @@ def agreement_lines(agreement: Agreement, unit: str, chord_words: str = "") -> I
 
 
 def unexplained_lines(agreement: Agreement | None) -> list[str]:
-    """What is not explained, to be said aloud."""
+    """Lines on unexplained differences."""
     explanation = agreement.explanation if agreement else None
     return [f"NOT EXPLAINED: {fault}" for fault in (explanation.faults if explanation else ())]
 
@@ -70,7 +70,7 @@ def unexplained_lines(agreement: Agreement | None) -> list[str]:
 def _of_first_order(explanation: Explanation) -> str:
     other = "other " if explanation.linear else ""
     largest = explanation.largest_percent
-    if not largest:  # counts what is beyond chance
+    if not largest:  # counts contributors beyond chance
         return f"no {other}contributor has a part in it beyond chance"
     return f"no {other}contributor's part in it is above {largest:.2g} % of its own effect"
 
@@ -88,7 +88,7 @@ def _of_second_order(explanation: Explanation, unit: str) -> str:
 
 
 def _neglected(explanation: Explanation, unit: str) -> Iterator[str]:
-    """What the stack-up leaves out that no contributor's part in the differences shows, where it is seen at all."""
+    """Neglected terms of the stack-up that no contributor explains, if they are visible at all."""
     nothing, shown = difference_text(0.0, unit), {part.by for part in explanation.linear}
     for what, rms in explanation.neglected.items():
         if what not in shown and (text := difference_text(rms, unit)) != nothing:
@@ -120,14 +120,14 @@ SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin h
 
 
 class Elapsed(NamedTuple):
-    """How long a command took [s]: before its run, to load libraries and the scene, and in all until now."""
+    """Time taken by a command [s]: before its run, to load libraries and the scene, and in all until now."""
 
     loading: float
     whole: float
 
 
 class Detail(Enum):
-    """How much of a run is shown: one row a measure, that and its system's sections, or tables of every measure too."""
+    """Detail shown of a run: one row per measure, that with its system's sections, or full tables of every measure."""
 
     VERDICT = 0
     SECTIONS = 1
@@ -135,7 +135,7 @@ class Detail(Enum):
 
     @classmethod
     def fitting(cls, run: RunSummary) -> "Detail":
-        """What fits a screen or two: tables of every measure unless there are many."""
+        """Detail that fits a screen or two: tables of every measure unless there are many."""
         return cls.MEASURES if len(run.measures) <= MOST_TABLES else cls.SECTIONS
 
 
@@ -217,7 +217,7 @@ def meanings(run: RunSummary) -> Iterator[str]:
 
 
 def _failures_count(run: RunSummary) -> str:
-    """How builds that failed count among those out of limits."""
+    """Words on failed builds among those out of limits."""
     lacking = " or ".join(run.state(status) for status in run.statuses if status in run.lacking)
     below = f"a build that is {lacking} is below every lower limit, one that failed otherwise" if lacking else ""
     return (
@@ -237,7 +237,7 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
 
 
 def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
-    """How well mean, sigma, ends and shares are known from the trials."""
+    """Notes on the sampling errors of mean, sigma, ends and shares."""
     unit = measure.unit
     seated = " that seated" if seated_text(measure) else ""
     if own.mean_se is not None and own.sigma_se is not None:
@@ -259,14 +259,14 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
 
 
 def _by_replicates(sample: Sample, run: RunSummary) -> str:
-    """What the error is found by, where it is not the trials themselves."""
+    """Words on replicates as the basis of the error; "" if the trials themselves are."""
     if sample.error_by != "replicates":
         return ""
     return f" of {SAMPLER_WORDS[run.study.sampler]}, by the spread of {run.study.replicates} replicates"
 
 
 def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]:
-    """What the witness found of the trials that it measured again."""
+    """Notes on the witness' results for the trials that it measured again."""
     found = run.witness.measures.get(name) if run.witness else None
     if run.witness is None or found is None:
         return
@@ -280,7 +280,7 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
 
 
 def _curve_notes(measure: MeasureSummary, curve: CurveMethods) -> Iterator[str]:
-    """How many positions are left out, and the share of the trials that is out of a limit anywhere on its curve."""
+    """Notes on positions left out, and on the fraction of trials out of a limit anywhere on its curve."""
     shown, count = len(shown_positions(measure)), len(measure.position_deg or ())
     if shown < count:
         yield f"{shown} of {count} positions shown; all in summary.json"
@@ -306,7 +306,7 @@ def status_line(run: RunSummary) -> Line:
 
 
 def _time_line(run: RunSummary, elapsed: Elapsed | None) -> Line:
-    """Where the time went, all of it where it is known what the command took."""
+    """Time by stage, complete if the command's own time is known."""
     timing = run.timing
     workers = f" by {timing.workers} workers" if timing.workers != 1 else ""
     trials = f"for the trials{workers} ({timing.trials_per_s:.0f} trials/s)"

@@ -17,7 +17,7 @@ from tol3d.runs.summary.sample import PpkBy
 
 Verdict = Literal["OK", "NOT OK", "too few trials", "no limits"]
 
-ACCEPTED_PPM: Final = 2700.0  # what ±3 sigma of a normal measure leave out, Pp = Ppk = 1
+ACCEPTED_PPM: Final = 2700.0  # fraction of a normal measure outside ±3 sigma, Pp = Ppk = 1
 PPK_BY: Final[Mapping[PpkBy, str]] = {
     "quantiles": "quantiles",
     "share out of limits": "share out",
@@ -56,7 +56,7 @@ class JudgedMeasure:
 
 
 def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdict:
-    """What an interval of the true share says.
+    """Verdict from an interval of the true fraction out of limits.
 
     >>> [_verdict(found, ACCEPTED_PPM) for found in ((0.0, 1843.0), (2000.0, 3500.0), (2701.0, 9000.0), None)]
     ['OK', 'too few trials', 'NOT OK', 'too few trials']
@@ -67,7 +67,7 @@ def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdi
 
 
 def all_ok(run: RunSummary, accepted_ppm: float) -> bool:
-    """Whether every measure that has limits, or failed trials, is OK."""
+    """True if every measure that has limits, or failed trials, is OK."""
     return all(JudgedMeasure.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
@@ -85,7 +85,7 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
 
 
 def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
-    """How many measures have no row, and what the verdict of all of them is; nothing where each has one."""
+    """Number of measures without a row, and the verdict of all; nothing if each has a row."""
     left = len(run.measures) - MOST_MEASURES
     if left > 0:
         found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
@@ -170,7 +170,7 @@ def _ppk(measure: MeasureSummary) -> Shown:
 
 
 def _ppk_by(measure: MeasureSummary) -> str:
-    """What a Ppk was taken from, and why from that; nothing of a measure without limits, or in a run made before."""
+    """Basis of a Ppk, with the reason; "" for a measure without limits, or an older run."""
     own = measure.shares
     if not measure.has_limits or own.ppk_by is None:
         return NOTHING

@@ -41,17 +41,17 @@ LABEL_SIZE: Final = 11
 ARROW_SHARE: Final = 0.16  # of the picture's height
 DOT_SHARE: Final = 1 / 250  # of the picture's height, the radius of the dot at the end of a label's line
 MARK_SHARE: Final = 1 / 120  # the same at what is no part: a tip, a contact
-PROBE_HEIGHT: Final = 480  # pixels of the pictures that are only asked what is seen in them
-LARGE_COUNTS: Final = 1 / 4  # power; of two corners from which as much is seen, the one with the larger picture
+PROBE_HEIGHT: Final = 480  # pixels of the pictures used only to test visibility
+LARGE_COUNTS: Final = 1 / 4  # power; of two corners with equal visibility, the one with the larger picture
 ALIKE: Final = 0.98  # of the best corner's score: near enough to it, so that trials of a run are seen from one corner
 HIDDEN: Final = " (hidden)"  # behind the name of what others hide
-PEELS: Final = 12  # faces one behind the other that are seen through
-INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of what is seen of a body: what a label may point at
+PEELS: Final = 12  # transparent faces in a row
+INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of a body's visible area: a label may point there
 
 
 @dataclass(frozen=True, eq=False)
 class Eye:
-    """Where one looks from: unit vectors to the right, up and towards the eye, as rows (3, 3)."""
+    """View directions: unit vectors to the right, up and towards the eye, as rows (3, 3)."""
 
     axes: Array
 
@@ -66,7 +66,7 @@ class Eye:
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """What the picture shows, in the axes of the eye [mm]: its middle and size, the box of the parts, the front."""
+    """Content of the picture, in the axes of the eye [mm]: its middle and size, the box of the parts, the front."""
 
     middle: Array
     width: float
@@ -168,7 +168,7 @@ def _frame(world: World, eye: Eye, width_by_height: float) -> Frame:
 
 
 def _best_eye(world: World, width_by_height: float) -> tuple[Eye, Mapping[str, Named]]:
-    """Of the four corners the one from which most is seen of the bodies, and what of each body is named from there."""
+    """The one of four corners that shows most of the bodies, and the named places of each body from there."""
     plotter = pv.Plotter(off_screen=True, window_size=[round(PROBE_HEIGHT * width_by_height), PROBE_HEIGHT])
     plotter.renderer.set_background("black")
     plotter.disable_anti_aliasing()  # a pixel between two bodies would have the number of a third
@@ -203,7 +203,7 @@ def _corners(up: Array) -> Iterator[Eye]:
 
 
 def _seen(plotter: pv.Plotter, world: World, clear: Mapping[int, pv.Actor]) -> tuple[float, Mapping[str, Named]]:
-    """How much is seen of the bodies, each counting, and how large; and what of each is named.
+    """Visible amount of the bodies, each counting, and the named places of each.
 
     Args:
         plotter: as it looks at the bodies, each in a colour that is its number in the world, from 1 on.
@@ -262,7 +262,7 @@ def _row(count: int) -> float:
 
 
 def _places(points: Array, edge: float, frame: Frame) -> Array:
-    """Where labels of these points stand along an edge, (n, 2): the lines to them are shortest, so none cross."""
+    """Places of labels along an edge, (n, 2), with the shortest lines to these points, so that none cross."""
     heights = _spread(-np.sort(-points[:, 1]), frame)
     distances = np.hypot(points[:, 0, None] - edge, points[:, 1, None] - heights)
     _, chosen = linear_sum_assignment(distances)

@@ -47,7 +47,7 @@ class PairDistances:
         self._asked: dict[int, Asked] = {}
 
     def asked(self, moved: Array) -> "Asked":
-        """What is asked where points have moved as far as that (2, 3) [mm], see Level.reach; made when first asked."""
+        """Cached query for points that have moved by up to `moved` (2, 3) [mm], see Level.reach."""
         levels = self._pair.levels
         number = next((k for k, level in enumerate(levels) if (moved <= level.reach).all()), len(levels))
         if number not in self._asked:
@@ -84,7 +84,10 @@ class PairDistances:
 
 
 def is_inside(start: SolidMesh, end: SolidMesh, pose: Array) -> bool:
-    """Whether one of two parts that do not meet lies in the other, the second at a pose in the frame of the first."""
+    """True if one of two parts whose surfaces do not meet lies inside the other.
+
+    The pose places the second part in the frame of the first.
+    """
     one = pose[:3, :3] @ end.vertices[0] + pose[:3, 3]
     other = pose[:3, :3].T @ (start.vertices[0] - pose[:3, 3])
     return turns_about(start.corners - one) > INSIDE or turns_about(end.corners - other) > INSIDE
@@ -106,14 +109,14 @@ class Asked:
         self._near = near
 
     def nearest(self, query: NearestPoints, pose: Array) -> Nearest:
-        """Where the parts are nearest, the second one at a pose (4, 4) in the frame of the first."""
+        """Nearest points of the two parts, the second one at a pose (4, 4) in the frame of the first."""
         put(self._surfaces[1], pose[:3, :3], pose[:3, 3])
         return query.of(*self._surfaces)
 
     def has_between(self, found: Nearest, pose: Array) -> bool:
-        """Whether a plane is between all that can meet, and both nearest points look out of their parts to it.
+        """True if a plane separates all that can meet and both nearest points face it from their parts.
 
-        Then no surface meets another, and neither part is in the other. Where it is not so, nothing is known.
+        Then no surface meets another, and neither part is in the other. False decides nothing.
         """
         (here, there), (one, other) = found.points, found.triangles
         normal, turn = there - here, pose[:3, :3]
@@ -141,19 +144,19 @@ class Asked:
         return surface_of(self._meshes[0], self._near[0]), surface_of(self._meshes[1], self._near[1])
 
     def meet(self, pose: Array) -> bool:
-        """Whether surfaces meet."""
+        """True if surfaces meet."""
         put(self._meeting[1], pose[:3, :3], pose[:3, 3])
         return overlapping(*self._meeting)
 
 
 def unit_normal(corners: Array) -> Array:
-    """Of a triangle (3, 3), outwards; 0 of one without an area."""
+    """Outward unit normal of a triangle (3, 3); 0 if its area is 0."""
     across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
     return np.asarray(across / (np.linalg.norm(across) or 1.0))
 
 
 def turns_about(corners: Array) -> float:
-    """How often a closed mesh, triangles (n, 3, 3) [mm], goes around the origin.
+    """Winding number about the origin of a closed mesh, triangles (n, 3, 3) [mm].
 
     Solid angles by Van Oosterom and Strackee, The solid angle of a plane triangle (IEEE Trans. Biomed. Eng. 30, 1983).
     """

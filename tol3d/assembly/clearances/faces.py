@@ -88,7 +88,7 @@ def nearby(own: Array, other: Array, reach: Array) -> Bools:
 
 
 def _boxes_meet(low: Array, high: Array, other: Array) -> Bools:
-    """Whether boxes (n, 3) meet the box about all of the other part (n,)."""
+    """True where boxes (n, 3) meet the box about all of the other part (n,)."""
     ends = other.reshape(-1, 3)
     return np.asarray(((low <= ends.max(axis=0)) & (high >= ends.min(axis=0))).all(axis=1))
 
@@ -104,7 +104,7 @@ def _units(vectors: Array) -> Array:
 
 
 def _below_something(corners: Array, other: Other, height: float, slack: Array) -> Bools:
-    """Whether something of the other part lies over triangles (n, 3, 3), within a height along their normals."""
+    """True where the other part lies over triangles (n, 3, 3), within a height along their normals."""
     normals = _normals(corners)
     across = np.cross(np.roll(corners, -1, axis=1) - corners, normals[:, None])
     across = _units(across.reshape(-1, 3)).reshape(corners.shape)
@@ -124,12 +124,12 @@ def _below_something(corners: Array, other: Other, height: float, slack: Array) 
 
 
 def _reached(low: Array, high: Array, axes: Array, limits: Array, other: Other) -> Bools:
-    """Whether regions hold something of the other part (n,): boxes cut by half spaces axes . x <= limit.
+    """True where regions contain some of the other part (n,): boxes cut by half spaces axes . x <= limit.
 
     Args:
         low, high: of the boxes (n, 3) [mm].
         axes: (n, half spaces, 3); limits (n, half spaces) [mm].
-        other: of which a triangle is outside where one half space has none of its corners.
+        other: a triangle of it is outside if one half space contains none of its corners.
     """
     found = np.zeros(len(low), dtype=bool)
     other_low, other_high = other.low, other.high
@@ -228,7 +228,7 @@ def _add_vertices(
 COARSE: Final = 0.1
 """mm; a mesh from which it is seen how many triangles a finer one has."""
 MOST_TRIANGLES: Final = 1_000_000
-"""Of one part: some 300 MB with its hierarchy of bounding volumes."""
+"""Triangles of one part at most: some 300 MB with its hierarchy of bounding volumes."""
 TRIES: Final = 8
 """Deflections that are tried: OCC meets what it is given within a factor of two."""
 
@@ -249,7 +249,7 @@ class SolidMesh:
 
     @property
     def corners(self) -> Array:
-        """Of the triangles (m, 3, 3) [mm]."""
+        """Corners of the triangles (m, 3, 3) [mm]."""
         return np.asarray(self.vertices[self.triangles])
 
     @property
@@ -278,7 +278,7 @@ def solid_mesh(shape: BuiltShape, within: float) -> SolidMesh:
         finer = deflection * 0.8 * within / mesh.chord_error
         if len(mesh.triangles) * min(deflection / finer, 2.0) > MOST_TRIANGLES:
             break
-        # a part of small curved faces takes many triangles more; it is approached, so that it is seen in time
+        # small curved faces need many more triangles; the deflection is lowered step by step to stop in time
         deflection = max(finer, deflection / 8)
         mesh = display_mesh(shape, deflection)
     raise GeometryError(_too_fine(mesh, within))

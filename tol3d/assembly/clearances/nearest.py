@@ -1,8 +1,8 @@
-"""Where two parts may be nearest in trials, seen from their nominal poses: pairs of points, one on each.
+"""Pairs of points, one on each part, at which two parts may be nearest in trials, found from their nominal poses.
 
-To first order the distance of the parts is the least of the distances of such pairs as their points move: vertices and
-edges of flat faces over each other, one pair of smooth convex faces. Which pairs there are is asked of the meshes at
-poses that small displacements give; a pair is kept where it is nearer, to first order, than all that are known.
+To first order the distance of the parts is the smallest distance of such a pair as its points move: vertices and edges
+of flat faces over each other, one pair of smooth convex faces. Pairs are found on the meshes at slightly displaced
+poses; a pair is kept if it is nearer, to first order, than all known pairs.
 """
 
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import Nearest, NearestPoints, put
 
 NEARER: Final = 0.1
-"""Of the chord error: by how much a pair must be nearer than the known ones to be kept."""
+"""Fraction of the chord error by which a pair must be nearer than the known ones to be kept."""
 MOST_PAIRS: Final = 256
 """That are kept; more are of parts round each other, whose polygons are as fine as that."""
 SLANT: Final = 1e-6
 """Angle [rad] between the normal of a face and a direction that is the same."""
 HALVINGS: Final = 8
-"""How often a displacement by which the parts overlap is made half as large."""
+"""Halvings of a displacement at which the parts overlap."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def _moved(pose: Array, torsor: Array) -> Array:
 
 
 def nominal_distance(meshes: tuple[SolidMesh, SolidMesh], relative: Array) -> float:
-    """Of two parts as they stand nominally [mm]; 0 where they overlap, or one lies in the other."""
+    """Nominal distance of two parts [mm]; 0 if they overlap or one lies inside the other."""
     first, second = (surface_of(mesh) for mesh in meshes)
     put(second, relative[:3, :3], relative[:3, 3])
     found = float(max(NearestPoints().of(first, second).distance, 0.0))
@@ -133,7 +133,7 @@ class _Search:
         across = [unit_normal(corners[number]) for corners, number in zip(asked.corners, found.triangles, strict=True)]
         normal = (there - start) / np.linalg.norm(there - start)
         at = relative[:3, :3] @ end + relative[:3, 3]  # nominally, in the frame of the first part
-        if np.linalg.norm(normal + turn @ across[1]) < SLANT:  # a face of the second part, which its normal turns with
+        if np.linalg.norm(normal + turn @ across[1]) < SLANT:  # a face of the second part, with which the normal turns
             normal = -relative[:3, :3] @ across[1]
             end = relative[:3, :3].T @ (start + float(normal @ (at - start)) * normal - relative[:3, 3])
         elif np.linalg.norm(normal - across[0]) < SLANT:

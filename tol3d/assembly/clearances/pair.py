@@ -13,9 +13,9 @@ from tol3d.solids import BuiltShape
 Integers = NDArray[np.int64]
 
 SHARES = (0.25, 0.5, 1.0)
-"""Of the reach: the nearer parts are to where they stand nominally, the fewer triangles they need."""
+"""Fractions of the reach: the nearer parts are to their nominal poses, the fewer triangles they need."""
 FIRST = 0.5
-"""Of the chord error that the first part may have; the second has what it leaves, which of a flat part is all."""
+"""Fraction of the chord error allowed to the first part; the second has the rest, or all beside a flat part."""
 
 ROUNDING = 1e-6
 """mm; of distances of boxes about triangles."""
@@ -23,10 +23,10 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """What is needed of two parts that have not moved far from where they stand nominally.
+    """Geometry needed of two parts that have not moved far from their nominal poses.
 
     Args:
-        reach: how far points have moved at most: of the second part along x, y and z of the first, of the first along
+        reach: largest displacement of points: of the second part along x, y and z of the first, of the first along
             those of the second (2, 3) [mm].
         faces: triangles that can be nearest to the other part, numbers of the first mesh's and of the second's.
         near: triangles that can meet the other part's, likewise.
@@ -56,11 +56,11 @@ class SolidPair:
 
     @property
     def chord_error(self) -> float:
-        """How far a reading may be off [mm]."""
+        """Largest error of a reading due to chords [mm]."""
         return self.start.chord_error + self.end.chord_error
 
     def moved(self, relative: Array) -> Array:
-        """How far any point has moved at most since parts stood nominally (n, 2, 3) [mm], see Level.reach.
+        """Largest displacement of any point from the nominal poses (n, 2, 3) [mm], see Level.reach.
 
         Args:
             relative: poses of the second part in the frame of the first (n, 4, 4).

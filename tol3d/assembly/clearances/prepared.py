@@ -79,11 +79,11 @@ def _meshes(assembly: Assembly, name: str, measured: Measured) -> tuple[SolidMes
 
 @lru_cache(maxsize=4)
 def solid_pairs(assembly: Assembly, share: float = 1.0) -> Mapping[str, SolidPair]:
-    """What a reader of distances is made of, by measure; it pickles.
+    """Solid pairs from which a reader of distances is made, by measure; they can be pickled.
 
     Args:
-        assembly: with what is known nominally of its clearances.
-        share: of the chord errors that are stated, what its meshes have at most.
+        assembly: with the nominal data of its clearances.
+        share: chord error of its meshes, at most, as a fraction of the stated one.
     """
     stated = clearances_of(assembly)
     return {

@@ -23,10 +23,10 @@ from tol3d.system.plain import PlainContributor, PlainMeasure
 
 @dataclass(frozen=True, eq=False)
 class Meant:
-    """What a scene means.
+    """Model of a scene.
 
     Args:
-        assembly: at nominal poses as the scene says them.
+        assembly: at nominal poses as stated in the scene.
         contributors: in the scene's order, a contributor of a part that is like another after the other's.
         measures: in the scene's order.
         named: what each measure names: features, or two measures.
@@ -87,7 +87,7 @@ class Understood:
 
 
 def understood(scene: Scene) -> Understood:
-    """What a scene means.
+    """Model of a scene.
 
     Raises:
         SceneError: tolerances, zones or directions that do not fit what they are of.

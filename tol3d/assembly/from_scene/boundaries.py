@@ -26,7 +26,7 @@ ANY = 1e3
 """mm; the room of a gauge grows with the size, beyond the drawing's limits too."""
 
 HALF_DIFFERENCE = 0.5 * np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
-"""Of start x, start y, end x, end y."""
+"""Matrix for (start x, start y, end x, end y)."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]
 
 
 def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) -> Floating:
-    """Where the gauges of a frame lie in their room."""
+    """Position of a frame's gauges within their clearances."""
     if datums[-1].mmb != "random":
         return Floating("centred")
     own, to = (
@@ -95,7 +95,7 @@ def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
 
 
 def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
-    """Where the gauges of the datums at their boundary may lie in their features."""
+    """Datum shift allowed to each gauge of the datums at their boundary."""
     found = []
     for k, own in enumerate(datums):
         if own.mmb is None:
@@ -111,7 +111,7 @@ def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec,
 
 
 def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
-    """Where the gauge of the last datum shifts in its feature, of a position along it; None where it does not alone."""
+    """Datum shift allowed to the gauge of the last datum, for a position along it; None unless it shifts alone."""
     part = part_of(of)
     if not shifts_alone(drawing, part, datums):
         return None
@@ -167,12 +167,12 @@ def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) 
 
 
 def _tilts(matrix: Array, draw: ZoneDraw) -> bool:
-    """Whether the ends of the datum feature ever lie apart by a contributor."""
+    """True if a contributor ever displaces the ends of the datum feature from each other."""
     return bool((matrix @ draw.covariance @ matrix.T).any() or (matrix @ draw.mean_vector).any())
 
 
 def own_tolerance(drawing: Drawing, boundary: Boundary) -> float:
-    """What the datum feature's virtual condition adds to its maximum material size, at this precedence [mm].
+    """Tolerance between maximum material size and virtual condition of the datum feature at this precedence [mm].
 
     The width of its orientation zone to the datums before it, or of its location zone to just these; 0 without.
     """

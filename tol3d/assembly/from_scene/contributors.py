@@ -49,13 +49,13 @@ class Effects:
     grown_by: dict[str, list[Contribution]] = field(default_factory=dict)
     locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
     heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
-    """Of surfaces where they are touched, by their form."""
+    """Form contributions of surfaces at points of touch."""
     floats: dict[str, slice] = field(default_factory=dict)
-    """Of moves with play, the columns of what is drawn of where in its room the part lies."""
+    """Columns of the float draws of moves with play."""
     bolts: dict[tuple[str, int], Contribution] = field(default_factory=dict)
-    """Of a move's pairs, what a bolt that is of no part deviates by."""
+    """Deviations of bolts that belong to no part, by a move's pairs."""
     stated: dict[str, Mapping[str, slice]] = field(default_factory=dict)
-    """Of moves of other mechanisms, the columns of what they draw, by name."""
+    """Columns of the draws of other mechanisms' moves, by name."""
     width: int = 0
 
     def _added(self, name: str, spec_kind: str, description: str, draw: Draw) -> slice:
@@ -93,7 +93,7 @@ class Effects:
             self.moved_by.setdefault(feature, []).append(Contribution(name, columns, matrix))
 
     def add_float(self, name: str, spec: PlaySpec) -> None:
-        """What is drawn of a part with play, if anything is."""
+        """Add the draw of a part with random play; nothing otherwise."""
         if not isinstance(spec.floating, RandomSpec):
             return
         if is_pattern(spec, self.drawing):
@@ -156,7 +156,7 @@ class Effects:
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), f"{words}; {advice}")
 
     def _along(self, feature: str, spec: PlusMinusSpec) -> Array:
-        """What one mm along a dimension does to the components of a feature."""
+        """Change of a feature's components per mm along a dimension."""
         own = self.drawing.kind(feature)
         direction = self.drawing.positive(feature, spec)
         assert direction is not None, "refused before"
@@ -179,7 +179,7 @@ class Effects:
         others = self.touching.get(own.feature, {})
         alike = [each.feature for each in self.drawing.stated if isinstance(each, Stated) and each.entry == own.entry]
         if not others and (own.alike or any(self.touching.get(feature) for feature in alike)):
-            return  # a part that is like the toleranced one, or one of a pattern, and touches nothing there
+            return  # a copy of the toleranced part, or one of a pattern, without a touch
         if not others:
             raise self.scene.refuse(("tolerances", own.entry, "law"), self._untouched(own))
         assert spec.law is not None
@@ -213,7 +213,7 @@ SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
 
 
 def is_pattern(spec: PlaySpec, drawing: Drawing) -> bool:
-    """Whether all engagements share their room: those of a pattern, or of two round holes."""
+    """True if all engagements share their clearance: those of a pattern, or of two round holes."""
     kinds = [drawing.kind(name).kind for pair in spec.engaged for name in (pair.from_, pair.to)]
     return not isinstance(spec, PinAndHoleSpec) or (len(spec.engaged) == 2 and "slot" not in kinds)
 

@@ -63,7 +63,7 @@ def _letter(spec: DatumSpec) -> str:
 
 
 def place_of(scene: Scene, frame: str) -> KeyPath:
-    """Where a scene names the datums of a frame first: a tolerance's or a measure's; () where none does."""
+    """Key of a datum frame's first mention in a scene, by a tolerance or a measure; () if there is none."""
     frames = DatumFrames(Drawing(scene).features)
     for (section, name), entry in scene.entries().items():
         match entry:

@@ -17,7 +17,7 @@ from tol3d.scene import Scene
 
 
 def poses_of(scene: Scene) -> Mapping[str, Array]:
-    """Where parts are nominally by the scene's own words, in the world (4, 4)."""
+    """Nominal poses of parts as stated in the scene, in the world (4, 4)."""
     return {name: solid.placed.pose for name, solid in scene.of(SolidSpec).items()}
 
 
@@ -102,12 +102,12 @@ class TouchedPoints:
         return name
 
     def origin(self, name: str) -> Array:
-        """Where a feature's middle lies nominally, in the world (3,) [mm]."""
+        """Nominal origin of a feature in the world (3,) [mm]."""
         own = self.features[name]
         return np.asarray((self.poses[own.part] @ own.frame)[:3, 3])
 
     def _seen_from(self, plane: Feature, point: Feature) -> Sequence[float]:
-        """Where a point lies in the plane, x and y [mm]."""
+        """Coordinates of a point in the plane, x and y [mm]."""
         if plane.name not in self._into:
             self._into[plane.name] = np.asarray(np.linalg.inv(self.poses[plane.part] @ plane.frame))
         found = self._into[plane.name] @ self.poses[point.part] @ point.frame
@@ -115,7 +115,7 @@ class TouchedPoints:
 
 
 def _middle(feature: Feature) -> Array:
-    """How a feature's components move its origin (3, components)."""
+    """Displacement of a feature's origin per component (3, components)."""
     match feature.shape:
         case Point():
             return np.eye(3)

@@ -28,7 +28,7 @@ from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
 
 def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:
-    """What each measure of a scene reads."""
+    """Model of each measure of a scene."""
     return {name: _measured(scene, _named(scene, name), drawing, frames) for name in scene.measures}
 
 
@@ -89,7 +89,7 @@ def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
 def _bonuses(
     scene: Scene, drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
 ) -> tuple[MaterialBonus, ...]:
-    """Of each feature; none where no modifier asks for them."""
+    """Bonus of each feature; empty without a modifier."""
     widened = InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec
     modifier = spec.modifier if isinstance(spec, widened) else None
     if modifier is None:

@@ -32,7 +32,7 @@ from tol3d.scene import Scene
 FLAT = 1e-6
 """Sine of an angle that is none."""
 SHORT = 1e-9
-"""Of an engagement [mm]: none."""
+"""Length of an engagement that counts as none [mm]."""
 
 
 def engaged_by(
@@ -56,7 +56,7 @@ def engaged_by(
     Raises:
         SceneError: features that do not engage nominally; a hole that is smaller than its pin at the mean.
     """
-    engagements, poses = [], poses_of(scene)  # as they are drawn: moves may lean a part in its play
+    engagements, poses = [], poses_of(scene)  # as drawn: moves may tilt a part within its play
     for k, pair in enumerate(spec.engaged):
         here = ("moves", name, "pairs", k)
         if isinstance(pair, PatternPairSpec) and pair.bolt is not None:
@@ -138,7 +138,7 @@ def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:
 
 
 def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Mapping[str, Array]) -> Engagement | str:
-    """Where a pair engages; a sentence where it does not."""
+    """The engagement of a pair, or the sentence that says why there is none."""
     one, other = features[pair.from_], features[pair.to]
     inner, outer = (one, other) if getattr(one.shape, "inner", False) else (other, one)
     seen = np.linalg.inv(poses[part_of(inner.name)] @ inner.frame) @ poses[part_of(outer.name)] @ outer.frame
@@ -174,7 +174,7 @@ def _engagement(pair: EngagementSpec, features: Mapping[str, Feature], poses: Ma
         return f"{words}; place the parts, or say whose ends count as `over`"
     back = np.linalg.inv(seen)
     opposite = places @ back[:3, :3].T + back[:3, 3]
-    # on the pin's axis or in the tab's middle, however far aside it is drawn of its hole or slot
+    # on the pin's axis or in the tab's middle, however far off its hole or slot it is drawn
     opposite[:, [0, 1] if isinstance(outer.shape, Axis) else [2]] = 0.0
     return Engagement(inner.name, outer.name, places, opposite)
 
@@ -185,7 +185,7 @@ def _ends(feature: Feature) -> Array:
 
 
 def _overlap(ranges: Sequence[Array], over: Sequence[str]) -> Array:
-    """What two ranges share, or the one that counts: lower and upper end."""
+    """Intersection of two ranges, or the one that counts: lower and upper end."""
     inner, outer = (np.sort(own) for own in ranges)
     if over:
         return inner if over[0] == "inner" else outer
@@ -193,7 +193,7 @@ def _overlap(ranges: Sequence[Array], over: Sequence[str]) -> Array:
 
 
 def _within(start: float, slope: float, reach: float) -> tuple[float, float]:
-    """Where a line lies within -reach to reach."""
+    """Interval in which a line stays within -reach to reach."""
     if abs(slope) < FLAT:
         return (-np.inf, np.inf) if abs(start) <= reach else (np.inf, -np.inf)
     low, high = sorted(((-reach - start) / slope, (reach - start) / slope))

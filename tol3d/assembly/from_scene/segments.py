@@ -121,7 +121,7 @@ def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tupl
     turns = _basis(free @ square @ free, first)
     if turns.size:
         sizes, axes = np.linalg.eigh(turns.T @ square @ turns)
-        turns = turns @ axes @ np.diag(1.0 / np.sqrt(sizes)) @ axes.T  # such that all of them move features alike
+        turns = turns @ axes @ np.diag(1.0 / np.sqrt(sizes)) @ axes.T  # scaled so that all of them move features alike
         turns /= max(own.farthest(centre, turns) for own in members)
     zone = catalogue.pattern_motion(spec.zone.size - spec.lower_segment.zone.size, shifts.shape[1], turns.shape[1])
     moved = {own.name: own.moved(centre, shifts, turns) for own in members}

@@ -38,11 +38,11 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 LEAST_SINE = 1e-9
-"""Of an angle from the axis; a direction nearer to it has no direction across."""
+"""Sine of an angle from the axis; a direction nearer to it has no direction across."""
 
 
 def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Array]:
-    """How a zone's deviations are drawn, and what they do to the feature (its components, the draw's).
+    """The draw of a zone's deviations, and the matrix to the feature's components (its components, the draw's).
 
     Raises:
         SceneError: the zone does not fit the feature.

@@ -1,1 +1,1 @@
-"""What scenes say of assemblies."""
+"""Grammar of assemblies in scenes."""

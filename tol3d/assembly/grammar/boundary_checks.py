@@ -1,4 +1,4 @@
-"""What must hold of datums at their maximum material boundary: what orients their gauge, and a size."""
+"""Checks of datums at their maximum material boundary: orientation of the gauge, and a size."""
 
 from collections.abc import Iterator, Sequence
 
@@ -67,12 +67,12 @@ def _unread(drawing: Drawing, of: str, across: bool) -> str | None:
 
 
 def is_square(normal: Array, axis: Array) -> bool:
-    """Whether an axis stands square to a plane."""
+    """True if an axis is perpendicular to a plane."""
     return float(np.linalg.norm(np.cross(normal, axis))) < SQUARE
 
 
 def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bool:
-    """Whether the gauge of the last datum only shifts: one in a hole or pin square to the plane that orients it."""
+    """True if the gauge of the last datum only shifts: its hole or pin is perpendicular to the orienting plane."""
     known = drawing.features[part]
     if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None:
         return False
@@ -101,7 +101,7 @@ def earlier_zone(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -
 
 
 def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> bool:
-    """Whether datums hold nothing of where a feature lies across itself: one plane to which it is square."""
+    """True if datums leave a feature free across itself: they are one plane perpendicular to it."""
     plane, own = drawing.features[part_of(feature)].get(earlier[0].features[0]), drawing.kind(feature)
     if len(earlier) != 1 or plane is None or plane.kind != "plane":
         return False
@@ -112,7 +112,7 @@ def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) 
 def _unfit(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...], k: int, place: KeyPath) -> Iterator[Problem]:
     own = f"{part}.{datums[k].features[0]}"
     if own not in drawing.names or drawing.kind(own).kind not in ("cylinder", "slot"):
-        return  # said already
+        return  # reported already
     later = [later for later in datums[k + 1 :] if later.mmb is None]
     to = ", ".join("-".join(earlier.features) for earlier in datums[:k])
     if later:
@@ -141,7 +141,7 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
     for own in drawing.stated:
         if isinstance(own, Stated) and own.is_own and isinstance(own.spec, Modified):
             yield from _of_tolerance(drawing, own, own.spec)
-    sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are said already
+    sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are reported already
     for name, spec in scene.measures.items():
         if (
             isinstance(spec, InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec)

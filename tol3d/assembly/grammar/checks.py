@@ -1,4 +1,4 @@
-"""What must hold across the entries of a scene of an assembly."""
+"""Checks across the entries of a scene of an assembly."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -65,12 +65,12 @@ class Bodies:
     placed: dict[str, str] = field(default_factory=dict)
     """Bodies, and the move that places each; none of what was welded since."""
     body: dict[str, str] = field(default_factory=dict)
-    """Of each part."""
+    """Body of each part."""
     by: dict[str, set[str]] = field(default_factory=dict)
     """Parts that are placed after each move."""
 
     def problems(self) -> Iterator[Problem]:
-        """What does not hold, move by move; then parts that no move places."""
+        """Problems, move by move; then parts that no move places."""
         self.body = {name: name for name in self.scene.of(SolidSpec)}
         moving = {move.part for move in self.scene.moves.values() if isinstance(move, PlacingSpec)}
         stated = (move for move in self.scene.moves.values() if isinstance(move, StatedMoveSpec))
@@ -109,7 +109,7 @@ class Bodies:
         own = self.body[move.part]
         if before := self.placed.get(own):
             yield (*here, "part"), f"expected a part that is not placed yet, got {move.part!r}, which {before!r} places"
-        early: set[str] = set()  # each is said once
+        early: set[str] = set()  # each is reported once
         for path, pair in move.paired():
             moving_part, target = part_of(pair.from_), part_of(pair.to)
             if self.body[moving_part] != own:

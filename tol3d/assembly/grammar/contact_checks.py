@@ -1,4 +1,4 @@
-"""What must hold of parts at rest: what is said of rocking is said where something may rock."""
+"""Checks of parts at rest: rocking is stated only where something can rock."""
 
 from collections.abc import Iterator
 
@@ -47,7 +47,7 @@ def unfit_engagements(scene: Scene) -> Iterator[Problem]:
         for k, pair in enumerate(move.engaged):
             here: KeyPath = ("moves", name, "pairs", k)
             if not all(own in drawing.names for own in (pair.from_, pair.to)):
-                continue  # unknown, said already
+                continue  # unknown, reported already
             problem = _unfit(pair, drawing) or _unfit_first(move, k, drawing.kind(pair.from_), drawing.kind(pair.to))
             if problem:
                 yield here, problem
@@ -90,12 +90,12 @@ def _bolt_of(pair: EngagementSpec) -> BoltSpec | None:
 
 
 def is_inner(feature: FeatureUnion) -> bool:
-    """Whether it is a hole or a slot."""
+    """True for a hole or a slot."""
     return (isinstance(feature, CylinderSpec) and feature.hole) or (isinstance(feature, SlotSpec) and not feature.tab)
 
 
 def _unfit_first(move: PlaySpec, k: int, one: FeatureUnion, other: FeatureUnion) -> str:
-    """Of a pin-and-hole move the first holds both shifts."""
+    """Error text if a pin-and-hole move does not begin with the pin that holds both shifts; else ""."""
     if isinstance(move, PinAndHoleSpec) and k == 0 and (one.kind, other.kind) != ("cylinder", "cylinder"):
         return "expected a pin in a hole first, which holds both shifts, got a slot; put it second, or take a pattern"
     return ""

@@ -1,7 +1,7 @@
-"""What drawings say of each feature: the tolerances of its location, orientation, form and size, and their datums.
+"""Drawing of each feature: tolerances of location, orientation, form and size, and their datums.
 
-A part that is like another has tolerances of its own, named "position of cover 2" where the other's is "position"; each
-feature of a pattern has, named "position 3".
+A part that copies another has its own tolerances, "position of cover 2" for "position"; so has each feature of a
+pattern, such as "position 3".
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -65,7 +65,7 @@ class Stated:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What a scene's tolerances say, feature by feature."""
+    """Tolerances of a scene, feature by feature."""
 
     scene: Scene
 
@@ -112,7 +112,7 @@ class Drawing:
         return {name: own for name, own in found.items() if name == entry or name not in entries}
 
     def has_solid(self, part: str) -> bool:
-        """Whether a part has a builder or comes from a file, or is like one that does."""
+        """True if a part, or the one that it copies, has a builder or a file."""
         solids = self.scene.of(SolidSpec)
         return solids[likes(part, solids)[-1]].has_solid
 
@@ -265,7 +265,7 @@ class Drawing:
             return None
         features = self.features[part_of(feature)]
         datums = [[features[name] for name in datum.features if name in features] for datum in spec.named_datums]
-        found = longer(own.frame[:3, 3], normal, filter(None, datums))  # of unknown names another check tells
+        found = longer(own.frame[:3, 3], normal, filter(None, datums))  # another check reports unknown names
         return None if found is None else normal * found[1]
 
     def parents(self) -> Iterator[tuple[str, tuple[DatumSpec, ...]]]:
@@ -286,7 +286,7 @@ def _split(feature: str) -> tuple[str, str]:
 
 
 def _group(spec: FeatureTolerance) -> type[FeatureTolerance]:
-    """What a tolerance says of its feature: where it lies, how it is turned, its size, its form."""
+    """Group of a tolerance: location, orientation, size or form."""
     if isinstance(spec, LocationSpec | PlusMinusSpec):
         return LocationSpec
     return next((kind for kind in (OrientationSpec, SizeSpec, FormSpec) if isinstance(spec, kind)), type(spec))

@@ -1,4 +1,4 @@
-"""What must hold across the tolerances of each feature."""
+"""Checks across the tolerances of each feature."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final
@@ -136,7 +136,7 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
         here: KeyPath = ("tolerances", own.entry)
         spec = own.spec
         if not own.is_own or drawing.kind(feature).kind not in spec.applies_to:
-            continue  # said already, see unknown_features
+            continue  # reported already, see unknown_features
         if isinstance(spec, LocationSpec | OrientationSpec):
             yield from _shape_problems(here, spec, drawing.kind(feature).kind)
         if isinstance(spec, LocationSpec):
@@ -224,9 +224,9 @@ def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature:
             else drawing.oriented(other)
         )
         if is_form and taken < width:
-            continue  # another form limits it more, or it takes nothing of this zone
+            continue  # another form limits it more, or it uses none of this zone
         if other.spec.zone.projected != spec.zone.projected:
-            continue  # over another length it may be as wide
+            continue  # over another length it may be just as wide
         if own > width or (own == width and isinstance(other.spec, FormSpec)):
             got = f"got {width * 1e3:g} um"
             yield (

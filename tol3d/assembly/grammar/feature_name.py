@@ -28,7 +28,7 @@ def _undotted(name: str) -> str:
 
 
 OwnName = Annotated[str, AfterValidator(_undotted)]
-"""Of a feature or a datum frame, within its part."""
+"""Name of a feature or a datum frame, within its part."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What must hold of measures: lengths with lengths, angles with angles, points on a plane."""
+"""Checks of measures: lengths with lengths, angles with angles, points on a plane."""
 
 from collections.abc import Iterator
 
@@ -22,11 +22,11 @@ Problem = tuple[KeyPath, str]
 
 FLAT = 1e-6  # of the points' extent, or mm
 PARALLEL = 1e-4  # deg
-LEANING = 5.0  # deg; holes drawn at more do not take one bolt, and their circles would be ellipses by 0.4 %
+LEANING = 5.0  # deg; holes tilted by more do not fit one bolt, and their circles would be ellipses by 0.4 %
 
 
 def dimension_of(scene: Scene, name: str) -> Dimension:
-    """Whether a measure is a length or an angle; a difference is what its first measure is."""
+    """Dimension of a measure, length or angle; a difference has that of its first measure."""
     spec = scene.measures[name]
     return dimension_of(scene, spec.of) if isinstance(spec, DifferenceSpec) else spec.dimension
 
@@ -96,7 +96,7 @@ def unfit_holes(scene: Scene) -> Iterator[Problem]:
         for k, own in enumerate(spec.holes):
             feature = drawing.kind(own) if own in known else None
             if feature is None:
-                continue  # said already
+                continue  # reported already
             path = ("measures", name, "holes", k)
             if not getattr(feature.shape, "inner", True):
                 yield path, f"expected a hole, got {own!r}, which is a pin; a bolt passes through holes"

@@ -1,4 +1,4 @@
-"""What must hold of orientation and its datums: it is toleranced in the frame in which its feature lies."""
+"""Checks of orientation and its datums: a feature is oriented in the frame that locates it."""
 
 from collections.abc import Iterator
 
@@ -26,8 +26,8 @@ from tol3d.scene.place import KeyPath
 Problem = tuple[KeyPath, str]
 
 FLAT = ("plane", "slot")  # kinds with a normal, not an axis
-SQUARE = 1e-6  # cosine; directions nearer to a right angle are square to each other
-ON_AXIS = 1e-3  # mm; what a drawing rounds
+SQUARE = 1e-6  # cosine; directions nearer to a right angle are perpendicular
+ON_AXIS = 1e-3  # mm; rounding of drawings
 
 
 def unfit_orientations(scene: Scene) -> Iterator[Problem]:
@@ -63,7 +63,7 @@ def _elsewhere(drawing: Drawing, own: Stated) -> Iterator[Problem]:
 
 
 def _instead(drawing: Drawing, own: Stated, located: Stated) -> str:
-    """What limits the same turns in the frame in which a feature lies."""
+    """Name of the tolerance that limits the same tilts in the frame that locates the feature."""
     spec, datums = own.spec, located.spec.named_datums
     assert isinstance(spec, OrientationSpec)
     known = [datum.features for datum in datums]
@@ -80,7 +80,7 @@ def _words(datums: tuple[DatumSpec, ...]) -> str:
 
 
 def _alike(zone: ZoneSpec, other: ZoneSpec) -> bool:
-    """Whether both zones are round, or both flat along one direction."""
+    """True if both zones are round, or both flat along one direction."""
     if (zone.diameter is None) != (other.diameter is None) or (zone.along is None) != (other.along is None):
         return False
     return zone.along is None or other.along is None or not is_across(zone.along, other.along)
@@ -114,12 +114,12 @@ def _nominal_kind(drawing: Drawing, feature: str, datum: DatumSpec) -> str:
 
 
 def _angle(drawing: Drawing, name: str, datum: DatumSpec) -> float | None:
-    """Of a feature to a datum nominally, 0 to 90 deg; None of rings, of points, and of what is unknown."""
+    """Nominal angle of a feature to a datum, 0 to 90 deg; None for rings, points and unknown features."""
     feature, other = drawing.kind(name), drawing.features[part_of(name)].get(datum.features[0])
     if len(datum.features) > 1 or other is None or other is feature or {"point", "sphere"} & {other.kind, feature.kind}:
-        return None  # unknown, a ring, of the wrong kind: said already
+        return None  # unknown, a ring, of the wrong kind: reported already
     along = abs(float(feature.frame[:3, 2] @ other.frame[:3, 2]))
-    normals = (feature.kind in FLAT) == (other.kind in FLAT)  # else an axis and a normal: parallel is square
+    normals = (feature.kind in FLAT) == (other.kind in FLAT)  # else an axis and a normal: parallel means perpendicular
     angle = float(np.degrees(np.arccos(min(along, 1.0))))
     return angle if normals else 90.0 - angle
 
@@ -139,7 +139,7 @@ def _beside(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     names = [datum.features[0] for datum in own.spec.named_datums if len(datum.features) == 1]
     axes = [name for name in names if name in features and features[name].kind in ("axis", "cylinder")]
     if len(axes) != 1 or feature.kind not in ("axis", "cylinder"):
-        return  # of two it is on the line through both, if on any; a wrong kind is said already
+        return  # of two it is on the line through both, if on any; a wrong kind is reported already
     frame, datum = feature.frame, features[axes[0]].frame
     off = float(np.linalg.norm(np.cross(frame[:3, 3] - datum[:3, 3], datum[:3, 2])))
     if off > ON_AXIS:

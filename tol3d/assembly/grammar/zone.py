@@ -19,7 +19,7 @@ from tol3d.units import Of, Quantity, shown
 
 
 class ZoneSpec(Strict):
-    """How much room a drawing leaves: a diameter for an axis or a point, else a width."""
+    """Tolerance zone of a drawing: a diameter for an axis or a point, else a width."""
 
     diameter: Length | None = None
     width: Length | None = None
@@ -101,7 +101,7 @@ class LawSpec(Strict):
 
     @classmethod
     def lacking(cls) -> Iterator[str]:
-        """What it names and is not there."""
+        """Import paths named by the law that cannot be imported."""
         for what, path in (("draws", getattr(cls, "draws", "")), ("touching", cls.touching)):
             if path or what == "draws":
                 yield from () if is_named(path) else (f"`{what}` of the law {cls.__name__}, got {path!r}",)
@@ -165,7 +165,7 @@ LawUnion = Annotated[
 
 
 def laws_lacking(annotation: Any) -> Iterator[str]:
-    """What the laws that a field may hold name and is not there."""
+    """Import paths named by the possible laws of a field that cannot be imported."""
     if isinstance(annotation, type) and issubclass(annotation, LawSpec):
         yield from annotation.lacking()
     else:

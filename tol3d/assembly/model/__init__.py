@@ -1,4 +1,4 @@
-"""What an assembly is, nominally and by its drawings: what both methods read, and neither computes here.
+"""Model of an assembly, nominal and by its drawings: input of both methods, of which it computes nothing.
 
 Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of parts are in the world.
 """

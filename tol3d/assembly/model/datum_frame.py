@@ -27,12 +27,12 @@ class MaterialBonus:
 
 @dataclass(frozen=True)
 class GaugeRoom:
-    """Where a gauge of virtual condition may lie in a datum feature: within ±(size - virtual) / 2 of its ends.
+    """Allowed shift of a gauge of virtual condition in a datum feature: ±(size - virtual) / 2 at its ends.
 
     Args:
         feature: the hole, pin, slot or tab, with its part.
         virtual: diameter or width of the gauge [mm].
-        grows: whether larger features leave more room: holes and slots.
+        grows: True if larger features leave more clearance: holes and slots.
     """
 
     feature: str
@@ -41,8 +41,8 @@ class GaugeRoom:
 
 
 Simulator = Literal["contact", "fitted", "targets"]
-"""How a later plane lies on what holds it in the orientation left to it: its outermost corner out of the material
-touches, its centre lies on it, or its stated points do."""
+"""Contact of a later plane, in the orientation left to it: at its outermost corner out of the material, at its centre,
+or at its stated points."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from tol3d.assembly.model.feature import Axis, Plane, Point, RoundPlane, Shape
 from tol3d.numerics.arrays import Array
 
 LEAST: Final = 1e-6
-"""Of a distance, as a share of that to the datum or [mm], whichever is more: less is the rounding of a direction."""
+"""Fraction of a distance to the datum, or [mm], whichever is more: less is the rounding of a direction."""
 
 
 class Placed(Protocol):

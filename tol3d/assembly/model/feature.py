@@ -25,7 +25,7 @@ class Point:
 
     @cached_property
     def ends(self) -> Array:
-        """Where its position is judged (1, 3), in its frame [mm]."""
+        """Points at which its position is evaluated, one (1, 3), in its frame [mm]."""
         return np.zeros((1, 3))
 
 
@@ -101,7 +101,7 @@ class Axis:
     inner: bool = False
 
     components: ClassVar[tuple[str, ...]] = ("start x", "start y", "end x", "end y")
-    """How far its ends at z = -length/2 and at z = +length/2 lie aside [mm]; the axis passes through both."""
+    """Offsets of its ends at z = -length/2 and at z = +length/2 [mm]; the axis passes through both."""
 
     @cached_property
     def ends(self) -> Array:
@@ -124,10 +124,10 @@ def nominal_size(shape: Shape) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """What a contributor does to what it belongs to, such as the components of a feature.
+    """Effect of a contributor on its target, such as the components of a feature.
 
     Args:
-        contributor: its name.
+        contributor: name.
         columns: which columns of the deviations are its components.
         matrix: (components of the feature, components of the contributor); lengths to lengths [mm].
     """
@@ -169,5 +169,5 @@ class Feature:
 
     @property
     def is_still(self) -> bool:
-        """Whether it lies in its part as it does nominally, in all trials."""
+        """True if it lies at its nominal place in the part in all trials."""
         return not (self.parent or self.moved_by or self.grown_by)

@@ -1,4 +1,4 @@
-"""What is measured of an assembly: features, a direction, when."""
+"""Measures of an assembly: features, a direction, the moment of reading."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -33,21 +33,21 @@ class Facing:
 
 PLACING: Final = "tol3d.assembly.placing.measuring"
 TORSORS: Final = "tol3d.assembly.torsors.measures"
-"""Where each method has the readings of the kinds that tol3d ships."""
+"""Module of each method's readings for the kinds bundled with tol3d."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """How a kind of measure is read: by each method's own function, named by an import path `package.module:function`.
+    """Functions that read a kind of measure, one per method, each by an import path `package.module:function`.
 
     Args:
-        name: in messages; of one kind, or of several that are read alike.
+        name: for messages; of one kind, or of several that are read alike.
         placing: of a Measured and a World of placed parts to values (n,) or (1,) [mm or rad].
         torsors: of a Measured and a World of torsors to a row over their columns (columns,) [mm or rad].
-        is_linear: whether the row makes no term.
-        of_part: whether it is of a part alone, wherever that is and before it is placed.
-        worse: which end is the worse one where there is no limit.
-        by_solids: whether `placing` names a SolidReader instead: values with codes, of the solids of two parts.
+        is_linear: True if the row adds no term.
+        of_part: True for a measure of a single part, whether that is placed or not.
+        worse: the worse end if there is no limit.
+        by_solids: True if `placing` names a SolidReader instead: values with codes, of the solids of two parts.
     """
 
     name: str
@@ -59,45 +59,45 @@ class Reading:
     by_solids: bool = False
 
     def lacking(self) -> Iterator[str]:
-        """What it names and is not there."""
+        """Import paths of its readings that cannot be imported, as error texts."""
         for method, path in (("placing", self.placing), ("torsors", self.torsors)):
             if not is_named(path):
                 yield f"its reading by {method}: expected `package.module:function`, got {path!r}, where nothing is"
 
 
 Rocking = Literal["least", "middle", "largest"]
-"""Where a part may rock on its contacts: which value over its ends is read, middle of both."""
+"""Value read where a part may rock on its contacts: least or largest over the ends, or the middle of both."""
 
 
 Gauge = Literal["shift", "shift_and_turn"]
 
 OverPlay = Literal["least", "largest"]
-"""Which value over all poses that play leaves is read."""
+"""Value read over all poses that play allows."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What a measure reads.
+    """One measure of the model.
 
     Args:
-        reads: by which formula.
+        reads: its formula.
         features: names, in the order of the kind: from, to.
         direction: (3,), of unit length, nominally in the frame of the first feature's part.
         frame: name of a datum frame of that part in which the direction is fixed, or to which a position or an
             orientation is inspected; "" for the part's frame.
         after: index of the move after which it is read; -1 for the end.
-        bonuses: of a position and a pattern, what the size of each feature takes from it; () for nothing.
+        bonuses: of a position and a pattern, the bonus by the size of each feature; () for none.
         zones: of several positions, the width of each [mm], which is subtracted.
-        room: of a position, in which the gauge of its last datum takes the shift that makes it least.
-        over_gauges: of a position, whether the gauges of its datum frame take the place that makes it least.
+        room: of a position, datum shift allowed to the gauge of its last datum, which takes the best shift.
+        over_gauges: of a position, True if the gauges of its datum frame take the best place.
         gauge: how a pattern's gauge finds its best pose in the frame.
-        of_move: index of the move whose slack is read; -1 of other kinds.
-        over_play: which value it has over the rooms of parts with play; None where the floats of the moves decide.
+        of_move: index of the move whose slack is read; -1 for other kinds.
+        over_play: the value taken over the play of parts; None if the floats of the moves decide.
         parts: of a clearance.
-        chord_error: of a clearance, how far its surfaces may be off [mm].
-        facing: of a clearance, where its parts may be nearest.
+        chord_error: of a clearance, chord error of its surfaces [mm].
+        facing: of a clearance, places where its parts may be nearest.
         minus: a second one that is subtracted in the same trial.
-        rocking: which value it has where a part may rock on its contacts; None where it then has none. Not of `minus`.
+        rocking: the value taken where a part may rock on its contacts; None for no value then. Not of `minus`.
     """
 
     reads: Reading

@@ -48,7 +48,7 @@ class Touch:
 
 
 def is_inner(shape: Shape) -> bool:
-    """Whether a shape is a bore or a socket."""
+    """True for a bore or a socket."""
     return isinstance(shape, Axis | Point) and shape.inner
 
 
@@ -81,7 +81,7 @@ def unfit_for_contact(moving: Shape, target: Shape) -> str:
 
 
 PointsOn = Literal["part", "fixture"]
-"""Whether points ride on the part that is placed and planes stay with the target, or the reverse."""
+"""Side of the points: on the placed part, with planes on the target, or the reverse."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ class BestFit:
 
 @dataclass(frozen=True)
 class Relation:
-    """What a mate asks of two features; it takes the freedoms that earlier ones left.
+    """Relation of two features in a mate; it takes some of the freedoms that earlier relations left.
 
     Directions come first, then heights: those of the origin of `moving` over the target's plane as it tilts in the
     trial. Coaxial asks the origin of `moving` across the target's axis, then the direction. What is held already is met
@@ -284,7 +284,7 @@ class Engagement:
 
 @dataclass(frozen=True, eq=False)
 class Floating:
-    """Where in its room a part with play lies.
+    """Position of a part with play within its clearance.
 
     - centred: where the least slack (clearance less offset) is largest; of several such poses that in which the least
       of the others is, and so on.

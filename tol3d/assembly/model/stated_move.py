@@ -40,7 +40,7 @@ class StatedMove(ABC):
 
     @property
     def closes_loops(self) -> bool:
-        """Whether it closes loops, which may stay open or close on another branch."""
+        """True if it closes loops, which may stay open or close on another branch."""
         return False
 
     @property
@@ -60,13 +60,13 @@ class StatedMove(ABC):
 
     @abstractmethod
     def placing(self, nominal: "PlacedWorld") -> "Placer":
-        """How it places them by finite poses.
+        """Placer of its parts by finite poses.
 
         Args:
             nominal: the world before it without deviations, all parts at their nominal poses.
 
         Raises:
-            InputError: it cannot place them even so; the text begins with `moves.` and its name.
+            InputError: it cannot place them even nominally; the text begins with `moves.` and its name.
         """
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""What may become of an assembly, measure by measure."""
+"""Statuses of an assembly, measure by measure."""
 
 from typing import Final
 
@@ -9,9 +9,9 @@ STATUSES: Final = Statuses(
     words={"no build": "do not build"},
     states={"no contact": "without contact", "no build": "not built"},
 )
-"""By their codes: built; the pose is not unique and the measure varies with it; parts that should touch do not reach
-each other; the parts do not go together; the pose was not found, for the contacts have lost their rank; a part tips off
-its one-sided contacts."""
+"""In the order of their codes: assembled; the pose is not unique and the measure varies with it; parts that should
+touch do not reach each other; the parts do not fit together; the pose was not found, for the contacts have lost their
+rank; a part tips off its one-sided contacts."""
 
 WITH_CLEARANCES: Final = Statuses(
     (*STATUSES.texts, "overlap"),

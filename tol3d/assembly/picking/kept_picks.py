@@ -1,4 +1,4 @@
-"""What was picked, as the file features.json that a run keeps: a run is made again from it, without the CAD kernel."""
+"""Picked faces in features.json, the file that a run keeps: it repeats the run without the CAD kernel."""
 
 import json
 import math
@@ -63,7 +63,7 @@ class KeptFace(BaseModel):
 
 
 class KeptPlace(BaseModel):
-    """Where a part stands as its file says: its origin, z and x."""
+    """Pose of a part as stated in its file: origin, z and x."""
 
     model_config = READ
 
@@ -84,7 +84,7 @@ class KeptPicks(BaseModel):
 
 @dataclass(frozen=True)
 class Kept:
-    """What solids have at the faces that features are picked from.
+    """Faces of solids from which features are picked.
 
     Args:
         picks: the faces, by part and feature.
@@ -109,7 +109,7 @@ class Kept:
         return found
 
     def selected(self, part: str, feature: str, spec: StepSpec) -> tuple[PickedFace, ...]:
-        """What a part from a STEP file selects as a feature.
+        """Faces that a part from a STEP file selects as a feature.
 
         Raises:
             SceneError: a run that is made again has not kept it.
@@ -120,7 +120,7 @@ class Kept:
 
 
 def _has_size(face: PickedFace) -> bool:
-    """Whether a face is as large as its kind must be."""
+    """True if a face has a size, as its kind requires."""
     match face.kind:
         case "plane":
             return min(face.extent) > 0.0
@@ -132,7 +132,7 @@ def _has_size(face: PickedFace) -> bool:
 
 
 def file_of(kept: Kept) -> FileContent:
-    """What was picked as a file."""
+    """Picked faces as a file."""
     plain: dict[str, Any] = {
         "picks": {
             part: {feature: [asdict(face) for face in faces] for feature, faces in own.items()}
@@ -146,10 +146,10 @@ def file_of(kept: Kept) -> FileContent:
 
 
 def kept_in(files: Files, source: Path) -> Kept:
-    """What a run kept; a stranger may have written it.
+    """Picked faces kept by a run; the file is not trusted.
 
     Raises:
-        SceneError: there is no such file, or it is none.
+        SceneError: there is no such file, or it is invalid.
     """
     if FEATURES not in files:
         raise SceneError(f"{source}: expected {FEATURES} beside it, found none; run the scene again")
@@ -227,5 +227,5 @@ def solid_file(part: str) -> str:
 
 
 def kept_solid(part: str, shape: KeptShape) -> FileContent:
-    """What a program of the user built, as a file."""
+    """Solid built by a user's program, as a file."""
     return FileContent(Path(solid_file(part)), shape.brep)

@@ -104,10 +104,10 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
 
 
 def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: bool) -> tuple[Kept, Files]:
-    """What solids have at the faces that features are picked from.
+    """Faces of solids from which features are picked.
 
     Raises:
-        SceneError: a solid cannot be built, or a pick means no face or several.
+        SceneError: a solid cannot be built, or a pick matches no face or several.
     """
     picks: dict[str, dict[str, tuple[PickedFace, ...]]] = {}
     names: dict[str, tuple[str, ...]] = {}
@@ -151,13 +151,13 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
 
 
 def _picks(part: str, own: SolidSpec) -> Iterator[tuple[KeyPath, Pick]]:
-    """What the features of a part ask for, each with its place in the scene."""
+    """Picks of a part's features, each with its key in the scene."""
     for feature, spec in own.features.items():
         for field, face in spec.faces_picked.items():
             keys = (int(key) if key.isdecimal() else key for key in field.split("."))
             near = None if face.near is None else _triple(face.near)
             if isinstance(spec, PointSpec) and spec.at is not None:
-                near = _triple(spec.at)  # of a face that is named: which of its points
+                near = _triple(spec.at)  # the point of a named face
             kinds = spec.face_kinds if face.kind is None else (face.kind,)
             yield ("parts", part, "features", feature, *keys), Pick(face.name or "", near, kinds, spec.x_picked)
 

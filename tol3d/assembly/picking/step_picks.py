@@ -30,13 +30,13 @@ FACE_KINDS: Final[dict[str, FaceKind]] = {
     "ball": "sphere",
     "socket": "sphere",
 }
-"""What a feature of each kind is to a scene."""
+"""Kind of face in a scene for each kind of feature."""
 
 
 def looked_up(
     part: str, spec: StepSpec, file: FileContent, problems: list[Problem]
 ) -> dict[str, tuple[PickedFace, ...]]:
-    """What the features of a part are that it selects, by their names; what is wrong is added to the problems."""
+    """Faces that a part's features select, by feature; errors are added to the problems."""
     try:
         read = read_step(file)
     except StepError as error:
@@ -66,7 +66,7 @@ def _each(
 
 
 def selector_of(spec: SelectorSpec) -> Selector:
-    """What an entry of a scene means."""
+    """Selector of an entry of a scene."""
     near = None if spec.near is None else tuple(own.internal for own in spec.near)
     return Selector(
         face=spec.number,
@@ -110,7 +110,7 @@ def place_in_file(spec: StepSpec, file: FileContent) -> tuple[Triple, Triple, Tr
 
 
 def placed(place: tuple[Triple, Triple, Triple]) -> Placement:
-    """Where a part stands as a scene has it, of origin, z and x."""
+    """Pose of a part from origin, z and x."""
     at, z, x = place
     return Placement.model_validate({"at": lengths(*at), "z": z, "x": x})
 

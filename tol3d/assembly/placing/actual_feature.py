@@ -14,11 +14,11 @@ _Z = np.array([[0.0], [0.0], [1.0]])
 
 
 def total(contributions: Sequence[Contribution], components: int, columns: Array) -> list[Array]:
-    """What contributions add up to, component by component, (n,) or (1,) where nothing varies.
+    """Sum of contributions, component by component, (n,) or (1,) where nothing varies.
 
     Args:
-        contributions: that are added up, in their order.
-        components: how many.
+        contributions: to be added in this order.
+        components: their number.
         columns: the deviations, (width, n) [mm].
     """
     totals = [np.zeros(1) for _ in range(components)]
@@ -82,7 +82,7 @@ class ActualFeature:
 
     @property
     def ends(self) -> list[Array]:
-        """Where its position is judged, each (3, n) [mm]; of a disc, the ends of its reaches."""
+        """Points at which its position is evaluated, each (3, n) [mm]; of a disc, the ends of its reaches."""
         if not self.spans:
             return [self.origin]
         if len(self.spans) == 1:
@@ -97,7 +97,7 @@ class ActualFeature:
         return replace(self, base=pose @ self.base)
 
     def rise(self, direction: Array) -> Array:
-        """How far it reaches over its origin along a direction (3, n), in the frame of `base` [mm]."""
+        """Extent over its origin along a direction (3, n), in the frame of `base` [mm]."""
         heights = [np.abs(dot(direction, span)) for span in self.spans]
         if not heights:
             return np.zeros(1)

@@ -33,25 +33,25 @@ from tol3d.assembly.placing.poses import (
 from tol3d.numerics.arrays import Array
 
 Held = Literal["along", "across", "all"]
-"""Of a point what is held: its height along the target's direction, its place across it, or its place."""
+"""Constraint of a point: its height along the target's direction, its place across it, or its place."""
 
 Turning = Literal["none", "direction", "level"]
-"""Whether a direction becomes the target's, or only square to it."""
+"""Constraint of a direction: none, the target's, or only perpendicular to it."""
 
 ROUNDS = 6
-"""How often a turn and the shifts that follow it are repeated where targets are tilted: each time leaves their slope
-times as much, 1e-3 or less."""
+"""Repetitions of a turn and the shifts that follow it where targets are tilted: each leaves their slope times as much,
+1e-3 or less."""
 
 _MET: Codes = np.full(1, OK, dtype=np.int8)
-_LOST = 1e-6  # sine: a freedom that is left by less is held
+_LOST = 1e-6  # sine: a freedom with less left is held
 
 
 @dataclass(frozen=True)
 class Tie:
-    """What one feature asks.
+    """Constraint by one feature.
 
     Args:
-        name: for messages.
+        name: used in messages.
         held: of its point.
         turning: of its direction.
     """
@@ -126,7 +126,7 @@ class Step:
 
     @property
     def repeated(self) -> bool:
-        """Whether points take part, which shifts move."""
+        """True if it uses points, which shifts move."""
         return self.kind in ("aim at", "turn to", "swing")
 
 
@@ -236,14 +236,14 @@ class Alignment:
         return directions, codes
 
     def _target(self, tie: int, seat: Seat, point: Array) -> Array:
-        """Where a point is to lie; of an axis abreast of where it lies."""
+        """Target of a point; along an axis, level with the point."""
         if self.ties[tie].held != "across":
             return seat.target
         return seat.target + dot(point - seat.target, seat.its_toward) * seat.its_toward
 
 
 def drift(pose: Pose, seats: Sequence[Seat], directions: Sequence[ShiftDirection], axis: Array, centre: Array) -> Array:
-    """How the world's origin shifts with a turn about an axis through a centre, the shifts keeping what they hold.
+    """Shift of the world's origin per turn about an axis through a centre, with shifts that keep their constraints.
 
     Args:
         pose: from which it turns.

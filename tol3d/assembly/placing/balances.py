@@ -19,12 +19,12 @@ STEPS: Final = 30
 WAY: Final = 0.02
 """Turn [rad], and shift a mm of reach, from which a balance is another one."""
 NUDGE: Final = 1e-4
-"""Of the reach: by which rows are taken apart for how they change; the error is that squared."""
+"""Fraction of the reach, the step of the rows' differences; the error is that squared."""
 
 
 @nested
 def lacking(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, found: Any) -> None:
-    """What the balance of the force on chosen contacts lacks along the motions, and then their gaps."""
+    """Residuals of the force balance on chosen contacts along the motions, then gaps of these contacts."""
     contacts, i, on_part, _, force, _ = trial
     rows, _, _, pull, all_pull = programme
     pull_at(pose, force, reach, all_pull)
@@ -68,7 +68,7 @@ def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, pr
 
 @nested
 def balanced(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, system: Any) -> bool:
-    """Whether chosen contacts are met and balance the force at some pose near by, and that and what they carry."""
+    """Find a nearby pose at which chosen contacts touch and balance the force, and their loads; True if found."""
     right, matrix, _, motion, step, _, base = system
     motions, gone = motion.shape[0], 0.0
     for _ in range(STEPS):
@@ -90,7 +90,7 @@ def balanced(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, prog
 
 @nested
 def keeps(pose: Any, contacts: Any, i: int, on_part: bool, shares: Any) -> bool:
-    """Whether no contact is pierced, and none would have to pull."""
+    """True if no contact interferes and none would have to pull."""
     for k in range(contacts[0].shape[0]):
         if gap_of(pose, contacts, k, i, on_part) < -PIERCED:
             return False

@@ -23,7 +23,7 @@ MET: Final = 1e-13
 LEAST_SHARE: Final = 1e-11
 """mm; times twice the number of residuals, by how much the least largest residual is exceeded."""
 FALL: Final = 0.2
-"""Of the share from one barrier to the next."""
+"""Factor of the share from one barrier to the next."""
 CENTRED: Final = 1e-3
 """Newton's decrement, squared, at which a barrier's centre is found."""
 
@@ -48,7 +48,7 @@ def residual_of(pose: Any, fits: Any, f: int, i: int, arm: Any, residual: Any) -
 
 @nested
 def rows_of(fits: Any, f: int, i: int, arm: Any, basis: Any, reach: float, rows: Any) -> None:
-    """How a residual changes with the steps of the basis (3, steps)."""
+    """Change of a residual per step of the basis (3, steps)."""
     directions = fits[2]
     d = min(i, directions.shape[3] - 1)
     for s in range(basis.shape[1]):
@@ -72,7 +72,7 @@ def moved(pose: Any, basis: Any, direction: Any, share: float, reach: float, ste
 
 @nested
 def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
-    """Whether the pose of least squares is found."""
+    """Find the least-squares pose; True if found."""
     matrix, right, arm, residual, rows, step, _ = rooms
     weights, count = fits[3], basis.shape[1]
     for _ in range(STEPS):
@@ -137,7 +137,7 @@ def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: 
 
 @nested
 def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: Any) -> bool:
-    """Whether the pose of the least largest residual is found, from that of least squares."""
+    """Find the pose with the smallest maximum residual, from the least-squares pose; True if found."""
     _, right, arm, residual, _, step, _ = rooms
     count = basis.shape[1]
     trial, top = pose.copy(), np.sqrt(largest(pose, fits, i, arm, residual))
@@ -150,7 +150,7 @@ def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: A
             if not decrement >= 0.0:
                 return False
             length = 1.0 / (1.0 + np.sqrt(decrement))
-            for _ in range(STEPS):  # inside, for the barrier is of finite turns
+            for _ in range(STEPS):  # inside: the barrier holds for finite turns
                 copy_matrix(trial, pose)
                 moved(trial, basis, right, length, reach, step)
                 its_top = top + length * right[count]
@@ -176,7 +176,7 @@ def kept(pose: Any, found: bool, i: int, turns: Any, shifts: Any, met: Any) -> N
 
 @nested
 def new_rooms(count: int) -> Any:
-    """What steps work with."""
+    """Work arrays for the steps."""
     size = count + 1
     return (
         np.empty((size, size)),
@@ -332,5 +332,5 @@ def _asked(move: BestFit, world: World) -> tuple[Array, Array, Array]:
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:
-    """Of all fits, (fits, ..., n) or (fits, ..., 1)."""
+    """Arrays of all fits, (fits, ..., n) or (fits, ..., 1)."""
     return np.stack(np.broadcast_arrays(*arrays))

@@ -1,4 +1,4 @@
-"""What may fail on the way to a measure: datum frames and moves, as each needs others before it."""
+"""Possible failures before a measure: datum frames and moves, each with those that it needs."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,18 +26,18 @@ class Causes:
     bodies: Mapping[str, frozenset[str]]
 
     def of_frame(self, name: str) -> frozenset[Cause]:
-        """Of a datum frame: itself and those of its features; none of ""."""
+        """Failures of a datum frame: its own and those of its features; none for ""."""
         if not name:
             return frozenset()
         features = (feature for datum in self.assembly.datum_frames[name].datums for feature in datum.features)
         return frozenset([name]).union(*(self.of_feature(feature) for feature in features))
 
     def of_feature(self, name: str) -> frozenset[Cause]:
-        """Of a feature in its part."""
+        """Failures of a feature in its part."""
         return self.of_frame(self.assembly.features[name].parent)
 
     def of_part(self, name: str, reader: str) -> frozenset[Cause]:
-        """Of a part in the world.
+        """Failures of a part in the world.
 
         Raises:
             InputError: no move has placed it.
@@ -90,16 +90,16 @@ class Causes:
         return [*pairs_of(move)[:related], *engaged]
 
     def before(self, move: Move) -> frozenset[Cause]:
-        """What may have failed before a move, of what it needs."""
+        """Failures before a move, of all that it needs."""
         return frozenset[Cause]().union(*self._of_move(move))
 
 
 def causes_of(measured: Measured, name: str, moments: tuple[Causes, ...]) -> tuple[Cause, ...]:
-    """What may fail before a measure is read, in its order: datum frames, then moves.
+    """Possible failures before a measure is read, in order: datum frames, then moves.
 
     Args:
-        measured: what.
-        name: of the measure.
+        measured: the measure.
+        name: its name.
         moments: before the first move, and after each.
     """
     return ordered(_causes(measured, name, moments))

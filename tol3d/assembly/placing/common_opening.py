@@ -22,7 +22,7 @@ STEPS: Final = 200
 
 @nested
 def violated(discs: Any, k: int, i: int, point: Any) -> Any:
-    """How far a point lies outside a disc [mm]; below 0 inside."""
+    """Distance of a point outside a disc [mm]; negative inside."""
     x, y, radii = discs
     a, b = point[0] - x[k, i], point[1] - y[k, i]
     return sqrt(a * a + b * b) - radii[k, i]
@@ -30,7 +30,7 @@ def violated(discs: Any, k: int, i: int, point: Any) -> Any:
 
 @nested
 def worst_of(discs: Any, chosen: Any, count: int, i: int, point: Any) -> Any:
-    """How far a point lies outside of several discs at most [mm]."""
+    """Largest distance of a point outside several discs [mm]."""
     worst = -np.inf
     for c in range(count):
         worst = max(worst, violated(discs, chosen[c], i, point))
@@ -39,7 +39,7 @@ def worst_of(discs: Any, chosen: Any, count: int, i: int, point: Any) -> Any:
 
 @nested
 def between(discs: Any, j: int, k: int, i: int, point: Any) -> bool:
-    """Whether two discs decide together, neither within the other, and the point (2,) where they do."""
+    """Find the deciding point (2,) of two discs; False if one lies within the other."""
     x, y, radii = discs
     a, b = x[k, i] - x[j, i], y[k, i] - y[j, i]
     distance = sqrt(a * a + b * b)
@@ -146,7 +146,7 @@ def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
         chosen[count] = worst
         own = decided(discs, chosen, count + 1, i, found, deciding, own_rooms)
         if not own > least:
-            largest = own  # by rounding: nothing is left to gain
+            largest = own  # by rounding: no further gain
             break
         least = own
     return largest
@@ -154,7 +154,7 @@ def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
 
 @nested
 def new_rooms() -> Any:
-    """What `opened` works with."""
+    """Work arrays for `opened`."""
     return np.empty(4, dtype=np.int64), (np.empty(2), np.empty((2, 2)))
 
 

@@ -13,31 +13,31 @@ from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import fill
 
 STEPS: Final = 60
-"""Of interior points, 8 to 15 in practice."""
+"""Interior-point steps at most, 8 to 15 in practice."""
 GAP: Final = 1e-12
-"""Where they end, of the size of offsets and clearances: by how much the slack may be better."""
+"""Final gap over the size of offsets and clearances: the slack may be better by so much."""
 AIM: Final = 0.1
-"""Of the gap from one step to the next."""
+"""Factor of the gap from one step to the next."""
 CAREFUL_STEPS: Final = 200
-"""Of interior points that keep to the middle."""
+"""Interior-point steps at most that keep to the middle."""
 CAREFUL_AIM: Final = 0.8
-"""Of the gap after a step that was cut short by more than half, where they keep to the middle."""
+"""Factor of the gap after a step cut short by more than half, for steps that keep to the middle."""
 SHORT_OF: Final = 0.98
-"""Of the way to where a cone ends."""
+"""Fraction of the distance to the end of a cone."""
 OWED: Final = 1e-9
 """Share of what the multipliers lack of balance at the start that may be left."""
 ROUNDING: Final = 1e-14
-"""Of a pivot, what is left of it."""
+"""Fraction of a pivot left by rounding."""
 SHOWN: Final = 1e-3, 1e-6, 1e-10
 """Gaps, of the size of offsets and clearances, at which it may show which cones decide."""
 LAST: Final = 10
-"""Of Newton's steps, 2 to 4 in practice."""
+"""Newton steps at most, 2 to 4 in practice."""
 STIFF: Final = 1e5
-"""By how much more cones that decide resist a step than their bend does; 1e-6 of what they miss is left by each."""
+"""Stiffness of deciding cones over their curvature; 1e-6 of their residual is left by each."""
 MET: Final = 1e-13
-"""How far from each other they may be, of the size of offsets and clearances."""
+"""Largest residual of deciding cones, over the size of offsets and clearances."""
 BALANCED: Final = 1e-9
-"""Of multipliers that are 1 in all, what may be out of balance."""
+"""Largest imbalance of multipliers that sum to 1."""
 POINTED: Final = 1e-6
 """Length of an offset, of its clearance, below which it has no direction."""
 
@@ -239,7 +239,7 @@ def amiss(cones: Any, rooms: Any, limit: float) -> int:
 
 @nested
 def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: float, found: Any, rooms: Any) -> bool:
-    """Whether Newton's steps reach the optimum: all its conditions hold. Otherwise nothing is changed.
+    """Reach the optimum by Newton steps; True if all its conditions hold, otherwise nothing is changed.
 
     Args:
         cones: as in `climbed`; the multipliers are changed to z = (m, 0, 0).
@@ -247,7 +247,7 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
         scale: of offsets and clearances.
         weight: of the multipliers.
         found: changed by the step.
-        rooms: to work in, whose fourth has the first multipliers m, 0 of cones that do not decide.
+        rooms: work arrays; the fourth has the first multipliers m, 0 for cones that do not decide.
     """
     y, z, _, used = cones
     matrix, step, at, own, _, gone = rooms
@@ -277,16 +277,16 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
 
 @nested
 def climbed(cones: Any, size: int, lifts: int, careful: bool, goal: Any, found: Any, rooms: Any) -> bool:
-    """Whether a programme's optimum is found: the largest goal . p, or s where it lifts.
+    """Find a programme's optimum, the largest goal . p, or s if it lifts; True if found.
 
     Args:
         cones: y at p = 0 and multipliers z, both inside (cones, 3), changed; B_k (cones, 2, size); which of them count.
         size: of p.
         lifts: 1 for the largest s, 0 for the largest goal.
-        careful: whether steps keep to the middle, where cones that tie would cut them short.
+        careful: True to keep steps to the middle, where tied cones would cut them short.
         goal: (size,).
         found: p and s, as changes (size + 1,).
-        rooms: to work in.
+        rooms: work arrays.
     """
     y, z, _, used = cones
     matrix, step, dy, dz, turned, _ = rooms

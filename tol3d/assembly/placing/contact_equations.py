@@ -1,7 +1,7 @@
-"""What contacts of round features ask of a pose, and how that changes with it, in kernels.
+"""Contact equations of round features and their changes with the pose, in kernels.
 
 A contact has two sides, each a point, a line or a plane by an origin and a direction: centres of spheres, axes of
-cylinders. Its error is how far the surfaces are apart [mm]; a cylinder that lies along something has a second one, the
+cylinders. Its error is the gap between the surfaces [mm]; a cylinder that lies along something has a second one, the
 rise of its axis over a stated length. `rows` are their changes with a shift of the part and a turn about the middle of
 its features that touch, from which its sides are counted; the others' are from where that lies nominally.
 """
@@ -30,7 +30,7 @@ TWO: Final = (LINE_PLANE, PLANE_LINE, ALONG)
 
 @nested
 def count_of(kind: int) -> Any:
-    """How many equations a contact makes."""
+    """Number of equations of a contact."""
     return 2 if kind in TWO else 1
 
 
@@ -171,7 +171,7 @@ def asked_of(asked: Any, i: int, share: float, rooms: Any) -> Any:
         if share != 1.0:
             totals[c] = nominal[2][c] + share * (totals[c] - nominal[2][c])
         if not totals[c] > 0.0:
-            return False  # what is inside is larger
+            return False  # the inner one is larger
     return True
 
 
@@ -202,6 +202,6 @@ def equations(pose: Any, asked: Any, errors: Any, rows: Any, rooms: Any) -> None
 
 @nested
 def new_sides(contacts: int) -> Any:
-    """What equations work with."""
+    """Work arrays for the equations."""
     sides = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3))
     return np.empty((contacts, 6)), np.empty((contacts, 6)), np.empty(contacts), sides, np.empty(3)

@@ -1,4 +1,4 @@
-"""What datums of a frame lay on their simulators: the part's features on where these are nominally."""
+"""Seats of a frame's datums on their simulators: the part's features on nominal ones."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ Asks = tuple[Held, Turning]
 
 
 class OnGauges(Protocol):
-    """Where gauges of virtual condition lay a part."""
+    """Pose of a part on gauges of virtual condition."""
 
     def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
         """See GaugedFrame."""
@@ -31,14 +31,14 @@ class OnGauges(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class DatumSeats:
-    """How a datum frame is found: its part's features are aligned with its simulators, and it is the inverse of that.
+    """Determination of a datum frame: the part's features are aligned with its simulators; the frame is the inverse.
 
     Args:
-        frame: which.
+        frame: the datum frame.
         alignment: of the ties, in order.
-        nominal: the features of its datums as they are nominally.
-        datums: of each tie the number of its datum.
-        gauged: by which gauges it lies, if by any.
+        nominal: the nominal features of its datums.
+        datums: number of each tie's datum.
+        gauged: the gauges on which the part lies, if any.
     """
 
     frame: DatumFrame
@@ -60,10 +60,10 @@ class DatumSeats:
 
 
 def datum_seats(part: Part) -> dict[str, DatumSeats]:
-    """Of all datum frames of a part, by their names.
+    """Seats of all datum frames of a part, by name.
 
     Raises:
-        InputError: a datum takes no freedom, or cannot be met in its order.
+        InputError: a datum takes no freedom, or cannot be met at its precedence.
     """
     nominal = {feature.name: _nominal(feature) for feature in part.features}
     return {frame.name: _of(frame, nominal) for frame in part.datum_frames}
@@ -179,13 +179,13 @@ def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) 
 
 
 class PartFeatures:
-    """Of one part, in its frame.
+    """Actual features of one part, in its frame.
 
     Args:
-        part: which.
-        datum_seats: of its datum frames, by their names.
+        part: the part.
+        datum_seats: seats of its datum frames, by name.
         columns: the deviations, (width, n) [mm].
-        still: its features that never deviate, by name; what is found of them is kept there for other trials.
+        still: its features that never deviate, by name; cached there for other trials.
     """
 
     def __init__(
@@ -222,11 +222,11 @@ class PartFeatures:
         return self._found(frame)[0] if frame else IDENTITY
 
     def seats(self, frame: str) -> DatumSeats:
-        """How a datum frame is found."""
+        """Seats of a datum frame."""
         return self._datum_seats[frame]
 
     def codes(self, frame: str) -> Codes:
-        """What became of a datum frame itself (n,) or (1,)."""
+        """Status codes of the datum frame itself (n,) or (1,)."""
         return self._found(frame)[1]
 
     def _found(self, name: str) -> tuple[Pose, Codes]:

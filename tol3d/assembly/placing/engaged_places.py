@@ -23,7 +23,7 @@ PIN_IN_SLOT: Final = 1
 TAB_IN_SLOT: Final = 2
 BOLT_IN_HOLE: Final = 3
 LEFT: Final = 1e-9
-"""Of a motion, that relations may see: what rows have of it is of second order in the slack."""
+"""Part of a motion that relations may see: its effect on rows is of second order in the slack."""
 
 
 @nested
@@ -218,10 +218,10 @@ def at_places(
 def engaged_arrays(
     move: Engage, world: World, origin: Array, middle: Array
 ) -> tuple[Array, Array, Array, Array, Array, NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64], Array]:
-    """What `engaged_poses_found` reads first: points, directions and sizes where a move engages, in their trials.
+    """First inputs of `engaged_poses_found`: points, directions and sizes of a move's engagements, by trial.
 
     Args:
-        move: which.
+        move: the move.
         world: before it.
         origin: the middle of all places in the part's frame (3,) [mm].
         middle: that in the world (3,) [mm].

@@ -18,11 +18,11 @@ from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
 ENDS: Final = 4
-"""Of both holes of a bolt; and its unknowns."""
+"""Ends of both holes of a bolt; and its unknowns."""
 STEPS: Final = 60
-"""Of Newton and of doublings, 3 to 6 in practice."""
+"""Newton steps and doublings at most, 3 to 6 in practice."""
 OPEN: Final = 1e-13
-"""Of clearances, slack that is none."""
+"""Fraction of clearances that is no slack."""
 STILL: Final = 1e-9
 """Change of all offsets by a way of length 1 that is none."""
 
@@ -54,15 +54,15 @@ def bolt_slack(own: Any, t: float, rooms: Any) -> Any:
 
 @nested
 def bolt_way(place: Any, bolt_of: Any, bolt: int, drawn: Any, i: int, most: float, rooms: Any) -> Any:
-    """How far a part may go along a direction until a bolt has no place; `most` where that is farther.
+    """Distance a part can go along a direction until a bolt no longer fits; at most `most`.
 
     Args:
-        place: offsets (cones, 2), clearances (cones,) and rows (cones, 2, freedoms + 4 bolts) where it is.
-        bolt_of: which bolt each cone is of (cones,).
-        bolt: which.
-        drawn: directions, and shares of the way (freedoms + 1, n).
-        i: which trial.
-        most: [mm].
+        place: offsets (cones, 2), clearances (cones,) and rows (cones, 2, freedoms + 4 bolts) at its pose.
+        bolt_of: bolt of each cone (cones,).
+        bolt: its number.
+        drawn: directions, and fractions of the step (freedoms + 1, n).
+        i: trial.
+        most: largest distance [mm].
         rooms: see `bolt_rooms`.
     """
     own, inner = rooms
@@ -83,7 +83,7 @@ def bolt_way(place: Any, bolt_of: Any, bolt: int, drawn: Any, i: int, most: floa
         n += 1
     if not fastest > STILL:
         return most
-    t, ahead, slack = 0.0, 2.0 * widest / fastest, np.nan  # ways are doubled until one is too long
+    t, ahead, slack = 0.0, 2.0 * widest / fastest, np.nan  # distances are doubled until one is too long
     for _ in range(2 * STEPS):
         slack, slope = bolt_slack(own, t, inner)
         if slack > 0.0 and ahead > 0.0:
@@ -100,7 +100,7 @@ def bolt_way(place: Any, bolt_of: Any, bolt: int, drawn: Any, i: int, most: floa
 
 @nested
 def bolt_rooms() -> Any:
-    """What it works with."""
+    """Work arrays for `bolt_way`."""
     own = (
         np.empty((ENDS, 2)), np.empty(ENDS), np.empty((ENDS, 2, ENDS)), np.empty((ENDS, 2)), np.empty((ENDS, 2)),
         np.empty(ENDS),
@@ -109,9 +109,9 @@ def bolt_rooms() -> Any:
 
 
 ROUNDS: Final = 40
-"""How often a pose is corrected, 2 or 3 in practice; each time leaves a turn's share of what it corrects."""
+"""Corrections of a pose at most, 2 or 3 in practice; each leaves a turn's share of the correction."""
 MET: Final = 1e-10
-"""What a step [mm] is expected to leave, by how much shorter it is than the one before, after which a trial is done."""
+"""Residual [mm] predicted from the ratio of two steps, at which a trial is done."""
 TURNED: Final = 1e-5
 """Step, a mm of reach, after which motions that keep what relations hold are found anew."""
 LOST: Final = 1e-6
@@ -121,7 +121,7 @@ PUSHED: Final = 1
 STRAYED: Final = 2
 DONE: Final = 3
 NO_WAY: Final = 1e300
-"""Where nothing is in the way."""
+"""Distance where nothing stops the part."""
 NONE: Final = 1e-300
 """Step before the first."""
 
@@ -140,7 +140,7 @@ def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: A
 
 @nested
 def way_of(x: float, y: float, a: float, b: float, square_room: float) -> Any:
-    """How far an offset (x, y) may go on by (a, b) until its square is so much; NO_WAY if it does not go."""
+    """Largest step of an offset (x, y) along (a, b) until its square is `square_room`; NO_WAY if it does not move."""
     square, slope, room = a * a + b * b, x * a + y * b, square_room - x * x - y * y
     if not square > 0.0:
         return NO_WAY
@@ -170,9 +170,9 @@ def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any
 
 @nested
 def way_along(place: Any, drawn: Any, i: int, engaged: Any, rooms: Any) -> Any:
-    """How far a part may go on along a direction (freedoms,) until an offset is as long as its clearance.
+    """Largest step of a part along a direction (freedoms,) until an offset is as long as its clearance.
 
-    With bolts: until one of them has no place.
+    With bolts: until one of them no longer fits.
     """
     offsets, clearances, rows = place
     kinds, bolt_of, bolts = engaged[6], engaged[7], engaged[8]
@@ -192,18 +192,18 @@ def way_along(place: Any, drawn: Any, i: int, engaged: Any, rooms: Any) -> Any:
 
 @nested
 def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
-    """Whether a pose is found at which nothing moves, the slack of the centred one, a cone that has it.
+    """Find a stationary pose; True if found, with the slack of the centred one and a cone that has it.
 
     Where the first round of the nominal programme leaves freedoms open, rows stay nominal: what those of the pose would
-    gain along them is of second order, and a part would swing through its room for it.
+    gain along them is of second order, and a part would swing through its clearance for it.
 
     Args:
-        pose: changed, from one near by.
-        start: that one.
+        pose: changed, from a nearby pose.
+        start: that pose.
         mode: CENTRED, PUSHED or STRAYED.
-        trial, reach: of what.
-        goal: whither it goes.
-        rooms: to work in.
+        trial, reach: of the part.
+        goal: target of the motion.
+        rooms: work arrays.
     """
     place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting = rooms
     i, drawn, freedoms, state = trial[1], goal[4], tangents.shape[1], place[4]
@@ -240,7 +240,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
 
 @nested
 def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
-    """Whether a pose is found, the least slack of the centred one, a cone that has it."""
+    """Find a pose; True if found, with the least slack of the centred one and a cone that has it."""
     mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
     pushes, drawn = goal[0], goal[4]
     while mode != DONE:
@@ -258,7 +258,7 @@ def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
 
 @nested
 def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
-    """What a trial works with."""
+    """Work arrays for a trial."""
     every = freedoms + 4 * bolts
     vectors = (np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(6), np.empty((kept, freedoms)))
     place = (np.empty((cones, 2)), np.empty(cones), np.empty((cones, 2, every)), vectors, np.zeros((bolts, 4)))

@@ -22,7 +22,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 20
-"""How often a pin is brought nearer to where it is drawn; each time leaves a turn's share of what it corrects."""
+"""Corrections of a pin towards its drawn place at most; each leaves a turn's share of the correction."""
 MET: Final = 1e-9
 """Step [mm] after which a trial is done."""
 LOST: Final = 1e-6
@@ -128,7 +128,7 @@ class Engaging:
 
     @cached_property
     def _pairs(self) -> NDArray[np.str_]:
-        """Of each cone, what engages there."""
+        """Name of each cone's engagement."""
         return np.array([own.name for own in self.move.engagements for _ in range(_cones_of(own))])
 
     def _targets(self, world: World) -> Sequence[str]:

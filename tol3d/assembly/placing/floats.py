@@ -1,4 +1,4 @@
-"""Where in its room a part with play lies, from its centred pose: see model.Floating."""
+"""Position of a part with play within its clearance, from its centred pose: see model.Floating."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,14 +21,14 @@ PART: Final = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Floats:
-    """Of a move.
+    """Float of a move.
 
     Args:
-        move: which.
+        move: the move.
         freedoms: (6, freedoms), orthonormal.
-        along: the direction in the world in which its point goes as far as it can (3,); 0 where it does not.
+        along: direction in the world in which its point is pushed to the limit (3,); 0 for none.
         push: a direction of the freedoms, instead of all else (freedoms,); None where there is none.
-        by_pairs: of a random float, pin by pin.
+        by_pairs: True for a random float pin by pin.
     """
 
     move: Engage
@@ -42,7 +42,7 @@ class Floats:
         return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push))
 
     def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array]:
-        """What `engaged_poses_found` reads of it: whether, whither and how far it pushes, and what is drawn.
+        """Inputs of `engaged_poses_found`: flag, direction and distance of the push, and the draws.
 
         Args:
             world: before the move.
@@ -66,7 +66,7 @@ class Floats:
             along[f] = sum(own[r] * drawn[r] for r in range(6))
         size = np.sqrt(sum(own * own for own in along))
         along /= np.where(size > 0.0, size, 1.0)
-        found[-1] = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(along))  # slopes ask beyond its ends
+        found[-1] = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(along))  # slopes evaluate beyond its ends
         return found
 
 
@@ -79,18 +79,18 @@ def _pushed_point(move: Engage, world: World) -> ActualFeature:
 
 
 def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: Array, reach: float) -> Floats:
-    """Where in its room a part lies.
+    """Float of a part within its clearance.
 
     Args:
-        move: which.
-        world: nominal, the part where relations lay it.
+        move: the move.
+        world: nominal, with the part as placed by its relations.
         freedoms: shift of the middle and turn times reach (6, freedoms).
         rows: B_k (cones, 2, freedoms).
         middle: (3,) [mm].
         reach: [mm].
 
     Raises:
-        InputError: a direction in which nothing is free.
+        InputError: the part has no play along the direction.
     """
     floating, along = move.floating, np.zeros(3)
     if floating.kind == "toward":
@@ -149,7 +149,7 @@ def _along(row: Array, steps: Sequence[Array] | Array) -> Array:
 
 
 def discs_of(move: Engage, rows: Array) -> Discs:
-    """How a pin lies in its hole and the next in its slot, by what they see of the freedoms.
+    """Discs of a pin in its hole and of the next in its slot, by their rows over the freedoms.
 
     Raises:
         InputError: relations hold one tilt of the hole and not the other, or the slot does not hold one turn.
@@ -189,7 +189,7 @@ def in_lens(x: Array, y: Array, clearance: Array, u: Array, v: Array) -> tuple[A
     some = length > 0.0
     a, b = np.where(some, x / np.where(some, length, 1.0), 1.0), np.where(some, y / np.where(some, length, 1.0), 0.0)
     along, across = u * a + v * b, v * a - u * b
-    along = np.where(np.abs(along) <= 1.0, along, np.nan)  # off the disc of radius 1 is no place
+    along = np.where(np.abs(along) <= 1.0, along, np.nan)  # off the disc of radius 1: invalid
     share = np.minimum(length / np.where(clearance > 0.0, clearance, 1.0), 1.0)
     cut = _segment(np.abs(along)) / (np.pi / 2) * _segment(share)
     angle = np.minimum(np.cbrt(12 * cut), np.pi)  # of the segment: (angle - sin angle) / 2 is its area

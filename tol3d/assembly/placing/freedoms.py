@@ -48,7 +48,7 @@ class _Freedoms:
         return Alignment(self.ties, tuple(self.turns), tuple(self.shifts))
 
     def take(self, index: int) -> bool:
-        """Whether a tie takes anything of what is left, and what."""
+        """Take the freedoms that a tie constrains; True if any were left."""
         tie, before = self.ties[index], (len(self.turns), len(self.shifts), self.lying)
         if self._by_place(index):
             self._turn_by_point(index, taken_before=False)
@@ -72,7 +72,7 @@ class _Freedoms:
 
     @property
     def _centred(self) -> bool:
-        """Whether all shifts across what turns are taken."""
+        """True if all shifts across the turning axis are taken."""
         if isinstance(self.turning, str):
             return len(self.taken) == 3
         across = np.eye(3) - np.outer(self.turning, self.turning)
@@ -181,17 +181,17 @@ class _Freedoms:
             self.turning = "none"
 
     def _swung(self, seat: Seat) -> Array:
-        """How its point moves with the turn that is left, about what shifts leave in place (3,) [mm]."""
+        """Displacement of its point per unit of the remaining turn, with shifts as constrained (3,) [mm]."""
         pose, axis = self._pose(), column(np.asarray(self.turning))
         directions, _ = self.alignment.shift_directions(self.seats)
         shift = drift(pose, self.seats, directions, axis, pose.point(seat.its_centre))
         return np.asarray((shift + cross(axis, pose.point(seat.point)))[:, 0])
 
     def _by_place(self, index: int) -> bool:
-        """Whether the one turn left moves the middle of a slot across it, and more than its ends against that.
+        """True if the one turn left moves the middle of a slot across it by more than its ends against that.
 
         Walls that close in on the slot about its nominal place turn it so that |middle| + |ends over it| is least:
-        whichever of both the turn moves more becomes 0.
+        the one that the turn moves more becomes 0.
         """
         seat = self.seats[index]
         if seat.across is None or isinstance(self.turning, str):

@@ -23,7 +23,7 @@ from tol3d.assembly.placing.rooms import room_found
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 12
-"""How often a pose is corrected; each time leaves a turn's share, 1e-3 or less, of what it corrects."""
+"""Corrections of a pose at most; each leaves a turn's share, 1e-3 or less, of the correction."""
 MET: Final = 3e-8
 """Step [mm] after which a trial is done."""
 LOST: Final = 1e-6
@@ -32,12 +32,12 @@ LOST: Final = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class GaugeFloats:
-    """Of the move that gauges make.
+    """Float of gauges.
 
     Args:
-        move: which.
+        move: the move.
         freedoms: (6, freedoms), orthonormal.
-        push: the direction in which the part goes as far as it can (freedoms,); 0 where it does not.
+        push: direction in which the part is pushed to the limit (freedoms,); 0 for none.
     """
 
     move: Engage
@@ -67,7 +67,7 @@ class GaugeFloats:
         return np.asarray(centred + np.where((slacks > 0.0) & (size > 0.0), share, 0.0) * along)
 
     def _way(self, offsets: Array, clearances: Array, rows: Array, centred: Array, along: Array) -> Array:
-        """How far the room goes from the centred pose (n,) [mm]."""
+        """Distance from the centred pose to the limit of the clearance (n,) [mm]."""
         way = np.full(offsets.shape[2], np.inf)
         for own, clearance, row in zip(offsets, clearances, rows, strict=True):
             at = [own[r] + sum(row[r, f] * centred[f] for f in range(len(centred))) for r in (0, 1)]
@@ -158,7 +158,7 @@ class GaugedFrame:
         return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
 
     def offsets(self, pose: Pose, features: Sequence[ActualFeature], trials: int) -> Array:
-        """How far the datum features lie off their gauges (cones, 2, n) [mm]."""
+        """Offsets of the datum features from their gauges (cones, 2, n) [mm]."""
         found = np.zeros((len(self.rows), 2, trials))
         k = 0
         for own, nominal in zip(features, self.nominal, strict=True):
@@ -170,7 +170,7 @@ class GaugedFrame:
         return found
 
     def clearances(self, features: Sequence[ActualFeature], columns: Array) -> Array:
-        """Of each offset (cones, n) [mm]."""
+        """Clearance of each offset (cones, n) [mm]."""
         found = np.empty((len(self.rows), columns.shape[1]))
         k = 0
         for room, own in zip(self.gauges.rooms, features, strict=True):
@@ -227,7 +227,7 @@ def _across(nominal: ActualFeature) -> Array:
 
 
 def _rows_of(nominal: ActualFeature, end: Array, middle: Array, reach: float) -> Array:
-    """How an offset changes with the shift of the middle and turn times reach (2, 6)."""
+    """Change of an offset per shift of the middle and turn times reach (2, 6)."""
     found = np.zeros((2, 6))
     for r, across in enumerate(_across(nominal)):
         found[r] = point_row(end[:, 0] - middle, across, reach)
@@ -235,7 +235,7 @@ def _rows_of(nominal: ActualFeature, end: Array, middle: Array, reach: float) ->
 
 
 def point_row(arm: Array, direction: Array, reach: float) -> Array:
-    """How a point moves along a direction with the shift of the middle and turn times reach (6,)."""
+    """Displacement of a point along a direction per shift of the middle and turn times reach (6,)."""
     return np.concatenate([direction, np.cross(arm, direction) / reach])
 
 

@@ -20,9 +20,9 @@ from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
 
 STEPS: Final = 60
-"""Of Newton; in practice 2 to 8."""
+"""Newton steps at most; in practice 2 to 8."""
 SHORT: Final = 1e-12
-"""Of such a step [mm], after which it is done."""
+"""Step [mm] at which they are done."""
 FREE: Final = 1e-9
 """Share of the ends under which the room alone decides: it is empty."""
 UNSEEN: Final = 1e-6
@@ -46,7 +46,7 @@ class Inspected:
     rows: Array
 
     def offsets(self, pose: Pose, actual: ActualFeature, trials: int) -> Array:
-        """How far its ends lie off their places (ends, 2, n) [mm]."""
+        """Offsets of its ends from their true positions (ends, 2, n) [mm]."""
         found = np.zeros((len(self.places), 2, trials))
         for k, (end, place) in enumerate(zip(actual.moved(pose).ends, self.places, strict=True)):
             for r, direction in enumerate(self.directions):
@@ -87,7 +87,7 @@ class Inspected:
 
 
 def inspected(measured: Measured, world: World) -> Inspected:
-    """What a position on gauges reads, nominally."""
+    """Nominal data of a position on gauges."""
     (name,) = measured.features
     gauged = world.own[world.part_of(name)].seats(measured.frame).gauged
     assert isinstance(gauged, GaugedFrame)

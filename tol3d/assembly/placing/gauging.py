@@ -30,13 +30,13 @@ TURNS: Final = 200
 
 @nested
 def weights_of(discs: Any, deciding: Any, found: Any, pulls: Any) -> int:
-    """How many discs decide; in pulls (3, 3) their directions from centre to point, and the weights that balance them.
+    """Number of deciding discs; fills pulls (3, 3) with directions from centre to point and balancing weights.
 
     Args:
         discs: one trial.
-        deciding: which decide (3,).
+        deciding: indices of those that decide (3,).
         found: the point (2,).
-        pulls: found; 0 if a single one decides, in its centre.
+        pulls: filled; 0 if a single one decides, in its centre.
     """
     count = 0
     for c in range(3):
@@ -143,10 +143,10 @@ def gauged(pattern: Any, i: int, step: float, rooms: Any) -> Any:
 
 @kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[::1]")
 def gauged_patterns(x: Any, y: Any, radii: Any, nominal: Any, worst: Any) -> None:
-    """How far the worst place lies outside of its disc, over the best shift and turn of the nominal places.
+    """Largest distance outside its disc of any place, over the best shift and turn of the nominal places.
 
     Args:
-        x, y: places as they are (places, n) [mm].
+        x, y: actual places (places, n) [mm].
         radii: of the discs about the nominal ones (places, n) [mm].
         nominal: places (places, 2), about their middle [mm].
         worst: found (n,) [mm]; 0 or less where each is within its disc.

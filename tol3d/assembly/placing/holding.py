@@ -1,4 +1,4 @@
-"""What datums and moves ask, nominally: which freedoms each takes, for lists."""
+"""Nominal constraints of datums and moves, with the freedoms that each takes; for tables."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -38,12 +38,12 @@ HELD: Final = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What one feature, contact or relation asks, or several of them at once.
+    """Constraint by one feature, contact or relation, or by several at once.
 
     Args:
-        words: what it is.
-        rows: how it changes with a shift of the point about which motions are, and with a turn (rows, 6) [mm].
-        is_room: whether it takes nothing, but leaves a clearance.
+        words: its description.
+        rows: its change per shift of the reference point of motions, and per turn (rows, 6) [mm].
+        is_room: True if it takes no freedom but leaves a clearance.
     """
 
     words: str
@@ -69,18 +69,18 @@ class Taken:
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of freedoms."""
         return len(self.shifts) + len(self.turns)
 
 
 @dataclass(frozen=True, eq=False)
 class Freedoms:
-    """How freedoms are taken.
+    """Freedoms taken and left.
 
     Args:
         taken: in order.
-        left: that none takes.
-        where: where the axis of the one turn that is left lies, such as "through (0, 40, 0)"; else "".
+        left: taken by none.
+        where: place of the axis of a single remaining turn, such as "through (0, 40, 0)"; else "".
     """
 
     taken: tuple[Taken, ...]
@@ -89,10 +89,10 @@ class Freedoms:
 
 
 def taken(asked: Sequence[Asked], middle: Array, reach: float) -> Freedoms:
-    """What each takes of the six freedoms, of those that earlier ones left.
+    """Freedoms that each constraint takes of those left by earlier ones.
 
     Args:
-        asked: in order.
+        asked: constraints in order.
         middle: the point (3,) about which their rows are [mm].
         reach: of what they are about from there [mm].
     """
@@ -131,7 +131,7 @@ def _parts(motions: Array) -> tuple[Array, Array]:
 
 
 def _without(directions: Array, others: Array) -> Array:
-    """Of a space of directions (n, 3) those square to a part of it (m, 3): (n - m, 3)."""
+    """Orthogonal complement (n - m, 3) of a subspace (m, 3) in a space of directions (n, 3)."""
     inside = directions - directions @ others.T @ others
     return np.linalg.svd(inside)[2][: len(directions) - len(others)]
 
@@ -170,7 +170,7 @@ SAME: Final = 1e-6
 
 
 def held_by_datums(assembly: Assembly, frame: DatumFrame) -> Freedoms:
-    """What each datum of a frame takes, along the axes of its part."""
+    """Freedoms taken by each datum of a frame, along the axes of its part."""
     asked = [Asked(_datum_name(datum), _of_datum(assembly, datum, k)) for k, datum in enumerate(frame.datums)]
     origins = np.array([assembly.features[name].frame[:3, 3] for own in frame.datums for name in own.features])
     return taken(asked, np.zeros(3), _reach(origins))
@@ -197,7 +197,7 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
 
 
 def held_by(assembly: Assembly, plan: Placing) -> Freedoms:
-    """What a move takes, step by step, along the axes of the world; of what lays a part against nothing: nothing."""
+    """Freedoms taken by each step of a move, along the axes of the world; none if the part lies against nothing."""
     move: Move = getattr(plan, "move", None) or plan  # type: ignore[assignment]  # a move that is its own plan
     if isinstance(move, StatedMove):
         raise TypeError(f"{move.name}: expected a move of one body")
@@ -273,7 +273,7 @@ def _located(assembly: Assembly, move: Locate, middle: Array) -> Iterator[Asked]
 def _related(assembly: Assembly, relations: Sequence[Relation], middle: Array) -> Iterator[Asked]:
     for own in relations:
         asked = asked_of(own, assembly.features)
-        assert asked is not None  # others are refused before
+        assert asked is not None  # others were refused before
         held, turning = asked
         moving, target = _pose(assembly, own.moving), _pose(assembly, own.target)
         at, z = moving[:3, 3] - middle, target[:3, 2]

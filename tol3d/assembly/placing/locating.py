@@ -27,7 +27,7 @@ MET: Final = 1e-13
 
 @nested
 def missing(pose: Any, contacts: Any, i: int, arms: Any, right: Any) -> None:
-    """What each contact lacks, and the arms R p of the points."""
+    """Residual of each contact, and the arms R p of the points."""
     points, normals, heights = contacts
     p, q, h = min(i, points.shape[2] - 1), min(i, normals.shape[2] - 1), min(i, heights.shape[1] - 1)
     for k in range(6):
@@ -43,7 +43,7 @@ def missing(pose: Any, contacts: Any, i: int, arms: Any, right: Any) -> None:
 
 @nested
 def by_chords(pose: Any, contacts: Any, i: int, inverse: Any, reach: float, rooms: Any) -> bool:
-    """Whether the nominal inverse finds the pose."""
+    """Find the pose by the nominal inverse; True if found."""
     arms, right, step, _ = rooms
     before = np.inf
     for _ in range(CHORDS):
@@ -64,7 +64,7 @@ def by_chords(pose: Any, contacts: Any, i: int, inverse: Any, reach: float, room
 
 @nested
 def by_newton(pose: Any, contacts: Any, i: int, reach: float, rooms: Any) -> bool:
-    """Whether Newton's method finds the pose."""
+    """Find the pose by Newton's method; True if found."""
     normals = contacts[1]
     q = min(i, normals.shape[2] - 1)
     arms, right, _, matrix = rooms
@@ -226,10 +226,10 @@ def _contact(move: Locate, pair: Pair, world: World, reference: str) -> tuple[Ar
 
 
 def side_of(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array]:
-    """Of the side of a contact on which its plane is, a point of that and its normal as it tilts (3, n).
+    """Point and tilted normal (3, n) of the plane of a contact, on the side that has the plane.
 
-    In the frame of the target's part; with points on the fixture in that of the part that is placed. What is no point
-    of a plane has the normal of the pair.
+    In the frame of the target's part; with points on the fixture in that of the placed part. A point of no plane has
+    the normal of the pair.
     """
     if move.points_on == "part":
         name = world.assembly.features[pair.target].plane
@@ -241,7 +241,7 @@ def side_of(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:
-    """Of all contacts, (6, ..., n) or (6, ..., 1)."""
+    """Arrays of all contacts, (6, ..., n) or (6, ..., 1)."""
     trials = max(own.shape[-1] for own in arrays)
     found = np.empty((len(arrays), *arrays[0].shape[:-1], trials))
     for place, own in zip(found, arrays, strict=True):

@@ -25,7 +25,7 @@ ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
     ("coaxial", "axis", "axis"): ("across", "direction"),
     ("tangent", "axis", "plane"): ("along", "level"),
 }
-"""What relations ask, by their kind and the shapes of their two features."""
+"""Constraints by relations, by their kind and the shapes of their two features."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Mating:
         ]
 
     def poses(self, world: World, seats: Sequence[Seat], start: Pose | None = None) -> tuple[Pose, Codes]:
-        """Of the part, from its nominal pose or another one, and what became of it (n,) or (1,)."""
+        """Poses of the part from its nominal or another pose, with status codes (n,) or (1,)."""
         return self.alignment.poses(seats, start or Pose.of(world.assembly.part[self.move.part].pose))
 
 
@@ -79,7 +79,7 @@ def mating(move: Mate, nominal: World) -> Mating:
 
 
 def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held, Turning] | None:
-    """What a relation asks; None where it is none of its two features."""
+    """Constraint by a relation; None if it has none for its two features."""
     return ASKED.get((relation.kind, _word(features[relation.moving]), _word(features[relation.target])))
 
 
@@ -129,12 +129,12 @@ INDEPENDENT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """What relations keep, n . (R p + s t), t the place of the part's origin or of what it is `about`.
+    """Quantities kept by relations, n . (R p + s t), t the place of the part's origin or of the `about` point.
 
     Args:
         vectors, normals: p and n (kept, 3, n), directions times a length [mm].
         shifts: s, 1 of points and 0 of directions (kept,).
-        groups: how many there are of each relation.
+        groups: their number per relation.
     """
 
     vectors: Array
@@ -171,7 +171,7 @@ class KeptRelations:
         return pose, codes, self.kept_by(seats)
 
     def kept_by(self, seats: Sequence[Seat]) -> Kept:
-        """What they keep in their trials."""
+        """Quantities that they keep, by trial."""
         rows: list[tuple[Array, Array, float]] = []
         groups = []
         for tie, seat, toward in zip(self.mating.alignment.ties, seats, self.toward, strict=True):
@@ -235,7 +235,7 @@ def _stacked(arrays: Sequence[Array]) -> Array:
 
 
 def kept_rows(kept: Kept, turn: Array, reach: float) -> Array:
-    """How what is kept changes nominally with turn by reach and shift (kept, 6)."""
+    """Nominal change of the kept quantities per turn by reach and shift (kept, 6)."""
     arms, normals = kept.vectors[:, :, 0] @ turn.T, kept.normals[:, :, 0]
     return np.hstack([np.cross(arms, normals) / reach, kept.shifts[:, None] * normals])
 

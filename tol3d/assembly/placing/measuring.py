@@ -45,7 +45,7 @@ def _normals(points: Sequence[Array]) -> list[Array]:
 
 
 def bonuses(measured: Measured, world: World) -> list[Array]:
-    """What the size of each measured feature adds to its zone, each (n,) or (1,) [mm]."""
+    """Bonus of each measured feature by its size, each (n,) or (1,) [mm]."""
     found = []
     for name, own in zip(measured.features, measured.bonuses, strict=True):
         size = total(world.assembly.features[name].size_by, 1, world.columns)[0]
@@ -245,12 +245,12 @@ def together(measured: Measured, world: World) -> Array:
 
 
 def _bonus(measured: Measured, world: World) -> Array:
-    """What the size of the measured feature adds to its zone (n,) or (1,) [mm]."""
+    """Bonus of the measured feature by its size (n,) or (1,) [mm]."""
     return bonuses(measured, world)[0] if measured.bonuses else np.zeros(1)
 
 
 def _ends(shape: Shape) -> Array:
-    """Where a shape's position is judged, in its frame, in the order of `ActualFeature.ends`."""
+    """Points at which a shape's position is evaluated, in its frame, in the order of `ActualFeature.ends`."""
     if isinstance(shape, RoundPlane):
         a = shape.radius
         return np.array([[a, 0.0, 0.0], [0.0, a, 0.0], [-a, 0.0, 0.0], [0.0, -a, 0.0]])
@@ -283,9 +283,9 @@ def flatness(measured: Measured, world: World) -> Array:
 
 
 def surface_gap(measured: Measured, world: World) -> Array:
-    """How far the surfaces of two features are apart, at least one of them round: 0 where they touch.
+    """Gap between the surfaces of two features, at least one of them round: 0 at contact.
 
-    As contacts of a touch ask; negative where they overlap.
+    The same as for contacts of a touch; negative if they overlap.
     """
     start, end = (world.placed(name) for name in measured.features)
     return gap_of(start, end, world.columns, parallel=_parallel(measured, world.assembly))
@@ -304,13 +304,13 @@ def contact_angle(measured: Measured, world: World) -> Array:
 
 
 def _parallel(measured: Measured, assembly: Assembly) -> bool:
-    """Whether both features lie along each other nominally."""
+    """True if both features are nominally parallel."""
     start, end = _nominal_directions(measured, assembly)
     return bool(np.linalg.norm(np.cross(start, end)) < PARALLEL)
 
 
 def turn(measured: Measured, world: World) -> Array:
-    """Of the rotation vector that turns the first feature's frame into the second's, the component along a direction.
+    """Component along a direction of the rotation vector from the first feature's frame to the second's.
 
     The direction is fixed in the part of the first; without one it is the vector's length [rad].
     """
@@ -320,9 +320,9 @@ def turn(measured: Measured, world: World) -> Array:
 
 
 def lean(measured: Measured, world: World) -> Array:
-    """How far the second feature's z leans from the first's [rad]; with a third one along or across the tilt from it.
+    """Angle of the second feature's z to the first's [rad]; with a third feature, tilt along or across that.
 
-    `direction` (2,) then chooses: along and across.
+    `direction` (2,) then selects: along and across.
     """
     start, end = (world.placed(name).pose.turn[:, 2] for name in measured.features[:2])
     sideways = end - dot(end, start) * start
@@ -341,7 +341,7 @@ def lean(measured: Measured, world: World) -> Array:
 
 
 def tilts(assembly: Assembly, features: Sequence[str]) -> bool:
-    """Whether the first of three features leans from the third one nominally."""
+    """True if the first of three features is nominally tilted to the third."""
     start, rest = (_nominal_axis(assembly, features[k]) for k in (0, 2))
     return bool(np.linalg.norm(np.cross(rest, start)) > LEANS)
 

@@ -31,21 +31,21 @@ FLAT = 1e-9
 def values(
     assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
 ) -> dict[str, tuple[Array, Codes]]:
-    """What measures read in each trial, and what became of it.
+    """Values of measures in each trial, with status codes.
 
     Args:
         assembly: the model.
         deviations: (trials, width) [mm].
         names: of the measures.
-        solids: reads clearances, if there are some among them.
+        solids: reads clearances, if any are among them.
 
     Returns:
-        By name: values (trials,) [mm or rad], not a number where the code is not OK, and codes (trials,): of the first
-        move that failed among those that placed what is read.
+        By name: values (trials,) [mm or rad], NaN where the code is not OK, and codes (trials,), of the first move that
+        failed among those on which the measure depends.
 
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.
-        FloatingPointError: what nothing fails is not a number.
+        FloatingPointError: a value is NaN though nothing failed.
     """
     return answers(assembly, deviations, names, solids)[0]
 
@@ -53,7 +53,7 @@ def values(
 def answers(
     assembly: Assembly, deviations: Array, names: Sequence[str], solids: SolidReader | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
-    """What measures read, as `values`; and columns of what decided in each trial (trials,), see `decided`."""
+    """Values of measures, as `values`; and columns of the deciding place in each trial (trials,), see `decided`."""
     return planned_answers(planned(assembly, solids), deviations, names)
 
 
@@ -204,7 +204,7 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
     lost = (first == OK) & ~np.isfinite(numbers := reading(measured, block.worlds))
     if lost.any():
         _refuse_lost(f"measures.{name}", lost & ~may_lack(measured, block.codes))
-    gauged = measured.room is not None or measured.over_gauges  # a datum does not take a gauge
+    gauged = measured.room is not None or measured.over_gauges  # a datum is not gauged
     first = np.where(lost, np.int8(NO_BUILD if gauged else SINGULAR), first)
     return np.where(first == OK, numbers, np.nan), first
 
@@ -269,7 +269,7 @@ def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, Engaging]:
 
 @lru_cache(maxsize=256)
 def _slope(plan: PlacingPlan, name: str, index: int) -> Array | None:
-    """How a measure changes with a part at rest."""
+    """Change of a measure per motion of a part at rest."""
     move = plan.moves[index]
     assert isinstance(move, Resting)
 

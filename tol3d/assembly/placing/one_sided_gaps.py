@@ -46,7 +46,7 @@ def kept_at(pose: Any, kept: Any, e: int, i: int) -> Any:
 
 @nested
 def rows_at(pose: Any, contacts: Any, i: int, on_part: bool, reach: float, rows: Any) -> None:
-    """How gaps change with turn by reach and shift at a pose (contacts, 6)."""
+    """Change of gaps per turn by reach and shift at a pose (contacts, 6)."""
     points, normals, _ = contacts
     arm, normal = np.empty(3), np.empty(3)
     for k in range(rows.shape[0]):
@@ -75,7 +75,7 @@ def wrench(arm: Any, force: Any, reach: float, found: Any) -> None:
 
 @nested
 def pull_at(pose: Any, force: Any, reach: float, pull: Any) -> float:
-    """What the force does along turn by reach and shift (6,) at a pose; how far its point has gone along it [mm]."""
+    """Component of the force along turn by reach and shift (6,) at a pose; and the path of its point [mm]."""
     along, at = force
     arm = np.empty(3)
     gone = 0.0
@@ -97,7 +97,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
     arm, normal, row = np.empty(3), np.empty(3), np.empty(6)
     change = np.empty((shifts.shape[0], steps.shape[1]))
     largest, before = 0.0 if shifts.shape[0] == 0 else 1.0, np.inf
-    while largest > MET and largest < before:  # what relations hold already is met as nearly as can be
+    while largest > MET and largest < before:  # constraints held by relations already are met as nearly as possible
         before, largest = largest, 0.0
         for e in range(shifts.shape[0]):
             p, q = min(i, vectors.shape[2] - 1), min(i, normals.shape[2] - 1)

@@ -1,4 +1,4 @@
-"""How an assembly is placed: its moves as their nominal geometry decides them, once for all trials."""
+"""Placing plan of an assembly: its moves as decided by nominal geometry, once for all trials."""
 
 from collections import defaultdict
 from collections.abc import Mapping
@@ -60,13 +60,13 @@ class PlacingPlan:
 
     @cached_property
     def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
-        """What may fail on the way to each measure, in order."""
+        """Possible failures before each measure, in order."""
         return {name: causes_of(each, name, self.causes) for name, each in self.assembly.measures.items()}
 
 
 @lru_cache(maxsize=8)
 def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPlan:
-    """What the nominal geometry decides.
+    """Plan by nominal geometry.
 
     Args:
         assembly: the model.

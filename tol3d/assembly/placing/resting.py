@@ -23,7 +23,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 SLIGHT = 1e-5
-"""Of the force: what is added to it to see which contacts would carry if it pointed a little aside."""
+"""Fraction of the force added to it to see which contacts would carry if it pointed slightly aside."""
 MISSED = 1e-9
 """Part of a force that contacts leave over, of which none is left."""
 OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=np.int8)
@@ -288,5 +288,5 @@ def _contact(move: Rest, pair: Pair, world: World, middle: Array, origin: Array)
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:
-    """Of all contacts, (contacts, ..., n) or (contacts, ..., 1)."""
+    """Arrays of all contacts, (contacts, ..., n) or (contacts, ..., 1)."""
     return np.ascontiguousarray(np.stack(np.broadcast_arrays(*arrays)))

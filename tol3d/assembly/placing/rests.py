@@ -21,7 +21,7 @@ OPEN: Final = -1e-11
 PIVOTS: Final = 400
 """Exchanges of contacts in one trial; in practice as many as contacts."""
 ACTS: Final = 1e-9
-"""How far a gap closes as another one opens, under which it does not."""
+"""Closing of a gap per opening of another one that counts as none."""
 TIED: Final = 1e-9
 """Part of the force under which a contact carries nothing."""
 
@@ -115,7 +115,7 @@ BETWEEN: Final = 4
 def settled(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, programme: Any, begun: Any, rooms: Any, reach: float
 ) -> int:
-    """What becomes of a part that goes along the force from a pose, by nominal rows."""
+    """Follow a part along the force from a pose, by nominal rows; returns its status."""
     all_rows, rows, steps = programme
     basis, inverse, loads = begun
     gaps, step, moves = rooms
@@ -145,7 +145,7 @@ def pressed(
     pose: Any, contacts: Any, i: int, on_part: bool, kept: Any, force: Any, steps: Any, begun: Any, rooms: Any,
     reach: float,
 ) -> bool:  # fmt: skip
-    """Whether the force presses all contacts that carry nominally by the lever arms of the pose, too."""
+    """True if, with the lever arms of the pose too, the force presses all contacts that carry load nominally."""
     basis, _, loads = begun
     all_rows, pull, tangents, matrix, right = rooms
     rows_at(pose, contacts, i, on_part, reach, all_rows)

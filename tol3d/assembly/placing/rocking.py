@@ -35,9 +35,9 @@ Read = Callable[[Array, Mapping[int, Resting]], Array]
 
 
 def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: int) -> Array | None:
-    """How a measure changes nominally with the motions of a part at rest (motions,) [mm/mm]; None where it does not.
+    """Nominal change of a measure per motion of a part at rest (motions,) [mm/mm]; None if it does not change.
 
-    Of a measure that is not smooth there, some motion: what it depends on is not one slope.
+    For a measure that is not smooth there, the slope is that of some motion.
     """
     motions = move.rows.shape[1]
     nudges = NUDGE * np.hstack([np.zeros((motions, 1)), np.eye(motions), -np.eye(motions)])
@@ -142,14 +142,14 @@ def _gauges(rooms: Sequence[GaugeRoom]) -> str:
 
 
 def _is_room(assembly: Assembly, cause: Cause) -> bool:
-    """Whether a cause is a room in which something may not fit."""
+    """True if a cause is a clearance into which something may not fit."""
     if isinstance(cause, int):
         return isinstance(assembly.moves[cause], Engage)
     return assembly.datum_frames[cause].gauges is not None
 
 
 def _reasons(assembly: Assembly, world: World, rooms: Sequence[Cause], codes: Codes) -> Words:
-    """Of a measure, in words (n,)."""
+    """Failure reasons of a measure, in words (n,)."""
     found: Words = np.full(len(codes), "")
     for cause in rooms:
         if isinstance(cause, int):

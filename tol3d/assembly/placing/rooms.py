@@ -1,4 +1,4 @@
-"""Where a part with play lies in its room: convex programmes a trial, in a kernel.
+"""Position of a part with play within its clearance: convex programmes for each trial, in a kernel.
 
 Offsets o_k + B_k q of the places where it engages (two numbers each; of a slot the second is 0) have to stay within
 clearances c_k. The centred q makes the least slack s = min(c_k - |o_k + B_k q|) as large as can be, then the least of
@@ -55,7 +55,7 @@ def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
                     held[count, s] = seen[k, r, s]
                 count += independent(held, count, size)
     first = count
-    for s in range(size):  # what is square to them: the unit vectors less their parts in what is held
+    for s in range(size):  # orthogonal to them: the unit vectors less their projections
         if count < size:
             for t in range(size):
                 held[count, t] = 1.0 if t == s else 0.0
@@ -158,12 +158,14 @@ def opened(basis: Any, done: Any) -> int:
 
 @nested
 def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any) -> bool:
-    """Whether the cones that decided this programme at the pose before decide it here: the largest s by Newton's steps.
+    """Solve by Newton steps with the cones that decided this programme at the pose before; True if solved.
+
+    The programme asks for the largest s.
 
     Args:
         cones, size, found, rooms: as in `climbed`.
-        before: multipliers, and of which programme (cones,).
-        turn: which programme it is, from 1.
+        before: multipliers, and their programme (cones,).
+        turn: number of this programme, from 1.
     """
     y, _, _, used = cones
     own, scale, some = rooms[3], 0.0, False
@@ -180,10 +182,10 @@ def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any)
 def reached(
     place: Any, q: Any, cones: Any, size: int, lifts: int, weight: float, push: Any, found: Any, rooms: Any
 ) -> bool:
-    """Whether a programme's optimum is found: where interior points stall, anew with smaller multipliers.
+    """Find a programme's optimum, anew with smaller multipliers if interior points stall; True if found.
 
     Args:
-        place, q, weight: as in `lain`: what it starts from.
+        place, q, weight: as in `lain`: the start.
         cones, size, lifts, push, found, rooms: as in `climbed`, started.
     """
     y, z, _, used = cones
@@ -197,7 +199,7 @@ def reached(
 
 @nested
 def moves_part(basis: Any, parts: int, size: int) -> bool:
-    """Whether some freedom that is left moves the part, not its bolts alone."""
+    """True if some remaining freedom moves the part, not only its bolts."""
     for j in range(parts):
         for s in range(size):
             if abs(basis[j, s]) > UNSEEN:
@@ -226,7 +228,7 @@ def lain(
     """
     seen, used, y, z, found, held, inner = rooms
     rows = place[2]
-    slack, which, pushes, turn, left = 0.0, 0, 0, 0, -1  # it pushes: then 1, and 2 after it
+    slack, which, pushes, turn, left = 0.0, 0, 0, 0, -1  # `pushes` is 1 for the push, 2 after it
     size = opened(basis, done)
     fill(q, 0.0)
     while True:
@@ -265,7 +267,7 @@ def lain(
 
 @nested
 def new_rooms(cones: int, freedoms: int) -> Any:
-    """What programmes work with."""
+    """Work arrays for the programmes."""
     size = freedoms + 1
     inner = (
         np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 3)), np.empty(size),

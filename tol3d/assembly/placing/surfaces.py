@@ -17,7 +17,7 @@ PARALLEL: Final = 1e-6
 
 
 def kind_of(shape: Shape) -> Kind:
-    """What counts of a shape besides its radius: its centre, its axis, or its plane."""
+    """Kind of a shape, apart from its radius: centre, axis or plane."""
     if isinstance(shape, Point):
         return "point"
     return "plane" if isinstance(shape, Plane | RoundPlane) else "line"
@@ -32,12 +32,12 @@ def touching_distance(start: ActualFeature, end: ActualFeature, columns: Array) 
 
 
 def is_inside(start: Shape, end: Shape) -> bool:
-    """Whether one of two is a bore or a socket, in which the other one lies."""
+    """True if one of the two is a bore or a socket, in which the other lies."""
     return is_inner(start) or is_inner(end)
 
 
 def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
-    """How far two surfaces are apart (n,) [mm]; negative where they overlap. See `common_normal`."""
+    """Gap between two surfaces (n,) [mm]; negative if they overlap. See `common_normal`."""
     gap = common_normal(start, end, parallel=parallel)[1] - touching_distance(start, end, columns)
     return -gap if is_inside(start.feature.shape, end.feature.shape) else gap
 

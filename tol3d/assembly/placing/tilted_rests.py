@@ -20,7 +20,7 @@ from tol3d.numerics.loops import copy_matrix
 
 @nested
 def motion_rows(pose: Any, trial: Any, reach: float, pull: Any, found: Any) -> None:
-    """How gaps change with the motions that keep what is kept (contacts, motions), and what the force does (motions,).
+    """Change of gaps per motion that keeps the constraints (contacts, motions), and the force along each (motions,).
 
     Args:
         pull: of the force at the pose (6,).
@@ -55,15 +55,15 @@ def shifted(pose: Any, trial: Any, reach: float, motion: Any, tangents: Any, ste
 
 STEPS: Final = 300
 SEARCH: Final = 0.05
-"""Of the reach: the largest box."""
+"""Fraction of the reach: the largest box."""
 TRIES: Final = 2
 """With ever smaller boxes, for in a large one a part may pass over where it is held."""
 NEAR: Final = 1e-5
-"""Of the reach: the box at which a side that still carries says that a balance is near."""
+"""Fraction of the reach: a side of this box that still carries shows that a balance is near."""
 FAR: Final = 0.5
 """Turn [rad], and shift a mm of reach, from which a part is not held."""
 DEAR: Final = 10.0
-"""What a gap of -1 mm costs first, in forces times 1 mm."""
+"""First cost of a gap of -1 mm, in forces times 1 mm."""
 DEAREST: Final = 1e5
 ROUNDING: Final = 1e-13
 """Change of a cost, a mm of reach, under which it is none."""
@@ -123,7 +123,7 @@ def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: A
 
 @nested
 def far_from(pose: Any, start: Any, reach: float) -> bool:
-    """Whether a pose has left another one for good."""
+    """True if a pose has left another one for good."""
     shift, trace = 0.0, 0.0
     for r in range(3):
         shift = max(shift, abs(pose[r, 3] - start[r, 3]))
@@ -134,7 +134,7 @@ def far_from(pose: Any, start: Any, reach: float) -> bool:
 
 @nested
 def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
-    """Whether a side of the box carries."""
+    """True if a side of the box carries load."""
     found = False
     for b in range(basis.shape[0]):
         found = found or (contacts <= basis[b] < contacts + 2 * motions and loads[0, b] > TIED)
@@ -145,7 +145,7 @@ def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
 def found_rest(
     pose: Any, start: Any, trial: Any, reach: float, most: float, begun: Any, programme: Any, rooms: Any, own: Any
 ) -> int:
-    """What becomes of a part that goes along the force from a pose by the arms of each pose."""
+    """Follow a part along the force from a pose, by the lever arms of each pose; returns its status."""
     motions, contacts = programme[3].shape[0], programme[1].shape[0]
     basis, _, loads = begun
     boxed_rows(programme[0], contacts)

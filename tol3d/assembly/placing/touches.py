@@ -29,7 +29,7 @@ FOLLOWING: Final = 0.25
 """The same on the way from nominal, where steps are to stay near the path."""
 FIRST_SHARE: Final = 0.25
 LEAST_SHARE: Final = 1e-6
-"""Of the way from nominal; shorter ones are not tried."""
+"""Fraction of the path from nominal; shorter steps are not tried."""
 NOWHERE: Final = 2.0
 """The side of the folds of what is not found; else 1, -1, or 0 on a fold."""
 
@@ -59,7 +59,7 @@ def posed(start: Any, basis: Any, reach: float, amounts: Any, pose: Any, moves: 
 
 @nested
 def systems(rows: Any, moves: Any, count: int, matrix: Any) -> None:
-    """How errors change with the amounts (count, count)."""
+    """Change of errors per amount (count, count)."""
     for e in range(count):
         for s in range(count):
             total = 0.0
@@ -70,7 +70,7 @@ def systems(rows: Any, moves: Any, count: int, matrix: Any) -> None:
 
 @nested
 def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, about: Any, rooms: Any) -> Any:
-    """Whether Newton's method finds the amounts, with steps each at most `falling` of the one before."""
+    """Find the amounts by Newton's method, with steps each at most `falling` of the one before; True if found."""
     start, basis, reach, lacking = about
     pose, moves, errors, rows, matrix, right, sides = rooms
     count, before = basis.shape[1], np.inf
@@ -90,7 +90,7 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
         for s in range(count):
             amounts[s] += right[s]
             length = max(length, abs(right[s]))
-        # steps fall as their squares: the next one is about as much shorter, squared
+        # quadratic convergence: the next step is shorter by about the square of the ratio
         if length <= MET * reach or (before < np.inf and length * (length / before) ** 2 <= LAST * reach):
             return True
         if not length <= falling * before:
@@ -156,7 +156,7 @@ def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any,
 
 @nested
 def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> Any:
-    """Whether no contact has to pull, under a force through the mean of the moving origins; SINGULAR in doubt."""
+    """True if no contact has to pull, under a force through the mean of the moving origins; SINGULAR in doubt."""
     kinds, _, _, moving, _, _, _ = asked
     pose, moves, _, rows, matrix, right, _ = rooms
     count, at = about[1].shape[1], min(i, moving.shape[2] - 1)
@@ -190,7 +190,7 @@ def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> 
 
 @nested
 def new_rooms(count: int, contacts: int) -> Any:
-    """What steps work with."""
+    """Work arrays for the steps."""
     return (
         np.empty((3, 4)),
         np.empty((6, count)),

@@ -201,5 +201,5 @@ def _side(own: ActualFeature, origin: Array) -> Array:
 
 
 def _stacked(arrays: Sequence[Array]) -> Array:
-    """Of all contacts, (contacts, ..., n) or (contacts, ..., 1)."""
+    """Arrays of all contacts, (contacts, ..., n) or (contacts, ..., 1)."""
     return np.stack(np.broadcast_arrays(*arrays))

@@ -33,14 +33,14 @@ class SolidReader(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """Where parts are after a move.
+    """Poses of parts after a move.
 
     Args:
         assembly: the model.
         columns: the deviations, (width, n) [mm].
         own: features and datum frames of each part, by its name.
-        poses: of parts that are placed, in the world.
-        bodies: of each part, what it is welded to, itself among them.
+        poses: of placed parts, in the world.
+        bodies: parts welded to each part, itself included.
         loads: by move, the part of its force that each contact carries (contacts, n).
         slacks: of moves with play, by their names (n,) [mm].
         tightest: of moves with play, by their names, the pair that decides it (n,).
@@ -57,7 +57,7 @@ class World:
 
     @property
     def trials(self) -> int:
-        """How many."""
+        """Number of trials."""
         return int(self.columns.shape[1])
 
     def part_of(self, feature: str) -> str:

@@ -1,9 +1,9 @@
-"""How assemblies are shown: features as they lie in a trial, deviations magnified; tables of parts and moves.
+"""Presentation of assemblies: features as they lie in a trial, deviations magnified; tables of parts and moves.
 
-symbols         closed surfaces that stand for features
+symbols         closed surfaces that represent features
 shown_assembly  a build's parts, for pictures and files of triangles
-tables          what a scene means
-parts_tree      which part lies on which
+tables          tables of a scene
+parts_tree      tree of parts that lie on others
 """
 
 from collections.abc import Mapping, Sequence

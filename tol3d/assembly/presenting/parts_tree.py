@@ -13,8 +13,8 @@ from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, M
 from tol3d.assembly.model.moves import pairs_of
 from tol3d.report.page import Branch
 
-DEEPEST: Final = 8  # levels that are set in
-ALIKE: Final = 4  # parts laid alike that share a line
+DEEPEST: Final = 8  # levels of indentation
+ALIKE: Final = 4  # parts placed alike that share a line
 KINDS: Final[Mapping[type[Move], str]] = {
     Fix: "fixed",
     Locate: "six contacts on",
@@ -30,14 +30,14 @@ KINDS: Final[Mapping[type[Move], str]] = {
 
 @dataclass(frozen=True)
 class Laid:
-    """How a part comes to its place.
+    """Placement of a part by a move.
 
     Args:
-        part: which.
-        words: by what kind of move, before the parts that it lies on.
+        part: its name.
+        words: kind of the move, printed before the parts that it lies on.
         move: its name; "" for none.
         on: those parts, in the order in which the move names them.
-        before: how it came to where it was before.
+        before: its previous placement.
     """
 
     part: str
@@ -71,7 +71,7 @@ def parts_tree(assembly: Assembly, further: Sequence[Laid] = ()) -> tuple[Branch
 
 
 def _laid(assembly: Assembly) -> Iterator[Laid]:
-    """How moves lay parts, in their order; what is welded to a part goes where that is moved again."""
+    """Placements of parts by moves, in order; welded parts follow a part that is moved again."""
     before: dict[str, Laid] = {}
     for part, kind, move, on in _steps(assembly):
         own = Laid(part, KINDS[kind], move, on, before.get(part))
@@ -92,7 +92,7 @@ def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str
                 yield part, StatedMove, move.name, (move.carriers[k],)
             continue
         body = [move.part]
-        for part in body:  # it grows by what is welded to what was
+        for part in body:  # the loop extends it by parts welded to its parts
             body += [other for other, (leader, _) in welded.items() if leader == part and other not in body]
         named = dict.fromkeys(assembly.features[name].part for pair in pairs_of(move) for name in pair)
         yield move.part, type(move), move.name, tuple(part for part in named if part not in body)
@@ -179,7 +179,7 @@ class _Tree:
 
 
 def _reaches(above: Mapping[str, str], part: str, other: str) -> bool:
-    """Whether a part lies on another one, over any number of others, or is it."""
+    """True if a part lies on another one, directly or through others, or is that part."""
     while part != other and part in above:
         part = above[part]
     return part == other

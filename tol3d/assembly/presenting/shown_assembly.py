@@ -24,15 +24,16 @@ from tol3d.system.stated import magnified, mean_build, nominal_build
 
 COLOURS: Final = ("#4682B4", "#CD853F", "#6B8E23", "#B22222", "#8470FF", "#2F8F8F", "#C71585", "#708090")
 THIN: Final = 1 / 120
-"""Of the assembly's size: thickness of symbols; a sixth of it is the radius of the rods that join those of a part."""
+"""Fraction of the assembly's size: thickness of symbols; a sixth of it is the radius of the rods that join those of a
+part."""
 DEFLECTION: Final = 0.05
 """mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
 OPACITY: Final = 0.3
-"""Of solids, so that their features and what lies within them are seen."""
+"""Opacity of solids, so that their features and their inside are visible."""
 FRAMES: Final = 25
-"""Of a path, where nothing else is said."""
+"""Frames of a path by default."""
 HALVINGS: Final = 10
-"""Of the range of magnifications: 1/1024 of it."""
+"""Halvings of the range of magnifications: 1/1024 of it."""
 RIGID: Final = "solids keep the shape that is drawn: what deviates on them is shown by the symbols of their features"
 
 
@@ -57,12 +58,12 @@ class Placed:
 
     @property
     def has_solids(self) -> bool:
-        """Whether any part has a solid."""
+        """True if any part has a solid."""
         return any(part.solid is not None for part in self.assembly.parts)
 
     @property
     def points(self) -> Mapping[str, Array]:
-        """Where features are that pictures name (3,) [mm], by what they are called."""
+        """Points of features that are named in pictures (3,) [mm], by label."""
         return {label: self.frames[name][:3, 3] for name, label in labels(self.assembly).items()}
 
 

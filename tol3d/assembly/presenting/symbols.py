@@ -13,19 +13,19 @@ from tol3d.numerics.arrays import Array
 Surface = tuple[Array, NDArray[np.int64]]
 
 SIDES = 48
-"""Of a round surface."""
+"""Sides of a round surface."""
 WALL = 0.35
-"""Of the thickness of other symbols: how thick marks on solids are across the surface on which they lie."""
+"""Thickness of marks across the surface of solids over that of other symbols."""
 
 
 def symbol(shape: Shape, thickness: float) -> Surface:
-    """What stands for a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
+    """Symbol of a feature, in its frame: vertices (n, 3) [mm], triangles (m, 3).
 
     Args:
         shape: a plane is a slab below it, a tab a block, a slot its two walls,
             an axis a rod of its diameter, a hole a ring, a point an octahedron,
             a sphere a ball, a socket the zone of a shell between 45 degrees of latitude.
-        thickness: of what has none of its own [mm].
+        thickness: of shapes that have none of their own [mm].
     """
     match shape:
         case Point(diameter=float(diameter)):
@@ -55,7 +55,7 @@ def symbol(shape: Shape, thickness: float) -> Surface:
 
 
 def mark(shape: Shape, thickness: float) -> Surface:
-    """What stands for a feature on the solid of its part, in its frame: thin, astride of where the feature is.
+    """Mark of a feature on the solid of its part, in its frame: thin, astride of the surface.
 
     Args:
         shape: a plane is a frame along its edges or a ring, a slot or a tab such frames on both walls, a hole a
@@ -64,7 +64,7 @@ def mark(shape: Shape, thickness: float) -> Surface:
     """
     half = WALL * thickness / 2
     match shape:
-        case Point(diameter=float(diameter), inner=False):  # which may be no face, such as a pitch sphere
+        case Point(diameter=float(diameter), inner=False):  # it need not be a face: a pitch sphere, for instance
             return ring(diameter / 2 - half, diameter / 2 + half, -half, half)
         case Slot():
             heights = -shape.width / 2, shape.width / 2
@@ -188,7 +188,7 @@ PLACES: Final = ("1st datum", "2nd datum", "3rd datum")
 
 
 def labels(assembly: Assembly) -> Mapping[str, str]:
-    """What pictures call features that they name, by these: of datums also their place in their frames."""
+    """Labels of features that pictures name, by feature; datums with their place in the frame."""
     places = _datum_places(assembly)
     named = _by_importance(assembly)[:MOST_NAMED]
     return {name: f"{name}, {places[name]}" if name in places else name for name in named}
@@ -242,7 +242,7 @@ def joined_symbols(features: Framed, thickness: float) -> Surface:
 
 
 def marks_on_solid(features: Framed, thickness: float) -> Surface:
-    """What stands for several features on the solid of their part."""
+    """Marks of several features on the solid of their part."""
     return together([_moved(mark(own.shape, thickness), frame) for own, frame in features])
 
 

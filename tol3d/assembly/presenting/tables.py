@@ -1,4 +1,4 @@
-"""What a scene of an assembly means, as tables: features with their datum frames, moves."""
+"""Tables of a scene of an assembly: features with their datum frames, moves."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -85,7 +85,7 @@ def _by(taken: Taken) -> str:
 
 
 def _left(freedoms: Freedoms) -> str:
-    """What none takes; of one turn about which axis."""
+    """Remaining freedoms; for a single turn also its axis."""
     return f"{in_words(freedoms.left)}{f' {freedoms.where}' if freedoms.where else ''}"
 
 
@@ -164,7 +164,7 @@ def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
 
 
 def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float64]) -> str:
-    """Where a dimension's positive deviation moves a feature, by what it does to its components."""
+    """Direction in which a dimension's positive deviation moves a feature, from its effect on the components."""
     flat, axis = isinstance(feature.shape, Plane | RoundPlane), isinstance(feature.shape, Axis)
     own = (0.0, 0.0, moved[0]) if flat else (*moved[:2], 0.0) if axis else moved
     along = feature.frame[:3, :3] @ own
@@ -181,7 +181,7 @@ def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float6
 
 
 WORDS: Final[Mapping[type[BuiltShape], str]] = {KeptShape: "file", StepShape: "STEP file"}
-"""What builds solids that have no builder of ours."""
+"""Words for the sources of solids without a builder of ours."""
 
 
 def _builder_words(shape: BuiltShape) -> str:
@@ -206,7 +206,7 @@ def _listed(numbers: NDArray[np.float64], between: str) -> str:
 
 
 def _rests(system: AssemblySystem) -> Sequence[PageItem]:
-    """What contacts of parts at rest may carry of the force."""
+    """Ranges of the force carried by each contact of parts at rest."""
     blocks: list[PageItem] = []
     for move in planned(system.assembly).moves:
         if isinstance(move, Resting):

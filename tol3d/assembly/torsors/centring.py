@@ -1,4 +1,4 @@
-"""Where a part with play lies in its room: the freedoms of many trials at once, by convex programmes of cones.
+"""Position of a part with play within its clearance: freedoms of many trials at once, by second-order cone programmes.
 
 A place k asks |b_k + B_k q| <= c_k - s. The largest s is found by primal and dual interior points along scaled
 directions; then the places whose multipliers say that they decide it keep their offsets, the freedoms that those leave
@@ -26,14 +26,14 @@ LOST: Final = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Cones:
-    """What limits the freedoms, in some trials.
+    """Limits of the freedoms, in some trials.
 
     Args:
         offsets: b (places, 2, trials) [mm].
         clearances: c (places, trials) [mm].
         rows: B (places, 2, freedoms), of all trials.
-        bolt_of: of each place the bolt that it holds, -1 for none; empty where there are no bolts. The last freedoms
-            are four of each bolt, and are centred as long as the others are.
+        bolt_of: bolt held at each place, -1 for none; empty if there are no bolts. The last freedoms are four of each
+            bolt, centred as long as the others are.
     """
 
     offsets: Array
@@ -43,12 +43,12 @@ class Cones:
 
     @property
     def freedoms(self) -> int:
-        """How many."""
+        """Number of freedoms."""
         return int(self.rows.shape[2])
 
     @property
     def parts(self) -> int:
-        """How many of them are the part's."""
+        """Number of the part's own freedoms."""
         return self.freedoms - 4 * (max(self.bolt_of, default=-1) + 1)
 
     def of(self, trials: Mask | NDArray[np.intp]) -> "Cones":

@@ -1,4 +1,4 @@
-"""What a trial's torsors are linear in: its deviations, a constant, and terms that are not linear, in order."""
+"""Columns in which a trial's torsors are linear: deviations, a constant, and nonlinear terms, in order."""
 
 import numpy as np
 

@@ -14,10 +14,10 @@ Disc = tuple[Array, Array, Array]
 
 GOLDEN: Final = (5**0.5 - 1) / 2
 SECTIONS: Final = 44
-"""Of a bracket of milliradians; 6e-10 of it are left, at arms of 50 mm 1e-10 mm."""
+"""Sections of a bracket of milliradians; 6e-10 of it are left, at arms of 50 mm 1e-10 mm."""
 
 HALVINGS: Final = 48
-"""Of tenths of a millimetre: down to rounding."""
+"""Halvings of tenths of a millimetre: down to rounding."""
 TINY: Final = 1e-300
 """Under any length; where a divisor is nil, the quotient is not used."""
 
@@ -50,17 +50,17 @@ class CommonOpening:
 
 
 def _of_two(first: Disc, second: Disc) -> Disc:
-    """How far the best point lies outside of two discs at most, and that point."""
+    """Smallest distance outside both of two discs, and its point."""
     (x, y, radius), (its_x, its_y, its_radius) = first, second
     apart = np.sqrt((its_x - x) ** 2 + (its_y - y) ** 2)
-    along = np.clip(0.5 * (apart + radius - its_radius), 0.0, apart)  # within, the smaller one decides
+    along = np.clip(0.5 * (apart + radius - its_radius), 0.0, apart)  # one within the other: the smaller one decides
     share = along / np.maximum(apart, TINY)
     outside = np.maximum(along - radius, apart - along - its_radius)
     return outside, x + share * (its_x - x), y + share * (its_y - y)
 
 
 def _of_three(first: Disc, second: Disc, third: Disc) -> Array:
-    """How far the best point lies outside of three discs at most (trials,)."""
+    """Smallest distance outside all of three discs (trials,)."""
     pairs = ((first, second, third), (second, third, first), (third, first, second))
     at_pairs = [_of_two(one, other) for one, other, _ in pairs]
     least = np.maximum.reduce([outside for outside, _, _ in at_pairs])

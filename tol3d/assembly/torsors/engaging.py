@@ -72,7 +72,7 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
 
 
 def _points(own: Engagement, world: World) -> Array:
-    """Where it engages, nominally in the world (places, 3)."""
+    """Nominal points of engagement in the world (places, 3)."""
     frame, outer = world.frame(own.inner), world.frame(own.outer)
     points = own.places @ frame[:3, :3].T + frame[:3, 3]
     if own.bolt is None:
@@ -105,7 +105,7 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
 
 
 def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, Array, Array, Array]]:
-    """Of each place: rows (2, 6) of the part's torsor, offsets (2, columns), clearance (columns,); none of a bolt."""
+    """Rows (2, 6) of the part's torsor, offsets (2, columns), clearance (columns,) of each place; none for a bolt."""
     frame, features = world.frame(own.inner), world.assembly.features
     round_ = isinstance(features[own.inner].shape, Axis)
     directions = frame[:3, :2].T if round_ else np.array([frame[:3, 2], np.zeros(3)])
@@ -126,7 +126,7 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
 
 
 def _leaning(own: Engagement, world: World) -> float:
-    """How much of its size what is in a slot takes of the width where it leans nominally; 1 in a hole."""
+    """Factor of the inner feature's size in the width that it takes in a slot where it leans nominally; 1 in a hole."""
     if isinstance(world.assembly.features[own.inner].shape, Axis):
         return 1.0
     along = float(world.axis(own.inner) @ world.axis(own.outer))
@@ -134,7 +134,7 @@ def _leaning(own: Engagement, world: World) -> float:
 
 
 def _push(move: Engage, world: World) -> Array:
-    """How far the part's torsor takes its point along the direction of a float (6,)."""
+    """Displacement of the part's point along the direction of a float, per torsor component (6,)."""
     assert move.floating.along is not None
     direction = world.turned(move.floating.along, world.part_of(move.floating.at))
     row: Array = height_at(world.origin(move.floating.at), direction)[0]
@@ -142,6 +142,6 @@ def _push(move: Engage, world: World) -> Array:
 
 
 def _drawn(move: Engage, world: World) -> Array:
-    """What is drawn of the float, as it is (draws, columns)."""
+    """Draws of the float, unchanged (draws, columns)."""
     columns = range(move.floating.columns.start, move.floating.columns.stop)
     return np.eye(world.columns.count)[list(columns)]

@@ -44,7 +44,7 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
 
 
 def kept_by(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], columns: Columns, count: int) -> Freedoms:
-    """What the first datums of a frame hold, and leave; see `displacement_of`."""
+    """Freedoms held by the first datums of a frame, and those left; see `displacement_of`."""
     freedoms = _without_any(datums, columns)
     for datum, features in zip(frame.datums[:count], datums[:count], strict=True):
         _take(freedoms, datum, features, columns)
@@ -115,18 +115,18 @@ def _take_plane(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Arra
 
 
 def _outermost(feature: Feature, tilt: Array, columns: Columns) -> Array:
-    """How far the outermost corner stands out of the material over the centre (columns,), of a plane that is tilted.
+    """Height of a tilted plane's outermost corner over the centre, out of the material (columns,).
 
     Args:
         feature: the plane.
         tilt: turns about its x and y (2, columns), from the plane that it touches to itself.
-        columns: to which the largest of its corners is added.
+        columns: extended by the maximum over its corners.
     """
     about_x, about_y = tilt
     if isinstance(feature.shape, RoundPlane):
         return columns.largest(feature.shape.radius * tilt[None])
     assert isinstance(feature.shape, Plane)
-    along_x, along_y = feature.shape.reach  # opposite corners stand out and in by the same
+    along_x, along_y = feature.shape.reach  # opposite corners stand out and in by the same amount
     return columns.largest(np.array([[along_y * about_x - along_x * about_y], [along_y * about_x + along_x * about_y]]))
 
 
@@ -159,7 +159,7 @@ def _take_line(freedoms: Freedoms, features: Sequence[Displaced]) -> None:
 
 
 class PartTorsors:
-    """What a part's features and datum frames are displaced by, in the part's frame.
+    """Displacements of a part's features and datum frames, in the part's frame.
 
     Args:
         part: its model.
@@ -211,12 +211,12 @@ class PartTorsors:
         return [[(self._features[each], self.feature(each)) for each in datum.features] for datum in frame.datums]
 
     def size(self, name: str) -> Array:
-        """How much larger a feature is (columns,) [mm]."""
+        """Deviation of a feature's size (columns,) [mm]."""
         return np.asarray(summed(self._features[name].size_by, 1, self._columns)[0])
 
 
 def summed(contributions: Sequence[Contribution], components: int, columns: Columns) -> Array:
-    """What contributors do together to components (components, columns)."""
+    """Summed effect of contributors on components (components, columns)."""
     total = columns.zeros(components)
     for contribution in contributions:
         total[:, contribution.columns] += contribution.matrix

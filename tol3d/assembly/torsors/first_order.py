@@ -97,10 +97,10 @@ class FirstOrder:
         return dict(zip(names, found, strict=True))
 
     def slopes(self, name: str, means: Array, sigmas: Array) -> Slopes:
-        """How a measure changes with each column, at the means of the deviations.
+        """Slopes of a measure for each column, at the means of the deviations.
 
         Args:
-            name: of the measure.
+            name: its name.
             means, sigmas: of each column (columns,) [mm, rad].
         """
         row = self.rows[name]
@@ -161,12 +161,12 @@ def first_order(assembly: Assembly) -> FirstOrder:
 
 
 def displaced(assembly: Assembly, part: str, after: int) -> FirstOrder:
-    """What displaces a part, as six measures "0" to "5": its torsor, seen at the world's origin [mm, rad].
+    """Torsor of a part, seen at the world's origin [mm, rad], as six measures "0" to "5".
 
     Args:
         assembly: the model.
-        part: which.
-        after: index of the move after which it is asked; -1 for the end.
+        part: its name.
+        after: index of the move after which it is evaluated; -1 for the end.
     """
     columns = Columns(assembly.width, _room(assembly))
     worlds, _ = _moved(World(assembly, columns), {})
@@ -199,7 +199,7 @@ def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int,
     moves = first.assembly.moves
     weights = {index: through[own] for index, own in unknowns.items() if isinstance(moves[index], Rest)}
     for index, own in weights.items():
-        if np.abs(own).max() < UNSEEN:  # it does not see it, or by a term that is not linear
+        if np.abs(own).max() < UNSEEN:  # no effect, or by a nonlinear term
             weights[index] = along_nothing(len(own))
     ends = []
     for sign in (-1.0, 1.0):
@@ -236,12 +236,12 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 
 
 def _room(assembly: Assembly) -> int:
-    """How many columns terms may make.
+    """Upper bound for the number of columns of terms.
 
-    Of a datum one, of a minimax fit or a rest six, of play seven, of a reading one where it is linear, else ten.
-    Datums of a frame with gauges are taken twice, and these have play.
+    One for a datum, six for a minimax fit or a rest, seven for play, one for a linear reading, else ten. Datums of a
+    frame with gauges count twice, and the gauges have play.
 
-    Moves are followed once, and twice more for each measure that is read at an end of what parts may rock.
+    Moves are followed once, and twice more for each measure that is read at an end of the rocking range.
     """
     frames = assembly.datum_frames.values()
     datums = sum(len(own.datums) for own in frames)
@@ -256,5 +256,5 @@ def _room(assembly: Assembly) -> int:
 
 
 def _readings(measured: Measured) -> int:
-    own = 1 if measured.reads.is_linear else 10  # where a part may rock, the ends of a linear one are a term
+    own = 1 if measured.reads.is_linear else 10  # where a part may rock, the ends of a linear measure are a term
     return own + (0 if measured.minus is None else _readings(measured.minus))

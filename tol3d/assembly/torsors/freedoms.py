@@ -43,12 +43,12 @@ class Freedoms:
 
     @property
     def torsor(self) -> Array:
-        """What is found so far (6, columns); what no equation decides yet is any."""
+        """Torsor found so far (6, columns); undetermined components are arbitrary."""
         return self.scale @ self._found
 
     @property
     def count(self) -> int:
-        """How many freedoms no equation holds."""
+        """Number of freedoms that no equation holds."""
         return int(self._left.shape[1])
 
     @property
@@ -76,7 +76,7 @@ class Freedoms:
         return count
 
     def holds(self, equations: Array) -> bool:
-        """Whether earlier groups leave nothing for this one to take."""
+        """True if earlier groups leave nothing for this one to take."""
         asked = equations @ self.scale
         return bool(np.abs(asked @ self._left).max(initial=0.0) <= INDEPENDENT * np.linalg.norm(asked))
 

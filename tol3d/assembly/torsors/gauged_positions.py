@@ -15,9 +15,9 @@ from tol3d.assembly.torsors.world import World
 from tol3d.numerics.arrays import Array
 
 STEPS: Final = 40
-"""Of Newton; in practice 2 to 8."""
+"""Newton steps at most; in practice 2 to 8."""
 SHORT: Final = 1e-12
-"""Of such a step [mm], after which it is done."""
+"""Step [mm] at which they are done."""
 FREE: Final = 1e-9
 """Share of the ends in the multipliers, under which the room alone decides."""
 

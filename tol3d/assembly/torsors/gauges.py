@@ -19,10 +19,10 @@ SEEN = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class GaugesRoom:
-    """What gauges see of a part that the datums before them leave free.
+    """Play between gauges and a part that the datums before them leave free.
 
     Args:
-        rest: the frame's torsor (6, columns) by those datums, nothing else shifted or turned.
+        rest: the frame's torsor (6, columns) by those datums, with no other shift or turn.
         motions: the torsors of the part by its freedoms (6, freedoms), of which those are shift of the middle of all
             places and turn times their largest distance from it.
         directions: the freedoms in these (freedoms, 6).

@@ -13,21 +13,21 @@ from tol3d.numerics.compiled import FULL, kernel, nested
 from tol3d.numerics.loops import fill
 
 GAP: Final = 1e-12
-"""Of the largest room: by how much the slack may be better."""
+"""Final gap over the largest clearance: the slack may be better by so much."""
 OWED: Final = 1e-9
 """Share of what the multipliers lack of the goal at first that may be left."""
 MOST_STEPS: Final = 80
 TARGET: Final = 0.1
-"""Of the gap, from one step to the next."""
+"""Factor of the gap from one step to the next."""
 NEAR: Final = 0.98
-"""Of the way to the end of a cone."""
+"""Fraction of the distance to the end of a cone."""
 LEAST: Final = 1e-300
-"""Of a square that is inside its cone but for rounding."""
+"""Square of a point that is inside its cone but for rounding."""
 
 
 @nested
 def square_in(a: float, b: float, c: float) -> Any:
-    """How far a point is inside its cone, squared."""
+    """Squared distance of a point from the surface of its cone, positive inside."""
     return a * a - b * b - c * c
 
 
@@ -92,7 +92,7 @@ def equations(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system:
         stiff = max(stiff, system[i, i])
     for i in range(count):
         for j in range(i + 1):
-            system[i, j] += stiff * closed[i, j]  # else equations of what is closed would be rounding
+            system[i, j] += stiff * closed[i, j]  # else equations of closed places would be rounding
 
 
 @nested

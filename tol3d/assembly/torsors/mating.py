@@ -22,7 +22,7 @@ def mated(move: Mate, world: World) -> Array:
 
 
 def freedoms_after(move: Mate, world: World) -> Freedoms:
-    """What relations decide, and leave; as `mated`."""
+    """Freedoms after the relations: those decided and those left; as `mated`."""
     part = world.assembly.part[move.part]
     points = [world.origin(name) for each in move.relations for name in (each.moving, each.target)]
     freedoms = Freedoms(part.pose[:3, 3], points, world.columns.count)
@@ -46,7 +46,7 @@ def take_relations(freedoms: Freedoms, move: Mate | Rest, world: World) -> None:
 
 
 def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: World) -> int:
-    """How many freedoms a relation takes."""
+    """Take the freedoms of a relation; returns their number."""
     pairing = _Pairing(freedoms, relation, move, world)
     shapes = [world.assembly.features[name].shape for name in (relation.moving, relation.target)]
     match relation.kind, *map(_word, shapes):
@@ -168,7 +168,7 @@ def contact(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array
     normal = world.turned(pair.normal, target_part if move.points_on == "part" else move.part)
     at_moving, at_target = height_at(moving, normal), height_at(target, normal)
     row = at_moving if move.points_on == "part" else at_target
-    # what a feature does on its part or body counts at its own origin, what the frame of the normal does at the point
+    # a feature's displacement on its part or body counts at its own origin, that of the normal's frame at the point
     own = at_moving @ world.on_body(pair.moving, move.part)
     other = row @ world.parts[target_part] + at_target @ world.on_part(pair.target)
     gap = world.columns.constants(normal @ (moving - target)[:, None])

@@ -65,7 +65,7 @@ def _fixed_in(measured: Measured, world: World) -> tuple[Array, Array]:
 
 
 def _turned(direction: Array, torsor: Array) -> Array:
-    """How a direction that turns with a torsor varies (3, columns)."""
+    """Change of a direction that turns with a torsor (3, columns)."""
     return np.asarray(-cross_matrix(direction) @ torsor[3:])
 
 
@@ -140,7 +140,7 @@ def _from_frame(measured: Measured, world: World) -> Array:
 
 
 def _at_ends(measured: Measured, world: World, directions: Array) -> Array:
-    """How far a feature's ends are displaced in its datum frame, along directions: (ends, directions, columns) [mm]."""
+    """Displacements of a feature's ends in its datum frame along directions: (ends, directions, columns) [mm]."""
     (name,) = measured.features
     feature = world.assembly.features[name]
     assert not isinstance(feature.shape, RoundPlane)
@@ -150,7 +150,7 @@ def _at_ends(measured: Measured, world: World, directions: Array) -> Array:
 
 
 def _disc(measured: Measured, world: World, radius: float) -> tuple[Array, Array]:
-    """Of a round face in its datum frame: height of its middle (columns,), and of its rim over it at most [mm]."""
+    """Height of a round face's middle in its datum frame (columns,), and largest rise of its rim over it [mm]."""
     (name,) = measured.features
     frame = world.assembly.features[name].frame
     torsor = _from_frame(measured, world)
@@ -219,7 +219,7 @@ def together(measured: Measured, world: World) -> Array:
 
 
 def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
-    """What a feature's size adds to its zone (columns,) [mm]."""
+    """Bonus by a feature's size (columns,) [mm]."""
     sign, origin = (1.0, bonus.low) if bonus.grows else (-1.0, bonus.high)
     departure = sign * (world.size(feature) - _constant(world, origin))
     row: Array = world.columns.made_by(Clipped(departure[None], bonus.high - bonus.low))[0]
@@ -328,14 +328,14 @@ def pattern(measured: Measured, world: World) -> Array:
 
 
 def turn(measured: Measured, world: World) -> Array:
-    """Of torsors at nominally equal frames."""
+    """Rotation between torsors at nominally equal frames."""
     start, end = measured.features
     turned = (world.placed(end) - world.placed(start))[3:]  # nominally both frames are one
     return _length(np.zeros(3), turned, world) if measured.direction is None else _fixed_in(measured, world)[0] @ turned
 
 
 def lean(measured: Measured, world: World) -> Array:
-    """Of torsors at nominally equal frames, across their z; by the nominal tilt."""
+    """Angle between torsors at nominally equal frames, across their z; with the nominal tilt."""
     start, end = measured.features[:2]
     turned = (world.placed(end) - world.placed(start))[3:]
     axis = world.axis(start)

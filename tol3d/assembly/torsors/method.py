@@ -10,7 +10,7 @@ from tol3d.assembly.torsors.first_order import FirstOrder, Slopes, displaced, fi
 from tol3d.numerics.arrays import Array
 
 _FOUND: WeakKeyDictionary[Assembly, FirstOrder] = WeakKeyDictionary()
-"""Of each assembly in this process; another process finds its own, a matter of milliseconds."""
+"""Cache for each assembly in this process; another process finds its own, a matter of milliseconds."""
 
 
 def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[str, Array]:
@@ -31,7 +31,7 @@ def values(assembly: Assembly, deviations: Array, names: Sequence[str]) -> dict[
 
 
 def slopes(assembly: Assembly, name: str, means: Array, sigmas: Array) -> Slopes:
-    """How a measure changes with each column of the deviations, at their means; see FirstOrder.slopes."""
+    """Slopes of a measure for each column of the deviations, at their means; see FirstOrder.slopes."""
     return _first_order(assembly).slopes(name, means, sigmas)
 
 

@@ -66,7 +66,7 @@ def _asked(contact: Contact, move: Touch, world: World) -> tuple[Array, Array]:
 
 
 GAP = 1e-11
-"""Where it ends: the square of the largest residual is found to this part of itself."""
+"""Relative error of the square of the largest residual at the end."""
 MOST_STEPS = 300
 """In practice 10 to 60."""
 
@@ -185,7 +185,7 @@ def fitted(move: BestFit, world: World) -> Array:
         freedoms.take(weight * rows, weight * values)
         freedoms.settle(np.mean(points, axis=0))
         return freedoms.rest()
-    # as many numbers for each, those that no direction counts are 0
+    # equal numbers of entries; those without a direction are 0
     rows = np.array([np.pad(rows, ((0, 3 - len(rows)), (0, 0))) for rows, _ in residuals]) @ freedoms.scale
     values = np.array([np.pad(values, ((0, 3 - len(values)), (0, 0))) for _, values in residuals])
     _, strengths, right = np.linalg.svd(rows.reshape(-1, 6))

@@ -15,13 +15,13 @@ from tol3d.numerics.loops import fill
 MIDDLE: Final = 1e-6
 """Share of its clearance, under which a place is in the middle of it."""
 STIFF: Final = 1e5
-"""Of the places that decide, as the scale goes: each of the last steps leaves about 1e-5 of what they are off."""
+"""Stiffness of the deciding places over the scale: each of the last steps leaves about 1e-5 of their residual."""
 LAST: Final = 12
-"""Of the last steps, 2 or 3 in practice."""
+"""Last steps at most, 2 or 3 in practice."""
 MET: Final = 1e-13
-"""What places that decide may be apart, of the size of their clearances."""
+"""Largest residual of deciding places, over the size of their clearances."""
 BALANCED: Final = 1e-9
-"""What multipliers may lack of balance."""
+"""Largest imbalance of multipliers."""
 UNDECIDED: Final = 1e-14
 """Part of a pivot that is rounding."""
 HUGE: Final = 1e200
@@ -120,7 +120,7 @@ def lengths_of(place: Any, trial: Any, q: Any, s: float, state: Any) -> bool:
 def finished(
     place: Any, trial: Any, goal: Any, lifts: int, q: Any, s: float, scale: float, state: Any, system: Any, step: Any
 ) -> bool:
-    """Whether the optimum is reached where the places that decide, by their multipliers, meet exactly."""
+    """True if the optimum is reached: the places that decide, by their multipliers, meet exactly."""
     rows, counts, _ = trial
     _, z, w, stiff, back, pulls = state
     size = rows.shape[2]
@@ -135,7 +135,7 @@ def finished(
             off = max(off, abs(w[k]) if stiff[k] > 0.0 else 0.0)
         if off <= MET * scale and balance(trial, goal, lifts, state) <= BALANCED:
             worst = -1
-            for k in range(rows.shape[0]):  # of multipliers under 0 and of places beyond the others, one
+            for k in range(rows.shape[0]):  # one of the negative multipliers and of the places beyond the others
                 if counts[k] and (z[k] < 0.0 or w[k] < -MET * scale):
                     worst = k
             if worst < 0:
@@ -162,9 +162,9 @@ def finished(
 
 
 STEPS: Final = 20
-"""Of Newton, 6 to 10 in practice; what takes more is left."""
+"""Newton steps at most, 6 to 10 in practice; trials that need more are left to the slower method."""
 UNDER: Final = 0.5, 0.2
-"""How far it starts under the slack that there is, of the largest offset; one after the other until one leads to it."""
+"""Start below the feasible slack, over the largest offset; one after the other until one succeeds."""
 FALLS: Final = 0.1
 """Most of mu that is left by a step."""
 INSIDE: Final = 0.98
@@ -214,7 +214,7 @@ def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
 
 @nested
 def sought(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
-    """Whether the largest slack is found: q, and multipliers in the state; from one under that there is, goal 0."""
+    """Find the largest slack, q and multipliers in the state, from a feasible one below it, goal 0; True if found."""
     offsets, clearances = place
     rows, counts, _ = trial
     _, z, w, stiff, back, _ = state
@@ -254,7 +254,7 @@ def sought(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, 
 
 @nested
 def improved(place: Any, trial: Any, goal: Any, lifts: int, q: Any, state: Any, system: Any, step: Any) -> bool:
-    """Whether the optimum is reached from q and multipliers that are near it."""
+    """Reach the optimum from q and multipliers near it; True if reached."""
     clearances = place[1]
     rows, counts, _ = trial
     w, scale, s = state[2], 0.0, 1e30

@@ -104,7 +104,7 @@ TOGETHER = 10_000
 NONE = 1e-9
 """Part of the force under which a contact carries nothing."""
 SLIGHTER = 1e-4
-"""Of a wish: what is added to it so that it is along nothing in particular."""
+"""Perturbation of an objective, so that it is parallel to nothing in particular."""
 ALIKE = 1e-6
 """Least singular value of rows, lengths of about 1, that are independent."""
 

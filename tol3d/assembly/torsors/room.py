@@ -1,4 +1,4 @@
-"""Where something with play lies in its room, as a term: a part on its pins, or the gauges of a datum frame."""
+"""Position of a body with play within its clearance, as a term: a part on its pins, or gauges of a datum frame."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -14,7 +14,7 @@ from tol3d.assembly.torsors.torsor import ordered_product, ordered_sum
 from tol3d.numerics.arrays import Array
 
 HALVINGS: Final = 55
-"""Of the height of a segment, 1 at first: rounding is reached."""
+"""Halvings of the height of a segment, 1 at first: rounding is reached."""
 DOUBLINGS: Final = 40
 NEWTONS: Final = 30
 """Steps to where a bolt has no place, 3 to 6 in practice."""
@@ -61,17 +61,17 @@ def along_rays(cones: Cones, q: Array, directions: Array, share: Array) -> Array
     for bolt in range((cones.freedoms - parts) // 4):
         way = np.minimum(way, _bolt_way(cones, bolt, at, gone))
     way = np.where(moves & np.isfinite(way), np.maximum(way, 0.0), 0.0)
-    inside = np.clip(share, 0.0, 1.0)  # slopes ask beyond its ends
+    inside = np.clip(share, 0.0, 1.0)  # slopes evaluate beyond its ends
     moved = q.copy()
     moved[:parts] = q[:parts] + inside ** (1.0 / parts) * way * ray
     return moved
 
 
 def _bolt_way(cones: Cones, bolt: int, at: Array, gone: Array) -> Array:
-    """How far along rays a bolt has a place in both its holes (trials,), inf where nothing stops it.
+    """Distance along rays up to which a bolt fits both its holes (trials,), inf if nothing stops it.
 
-    The largest slack that the bolt's own four freedoms leave is concave in the way, and more than 0 at its start: twice
-    as far until it is none, then by Newton's steps.
+    The largest slack over the bolt's own four freedoms is concave in that distance and positive at its start: the
+    distance is doubled until there is no slack, then refined by Newton steps.
     """
     own = np.flatnonzero(np.array(cones.bolt_of) == bolt)
     columns = slice(cones.parts + 4 * bolt, cones.parts + 4 * bolt + 4)

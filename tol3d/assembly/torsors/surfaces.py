@@ -36,24 +36,24 @@ class Surfaces:
 
     @property
     def shapes(self) -> tuple[Shape, Shape]:
-        """Of both."""
+        """Shapes of both features."""
         features = self.world.assembly.features
         return features[self.start].shape, features[self.end].shape
 
     @property
     def is_inside(self) -> bool:
-        """Whether one lies in the other."""
+        """True if one lies inside the other."""
         return any(is_inner(shape) for shape in self.shapes)
 
     @property
     def parallel(self) -> bool:
-        """Whether two axes lie along each other."""
+        """True if two axes are parallel."""
         sine = np.linalg.norm(np.cross(self.world.axis(self.start), self.world.axis(self.end)))
         return all(isinstance(shape, Axis) for shape in self.shapes) and bool(sine < PARALLEL)
 
     @property
     def _feet(self) -> tuple[Array, Array]:
-        """Where the common normal meets centres, axes and planes (3,), (3,) [mm]."""
+        """Feet of the common normal on centres, axes and planes (3,), (3,) [mm]."""
         start, end = self.world.origin(self.start), self.world.origin(self.end)
         own, other = self.world.axis(self.start), self.world.axis(self.end)
         apart = end - start
@@ -117,7 +117,7 @@ class Surfaces:
         return nominal, signs[0] * varying[0] / 2 + signs[1] * varying[1] / 2
 
     def gap(self) -> Array:
-        """How far the surfaces are apart (columns,) [mm]; near each other's middle by the length of what is between.
+        """Gap between the surfaces (columns,) [mm]; between nearly coincident middles, by the length of their vector.
 
         Raises:
             InputError: as `checked`.

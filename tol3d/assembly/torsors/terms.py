@@ -1,4 +1,4 @@
-"""What is not linear in a trial's deviations, evaluated trial by trial: a length, a largest amount, a width."""
+"""Nonlinear terms of a trial's deviations, evaluated trial by trial: a length, a maximum, a width."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -21,9 +21,9 @@ Form = Literal[
     "end",
     "place in a room",
 ]
-"""How a term depends on what it reads: the largest length of vectors and the least width between parallel planes are
-convex, as is the least in a room of its places; a largest inscribed circle is concave; a pose of least largest residual
-or on one-sided contacts and a clipped amount are neither, but linear in pieces; a place in a room is neither."""
+"""Form of a term's dependence on its inputs: the largest length of vectors, the least width between parallel planes and
+the least within a clearance are convex; a largest inscribed circle is concave; a pose of least largest residual or on
+one-sided contacts and a clipped amount are neither, but piecewise linear; a place within a clearance is neither."""
 
 
 class Term(Protocol):
@@ -31,7 +31,7 @@ class Term(Protocol):
 
     @property
     def form(self) -> Form:
-        """How it depends on what it reads."""
+        """Form of its dependence on its inputs."""
         ...
 
     @property
@@ -41,7 +41,7 @@ class Term(Protocol):
 
     @property
     def count(self) -> int:
-        """How many columns it makes."""
+        """Number of its columns."""
         ...
 
     def values(self, read: Array) -> Array:

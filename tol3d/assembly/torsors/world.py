@@ -11,11 +11,11 @@ from tol3d.numerics.arrays import Array
 
 
 class World:
-    """Where parts are after a move; before the first each is at its nominal pose.
+    """Torsors of parts after a move; before the first move all are nominal.
 
     Args:
         assembly: the model.
-        columns: its columns, to which datum frames and moves add theirs.
+        columns: its columns, extended by datum frames and moves.
     """
 
     def __init__(self, assembly: Assembly, columns: Columns) -> None:
@@ -78,7 +78,7 @@ class World:
         return changed
 
     def is_of_body(self, feature: str, part: str) -> bool:
-        """Whether a feature belongs to a part or to what is welded to it."""
+        """True if a feature belongs to a part or to a part welded to it."""
         return self.part_of(feature) in self._bodies[part]
 
     def with_welded(self, parts: tuple[str, ...]) -> "World":
@@ -89,5 +89,5 @@ class World:
         return changed
 
     def size(self, feature: str) -> Array:
-        """How much larger a feature is (columns,) [mm]."""
+        """Deviation of a feature's size (columns,) [mm]."""
         return self.own[self.part_of(feature)].size(feature)

@@ -206,7 +206,7 @@ def maxwell(radius: Array) -> Array:
 
 
 def _in_space(length: Array, azimuth: Array, height: Array) -> tuple[Array, Array, Array]:
-    """Of lengths in uniform directions: heights on a sphere are uniform (Archimedes)."""
+    """Vectors of given lengths in uniform directions: heights on a sphere are uniform (Archimedes)."""
     angle, z = 2.0 * math.pi * azimuth, 2.0 * height - 1.0
     across = length * np.sqrt(1.0 - z * z)
     return across * np.cos(angle), across * np.sin(angle), length * z

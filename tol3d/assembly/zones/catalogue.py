@@ -26,69 +26,69 @@ FOUR = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 
 
 
 def rectangle(width: float, orientation: float | None = None, outward: float | None = None, form: float = 0.0) -> Zone:
-    """Of a rectangular plane: |offset| + |rise x| + |rise y| <= t/2, |rise x| + |rise y| <= t_o/2."""
+    """Zone of a rectangular plane: |offset| + |rise x| + |rise y| <= t/2, |rise x| + |rise y| <= t_o/2."""
     return Zone(Shape(Face(Diamond()), PLANE, THREE), width, orientation, outward, form)
 
 
 def round_face(width: float, orientation: float | None = None, outward: float | None = None, form: float = 0.0) -> Zone:
-    """Of a round plane: |offset| + hypot(rise x, rise y) <= t/2, hypot(rise x, rise y) <= t_o/2."""
+    """Zone of a round plane: |offset| + hypot(rise x, rise y) <= t/2, hypot(rise x, rise y) <= t_o/2."""
     return Zone(Shape(Face(Disc()), PLANE, THREE), width, orientation, outward, form)
 
 
 def rectangle_orientation(width: float) -> Zone:
-    """Of the orientation of a rectangular plane, without location: |rise x| + |rise y| <= t/2."""
+    """Orientation zone of a rectangular plane, without location: |rise x| + |rise y| <= t/2."""
     return _rises(Diamond(), width)
 
 
 def round_face_orientation(width: float) -> Zone:
-    """Of the orientation of a round plane, without location: hypot(rise x, rise y) <= t/2; axial run-out too."""
+    """Orientation zone of a round plane, without location: hypot(rise x, rise y) <= t/2; axial run-out too."""
     return _rises(Disc(), width)
 
 
 def axis(width: float, orientation: float | None = None, form: float = 0.0) -> Zone:
-    """Of an axis in a cylinder of diameter t: both ends in discs of t/2, half their difference within t_o/2."""
+    """Zone of an axis in a cylinder of diameter t: both ends in discs of t/2, half their difference within t_o/2."""
     return Zone(Shape(Ends(), AXIS, FOUR, (0.5, 0.0, 0.5, 0.0)), width, orientation, form=form)
 
 
 def axis_orientation(width: float) -> Zone:
-    """Of an axis' orientation in a cylinder of diameter t, without location: ends opposite, in discs of t/2."""
+    """Orientation zone of an axis in a cylinder of diameter t, without location: ends opposite, in discs of t/2."""
     opposite = ((-1.0, 0.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0))
     return Zone(Shape(Flat(Disc()), ("end x", "end y"), opposite), width)
 
 
 def axis_section(width: float, form: float = 0.0) -> Zone:
-    """Of an axis at one section, in a disc of diameter t: both ends equal; circular run-out."""
+    """Zone of an axis at one section, in a disc of diameter t: both ends equal; circular run-out."""
     equal = ((1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 1.0))
     return Zone(Shape(Flat(Disc()), ("x", "y"), equal), width, form=form)
 
 
 def flat_axis(width: float, along: tuple[float, float], orientation: float | None = None, form: float = 0.0) -> Zone:
-    """Of an axis between planes t apart whose normal points `along` (x, y): both ends within ±t/2 along it."""
+    """Zone of an axis between planes t apart whose normal is `along` (x, y): both ends within ±t/2 along it."""
     x, y = _unit(along)
     ends = ((x, 0.0), (y, 0.0), (0.0, x), (0.0, y))
     return Zone(Shape(FlatEnds(), ("start", "end"), ends, (0.5, 0.5)), width, orientation, form=form)
 
 
 def flat_axis_orientation(width: float, along: tuple[float, float]) -> Zone:
-    """Of an axis' orientation between planes t apart whose normal points `along` (x, y), without location."""
+    """Orientation zone of an axis between planes t apart whose normal is `along` (x, y), without location."""
     x, y = _unit(along)
     return Zone(Shape(Line(), ("end",), ((-x,), (-y,), (x,), (y,))), width)
 
 
 def point_in_sphere(width: float) -> Zone:
-    """Of a point in a sphere of diameter t."""
+    """Zone of a point in a sphere of diameter t."""
     return Zone(Shape(Sphere(), POINT, THREE), width)
 
 
 def point_in_disc(width: float) -> Zone:
-    """Of a point in a disc of diameter t in its x-y plane."""
+    """Zone of a point in a disc of diameter t in its x-y plane."""
     return Zone(Shape(Flat(Disc()), ("x", "y"), ((1.0, 0.0), (0.0, 1.0), (0.0, 0.0))), width)
 
 
 def point_between_planes(
     width: float, along: tuple[float, float, float] = (0.0, 0.0, 1.0), outward: float | None = None
 ) -> Zone:
-    """Of a point between planes t apart whose normal points `along`: of a surface at a point, its profile."""
+    """Zone of a point between planes t apart whose normal is `along`; for a point of a surface, its profile."""
     return Zone(Shape(Line(), ("along",), tuple((own,) for own in _unit(along))), width, outward=outward)
 
 

@@ -11,7 +11,7 @@ from tol3d.numerics.arrays import Array
 
 @dataclass(frozen=True)
 class Centred(Distribution):
-    """Of deviations that spread as another law does, about 0."""
+    """Distribution with the spread of another one, centred about 0."""
 
     law: Distribution
 

@@ -32,7 +32,7 @@ class CrossSection(ABC):
 
     @property
     def groups(self) -> tuple[Group, ...]:
-        """What the two uniforms are, see Smooth: each by itself."""
+        """Groups of the two uniforms, see Smooth: each by itself."""
         return scalars(2)
 
     @property
@@ -138,7 +138,7 @@ def _cut(value: Array, limit: Array) -> Array:
 
 
 def _turned(length: Array, v: Array) -> tuple[Array, Array]:
-    """Of a length at an angle of 2 pi v."""
+    """Components of a length at an angle of 2 pi v."""
     angle = 2.0 * math.pi * v
     return length * np.cos(angle), length * np.sin(angle)
 

@@ -20,7 +20,7 @@ from tol3d.system.normals import Group, scalars, shifted
 
 @dataclass(frozen=True)
 class Face(Domain):
-    """Of a plane with a rectangular (Diamond) or a round face (Disc)."""
+    """Domain of a plane with a rectangular (Diamond) or a round face (Disc)."""
 
     section: CrossSection
 

@@ -41,7 +41,7 @@ class FloatDraw:
 
     @property
     def distribution(self) -> Distribution:
-        """Of a component, in words."""
+        """Distribution of a component, as shown."""
         return Normal(0.0, 1.0) if "direction" in self.laws else Uniform(-1.0, 1.0)
 
     @property
@@ -108,9 +108,9 @@ class FloatDraw:
 
 
 POINTS: Final = 16384
-"""Of a lattice, over which a covariance is averaged where the datum feature tilts: to about 1e-3 of it."""
+"""Points of a lattice over which a covariance is averaged if the datum feature tilts: to about 1e-3 of it."""
 REACHED: Final = 1.0 + 1e-12
-"""Of a circle: on it, but for rounding."""
+"""Radius over that of a circle: on it, but for rounding."""
 PRIMES: Final = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37)
 
 

@@ -27,7 +27,7 @@ NODES, WEIGHTS = (
 
 
 def integral(density: Density, z: Array) -> Array:
-    """Of the density from 0 to z, by Gauss-Legendre."""
+    """Integral of the density from 0 to z, by Gauss-Legendre."""
     parts = density(z[..., None] * NODES) * WEIGHTS
     total: Array = parts.sum(axis=-1) * z
     return total
@@ -79,7 +79,7 @@ class Inverse:
 
 
 def table(function: Callable[[Array], Array]) -> InverseTable:
-    """Of a smooth function on [0, 1], which takes arrays of any shape."""
+    """Inverse table of a smooth function on [0, 1] that takes arrays of any shape."""
     places, w = _nodes(CELLS, DEGREE)
     return InverseTable(_coefficients(places, function(w)))
 
@@ -91,9 +91,9 @@ def inverse(density: Density, order: int) -> Inverse:
 
 
 def _coefficients(places: Array, values: Array) -> Array:
-    """Of polynomials (degree + 1, n) through values (nodes, n) at places (nodes,).
+    """Coefficients of polynomials (degree + 1, n) through values (nodes, n) at places (nodes,).
 
-    Sums in a stated order: of large products a BLAS changes the last bits with its threads.
+    Sums in a fixed order: in large products a BLAS changes the last bits with its threads.
     """
     weights = np.linalg.inv(np.vander(places, increasing=True))
     return np.stack([sum((w * own for w, own in zip(row, values, strict=True)), np.zeros(1)) for row in weights])

@@ -164,12 +164,12 @@ class SizedBy:
 
 @dataclass(frozen=True)
 class Widened(ZoneDraw):
-    """Of a law within a zone that each trial's size widens; implements Dependent.
+    """Draw of a law within a zone widened by each trial's size; implements Dependent.
 
     Args:
         zone: without bonus.
         confined: the draw from it.
-        size: by which it is widened.
+        size: size that widens it.
     """
 
     confined: Confined

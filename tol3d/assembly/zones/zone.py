@@ -22,10 +22,10 @@ class UnitLaw(ABC):
     @property
     @abstractmethod
     def uniforms(self) -> int:
-        """How many uniforms a trial takes."""
+        """Number of uniforms per trial."""
 
     def groups(self, ratio: Ratio) -> tuple[Group, ...]:
-        """What the uniforms are, see Smooth: each by itself if not said otherwise."""
+        """Groups of the uniforms, see Smooth; by default each by itself."""
         return scalars(self.uniforms)
 
     @abstractmethod
@@ -43,7 +43,7 @@ class Domain(ABC):
     @property
     @abstractmethod
     def coordinates(self) -> int:
-        """How many coordinates it has."""
+        """Number of coordinates."""
 
     @property
     @abstractmethod
@@ -65,7 +65,7 @@ class Domain(ABC):
 
     @abstractmethod
     def excess(self, coordinates: Array, half: Ratio, orientation_half: Ratio) -> Array:
-        """How far points (trials, coordinates) lie outside [mm], by the limit exceeded most; <= 0 inside."""
+        """Distance of points (trials, coordinates) outside [mm], by the limit exceeded most; <= 0 inside."""
 
 
 INSIDE_XTOL = 1e-12  # mm; a thousand times the rounding of a drawn point, far under any width
@@ -74,14 +74,14 @@ LEAST_RATIO = 1e-9  # an orientation zone narrower than that is none
 
 @dataclass(frozen=True)
 class Shape:
-    """What a zone holds: coordinates of a deviation domain, and what they do to the feature.
+    """Coordinates of a deviation domain and their effect on the feature.
 
     Args:
         domain: of the coordinates.
         names: of the coordinates, which are the components that are drawn.
         embedding: components of the feature = embedding (components of the feature, coordinates) @ coordinates.
         middle: weights of the coordinates in a displacement of the feature's middle, along one direction; the first
-            coordinate if not given. Of an orientation alone, which holds no middle, that is a rise or an end's offset.
+            coordinate by default. For an orientation alone, without a middle, it is a rise or an end's offset.
     """
 
     domain: Domain
@@ -149,7 +149,7 @@ class Zone:
 
     @property
     def centre(self) -> float:
-        """Where the middle of the zone lies along the first component [mm]."""
+        """Middle of the zone along the first component [mm]."""
         return 0.0 if self.outward is None else self.outward - 0.5 * self.width
 
     def resized(self, width: float) -> "Zone":
@@ -197,7 +197,7 @@ class Zone:
         return float((gradient * self.furthest(gradient, width, orientation)).sum())
 
     def excess(self, components: Array, width: Ratio | None = None, orientation: Ratio | None = None) -> Array:
-        """How far displacements (trials, components) lie outside [mm], (trials,), by the limit exceeded most.
+        """Distance of displacements (trials, components) outside [mm], (trials,), by the limit exceeded most.
 
         It is <= 0 inside.
 

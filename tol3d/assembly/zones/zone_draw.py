@@ -57,7 +57,7 @@ class ZoneDraw(ABC):
     @property
     @abstractmethod
     def uniforms(self) -> int:
-        """How many uniforms a trial takes."""
+        """Number of uniforms per trial."""
 
     @property
     @abstractmethod
@@ -144,19 +144,19 @@ class ZoneDraw(ABC):
         steps = np.maximum(self.sigmas, LEAST_STEP)
         found = values(self.mean_vector + np.concatenate([np.diag(steps), -np.diag(steps)]))
         gradient = (found[: len(steps)] - found[len(steps) :]) / (2.0 * steps)
-        if not np.isfinite(gradient).all():  # which way it acts is not known where builds beside the mean fail
+        if not np.isfinite(gradient).all():  # its direction is unknown where builds beside the mean fail
             return np.full((2, len(steps)), np.nan)
         return np.stack([self.furthest(gradient), self.furthest(-gradient)])
 
 
 @dataclass(frozen=True)
 class Confined(ZoneDraw):
-    """Of a law within the zone.
+    """Draw of a law within the zone.
 
     Args:
-        zone: which.
+        zone: the zone.
         law: in half widths.
-        name: of the law, as scenes have it.
+        name: of the law, as in scenes.
     """
 
     law: UnitLaw
@@ -216,11 +216,11 @@ class Confined(ZoneDraw):
 
 @dataclass(frozen=True)
 class Process(ZoneDraw):
-    """Of a stated law for each component, independent of each other; the zone only judges, see `Zone.inside`.
+    """Draw of a stated law for each component, independently; the zone only judges, see `Zone.inside`.
 
     Args:
-        zone: that of the drawing; neither its width nor its bonus changes a draw.
-        laws: one a component.
+        zone: the drawing's; neither its width nor its bonus changes a draw.
+        laws: one per component.
     """
 
     laws: tuple[Distribution, ...]

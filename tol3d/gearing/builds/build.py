@@ -91,7 +91,7 @@ class Build:
         return frames.matmul(shaft[:, None], frames.about_z(angle[:, None] + turn)), self.centre_of(seat, angle)
 
     def centre_of(self, seat: int, angle: Array) -> Array:
-        """Where a gear's own centre lies in the world at a turn of its shaft [rad] (trials,): (trials, 3) [mm]."""
+        """Position of a gear's own centre in the world at a turn of its shaft [rad] (trials,): (trials, 3) [mm]."""
         shaft = self.world_from_shaft[:, seat, :3, :3]
         cos, sin = np.cos(angle), np.sin(angle)
         x, y = self.centre[:, seat, 0], self.centre[:, seat, 1]
@@ -101,7 +101,7 @@ class Build:
 
 @dataclass
 class Sums:
-    """What the contributors add up to, before poses are made of it.
+    """Sums of contributors' deviations, from which poses are made.
 
     Args:
         seats: (trials, seats, slots) [mm or rad], see slots.py; axis 1 follows `model.seats`.
@@ -117,7 +117,7 @@ class Sums:
 
 
 def summed(model: Model, deviations: Array) -> Sums:
-    """What the deviations (trials, components) [mm, rad, K] add up to."""
+    """Sums of the deviations (trials, components) [mm, rad, K]."""
     sums = Sums(np.zeros((len(deviations), len(model.seats), SLOTS)), {})
     for contributor in model.contributors:
         columns = deviations[:, model.component_slices[contributor.name]]
@@ -164,7 +164,7 @@ def build(model: Model, deviations: Array) -> Build:
         axis_turn[:, driven] = frames.apply(rest, axis_turn[:, driven])
         shafts[:, driven, :3, :3] = rest
     for index in range(seats):
-        if axis_turn[:, index].any():  # a turn by nothing changes no bit
+        if axis_turn[:, index].any():  # a zero turn changes no bit
             turn = frames.about_vector(axis_turn[:, index])
             shafts[:, index, :3, :3] = frames.matmul(turn, shafts[:, index, :3, :3])
     shafts[..., :3, 3] = origin

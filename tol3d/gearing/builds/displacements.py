@@ -1,4 +1,4 @@
-"""What effects do to the gears in their meshes: read by builds, their rates and compiled builds."""
+"""Displacements of gears in their meshes by effects: used by builds, their rates and compiled builds."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -91,7 +91,7 @@ AnyDisplacement = Displacement | PivotShift | Growth | FlankOffsets
 
 @singledispatch
 def displacements(effect: Effect, model: Model, components: int) -> Iterator[AnyDisplacement]:
-    """What a deviation of so many components displaces in a model; each file of this folder registers one effect."""
+    """Displacements by a deviation of so many components in a model; each file of this folder registers one effect."""
     raise TypeError(f"builds/displacements.py has no function for the effect {type(effect).__name__}")
 
 

@@ -24,19 +24,19 @@ Integers = NDArray[np.int64]
 
 
 def deviates(model: Model, mesh: Mesh) -> bool:
-    """Whether single flanks of a mesh's gears deviate."""
+    """True if single flanks of a mesh's gears deviate."""
     effects = (effect for contributor in model.contributors for effect in contributor.effect.singles)
     return any(isinstance(effect, FlankDeviation) and effect.acts_in(mesh) for effect in effects)
 
 
 def flank_slot(teeth: int, tooth: Integers | int, flank: Flank) -> Any:
-    """Where the coefficients of a gear's flanks begin among those of the gear; teeth count round the gear."""
+    """Index of the first coefficient of a flank among those of its gear; teeth count round the gear."""
     return SHAPES * (2 * np.mod(tooth, teeth) + (flank != RIGHT))
 
 
 @dataclass(frozen=True, eq=False)
 class FlankPlaces:
-    """Where coefficients lie, and what deviations add to them.
+    """Indices of flank coefficients, and their dependence on deviations.
 
     Args:
         starts: of each gear that has any, by name.
@@ -133,7 +133,7 @@ class FlankPlaces:
         return np.asarray((shapes[:, :, None] * matrix[first[:, None] + np.arange(SHAPES)]).sum(axis=1))
 
     def acts_in(self, *gears: str) -> bool:
-        """Whether any of some gears has coefficients."""
+        """True if any of the gears has coefficients."""
         return any(gear in self.starts for gear in gears)
 
     def reach(self, made: "FlankDeviations", model: Model, *gears: str) -> Array:

@@ -1,4 +1,4 @@
-"""How a Build moves with each deviation: its derivatives, exact at the build itself and not only at the nominal one.
+"""Derivatives of a Build by each deviation, exact at the build itself and not only at the nominal one.
 
 Rates are per mm, rad or K of a component of the deviations. Like a Build they know nothing of positions.
 """

@@ -1,4 +1,4 @@
-"""Where the sums of a seat have their places: shift and turn of its axis, its gear's centre, its flanks.
+"""Slots of the sums of a seat: shift and turn of its axis, its gear's centre, its flanks.
 
 Nothing is imported here: kernels are compiled anew where a module that they import changes.
 """

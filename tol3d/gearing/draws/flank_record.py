@@ -24,7 +24,7 @@ LISTED: Final = 6
 """Teeth that a message lists one by one."""
 
 Measured = Mapping[str, Sequence[float | None]]
-"""By flank side, "" for whole teeth, the deviation of each tooth [mm]; None of teeth without one."""
+"""Deviation of each tooth [mm], by flank side, "" for whole teeth; None for teeth without one."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class FlankRecord:
         return first, [number - first for number in numbers]
 
     def _flanks(self, sides: Sequence[str]) -> list[str]:
-        """Of each row, its side."""
+        """Side of each row."""
         column = self._named("flank")
         if "" in sides:
             if column is not None:

@@ -51,7 +51,7 @@ class NormalPitchDraw(PitchDraw):
 
     @property
     def _single_sigma(self) -> float:
-        """Of independent pitches whose rests, once their mean is taken out, have f_p/(3 cpk) [mm]."""
+        """Sigma of independent pitches whose deviations from their mean have f_p/(3 cpk) [mm]."""
         return self.limits.single / (3 * self.cpk) / math.sqrt(1 - 1 / self.teeth)
 
     def _size(self, uniform: Array, most: Array) -> Array:

@@ -38,10 +38,10 @@ class Pattern(ABC):
 
     @abstractmethod
     def uniforms(self, teeth: int) -> int:
-        """How many uniforms a pattern takes."""
+        """Number of uniforms per pattern."""
 
     def groups(self, teeth: int) -> tuple[Group, ...]:
-        """What they are, see Smooth: each by itself if not said otherwise."""
+        """Groups of the uniforms, see Smooth; by default each by itself."""
         return scalars(self.uniforms(teeth))
 
     @abstractmethod
@@ -114,7 +114,7 @@ class PitchLimits:
     cumulative: float
 
     def used(self, index: Sequence[Array]) -> Array:
-        """How much of the limits index deviations take up, each (trials,): 1 where either is reached."""
+        """Utilisation of the limits by index deviations, each (trials,): 1 where either limit is reached."""
         highest, lowest = np.maximum.reduce(index), np.minimum.reduce(index)
         single = np.abs(index[0] - index[-1])
         for before, own in pairwise(index):
@@ -264,7 +264,7 @@ class GivenDraw:
 
     @property
     def distribution(self) -> Distribution:
-        """What is given, as a sample."""
+        """Distribution of the given values, as a sample."""
         return Empirical(np.sort(np.array([*self.given, *self.given])))
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:

@@ -180,7 +180,7 @@ class FclEngine:
         return found.gaps(build.flank_offset[:, [driver, driven]], (driver_rotation, driver_origin), driver_teeth)
 
     def _shapes(self, build: Build, seat: int, rows: Teeth, teeth: Teeth, flank: Flank) -> list[Numbers]:
-        """How flanks of a gear deviate one by one, of the pairs (pairs,) that are asked for."""
+        """Single-flank deviations of a gear for the requested pairs (pairs,)."""
         pairs = zip(rows.tolist(), teeth.tolist(), strict=True)
         return [self._deviated.numbers(build, seat, row, tooth, flank) for row, tooth in pairs]
 
@@ -201,15 +201,15 @@ class FclEngine:
 
 @dataclass(frozen=True)
 class Found:
-    """What FCL found between pulled strips, in the frames of the driver's flanks.
+    """FCL's result between pulled strips, in the frames of the driver's flanks.
 
     Args:
         distance: (trials, pairs) [mm].
         points: (trials, pairs, 2, 3) [mm], the nearest ones.
-        back: (trials, pairs, 2, 3) [mm], what puts each of them back onto its flank.
+        back: (trials, pairs, 2, 3) [mm], shift of each of them back onto its flank.
         curvature: (trials, pairs, 2), of the flanks there [1/mm].
-        deep: (trials, pairs), whether the distance means nothing.
-        at_end: (trials, pairs), whether either point is where its flank ends.
+        deep: (trials, pairs), True where the distance means nothing.
+        at_end: (trials, pairs), True where either point is at an end of its flank.
     """
 
     distance: Array
@@ -257,7 +257,7 @@ def _alike(shapes: Sequence[Numbers]) -> Iterator[tuple[Numbers, NDArray[np.intp
 def read_strips(
     strips: Sequence[tuple[PulledStrip, NDArray[np.intp]]], scale: Array, triangle: Teeth, point: Array
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """What puts points (n, 3) back onto their flanks, curvatures there (n,), and which are ends of them (n,).
+    """Shifts of points (n, 3) back onto their flanks, curvatures there (n,), and flags of flank ends (n,).
 
     Args:
         strips: with the points that lie on each.

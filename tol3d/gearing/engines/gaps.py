@@ -1,4 +1,4 @@
-"""What an engine offers: signed gaps of candidate tooth pairs, with contact points and normals."""
+"""Interface of an engine: signed gaps of candidate tooth pairs, with contact points and normals."""
 
 import importlib
 from collections.abc import Mapping
@@ -75,7 +75,7 @@ class Engine(Protocol):
     """Anything that measures gaps."""
 
     def depth(self, mesh: Mesh) -> float:
-        """How deep an overlap [mm] of a mesh's flanks the engine can still measure."""
+        """Deepest overlap of a mesh's flanks that the engine can measure [mm]."""
 
     def last_step(self, mesh: Mesh) -> float:
         """A turn that moves flanks by no more [mm] may be the last: gaps are linear over it, as known."""
@@ -152,11 +152,11 @@ class ReadingEngine(Engine, Protocol):
         """
 
     def rests(self, build: Build, mesh: Mesh, reading: Reading, driver_angle: Array) -> tuple[MeshReading, MeshReading]:
-        """Where the driven gear rests on the drive and on the back side, by one contact each; gap and turns are nan.
+        """Rest positions of the driven gear on the drive and on the back side, one contact each; gap and turns are nan.
 
         Args:
-            build: virtual builds, one a trial.
-            mesh, reading: which gears, and where on them; its flank does not matter.
+            build: virtual builds, one per trial.
+            mesh, reading: the gears, and places on them; the reading's flank does not matter.
             driver_angle: (positions,) [rad], the same of every trial; contacts are those of the first.
         """
 
@@ -172,7 +172,7 @@ def exact_engine(model: Model) -> ReadingEngine:
 
 
 def exact_is_compiled(model: Model) -> bool:
-    """Whether the exact engine's kernels for a model were compiled on this machine before."""
+    """True if the exact engine's kernels for a model are already compiled on this machine."""
     return bool(importlib.import_module(EXACT).ExactEngine(model).kept)
 
 

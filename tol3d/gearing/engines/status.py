@@ -1,4 +1,4 @@
-"""What became of a mesh that was brought to contact; a larger code is worse, for less is known of the build."""
+"""Status of a mesh that was brought to contact; a larger code is worse, for less is known of the build."""
 
 from typing import Final
 

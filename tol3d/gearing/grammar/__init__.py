@@ -1,1 +1,1 @@
-"""What scenes write of gears: kinds of part, tolerance, move and measure, one file each."""
+"""Grammar of gears in scenes: kinds of part, tolerance, move and measure, one file each."""

@@ -1,4 +1,4 @@
-"""What must hold across the entries of a scene of gears, and what is most likely a slip."""
+"""Checks across the entries of a scene of gears, and warnings of likely slips."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -79,7 +79,7 @@ def bearings_off_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def off_shaft(name: str, shaft: ShaftSpec, at: float) -> str:
-    """What is wrong with a place along a shaft [mm] that lies beyond one of its ends; "" where nothing is."""
+    """Error text for a place along a shaft [mm] beyond one of its ends; "" if there is none."""
     for field, end, sense in (("start", shaft.start, -1.0), ("end", shaft.end, 1.0)):
         if end is not None and (beyond := sense * (at - end.internal)) > ROUNDING:
             words = f"expected a place on {name!r}, whose {field} is at {end}, got {at:.6g} mm, {beyond:.4g} mm beyond"
@@ -98,7 +98,7 @@ def shafts_thicker_than_hubs(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
-    """What is wrong with a shaft that is thicker than a bore [mm] around it; "" where nothing is, or a size unknown."""
+    """Error text for a shaft thicker than a bore [mm] around it; "" if there is none, or a size is unknown."""
     if bore is None or shaft.diameter is None or shaft.diameter.internal <= bore + ROUNDING:
         return ""
     return f"expected at most {bore:.6g} mm, the diameter of {words}, got {shaft.diameter}; look at both, and the units"
@@ -106,5 +106,5 @@ def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
 
 HALF: Final = Implausible(0.5)
 WHOLE: Final = Implausible(1.0)
-WIDEST_FACE: Final = 1000.0  # mm; those of the widest mill gears
+WIDEST_FACE: Final = 1000.0  # mm; that of the widest mill gears
 ROUNDING: Final = 1e-9  # mm; the same number in two units

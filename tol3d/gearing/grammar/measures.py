@@ -23,7 +23,7 @@ MOST_PROFILE_STEPS: Final = 2000
 
 
 class GearStudyOptions(StudyOptions):
-    """How finely flanks are measured."""
+    """Resolution of flank measurement."""
 
     profile_steps: int = Field(
         default=120,
@@ -73,12 +73,12 @@ class MeshMeasureSpec(FlankMeasureSpec):
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
         return self.take == "curve"
 
     @property
     def several_positions(self) -> bool:
-        """Whether a trial is read at several positions."""
+        """True if a trial is read at several positions."""
         return self.over in ("turn", "long_period")
 
     def references(self) -> tuple[Reference, ...]:
@@ -149,12 +149,12 @@ class TrainMeasureSpec(FlankMeasureSpec):
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
         return self.take == "curve"
 
     @property
     def several_positions(self) -> bool:
-        """Whether a trial is read at several positions."""
+        """True if a trial is read at several positions."""
         return self.take != "value"
 
     def references(self) -> tuple[Reference, ...]:
@@ -271,7 +271,7 @@ class TransmissionErrorSpec(FlankMeasureSpec):
 
     @property
     def gives_curve(self) -> bool:
-        """Whether a trial gives a value at every position instead of one."""
+        """True if a trial gives a value at every position instead of one."""
         return self.take == "curve"
 
     @property

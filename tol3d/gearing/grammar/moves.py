@@ -141,14 +141,14 @@ class LinkSpec(MoveSpec):
 
     @abstractmethod
     def link(self, name: str, scene: Scene) -> StatedLink:
-        """What the move of that name stands for in a scene.
+        """Link of the move in a scene.
 
         Raises:
-            SceneError: nothing that can be built, with its place.
+            SceneError: the link cannot be built; with the key in the scene.
         """
 
 
-MOST_RATIO: Final = 1e6  # beyond it somebody's finger slipped
+MOST_RATIO: Final = 1e6  # beyond it: a typing error
 
 
 def _not_negative(angle: Quantity) -> Quantity:
@@ -176,10 +176,10 @@ class ReducerSpec(LinkSpec):
     )
 
     def link(self, name: str, scene: Scene) -> Reducer:
-        """What the data sheet says.
+        """Reducer from the data sheet.
 
         Raises:
-            SceneError: a ratio that nobody builds.
+            SceneError: an impossible ratio.
         """
         if not 1 / MOST_RATIO <= abs(self.ratio) <= MOST_RATIO:
             raise scene.refuse(

@@ -21,7 +21,7 @@ class TurningSpec(PartSpec):
     words: ClassVar[str] = "a gear"
 
 
-MOST_TEETH = 10_000  # far more than anyone hobs; keeps a slip of the finger from building for days
+MOST_TEETH = 10_000  # far more than anyone hobs; a typing error would build for days
 
 LEAST_FACE_WIDTH = 1e-6  # mm; a solid ten times thinner has no two sides for the CAD kernel
 
@@ -96,7 +96,7 @@ class BevelGearSpec(BoredGearSpec):
 
 
 class CarriedSpec(Strict):
-    """How a gear sits on its shaft."""
+    """Seat of a gear on its shaft."""
 
     at: Coordinate = Field(
         default=Quantity(0.0, "mm"),
@@ -115,7 +115,7 @@ class CarriedSpec(Strict):
 
 
 class ShaftSpec(PartSpec):
-    """What turns as one, with every gear on it; diameter, start and end are for pictures and CAD only."""
+    """Rigid shaft with the gears on it; diameter, start and end are for pictures and CAD only."""
 
     words: ClassVar[str] = "a shaft"
 

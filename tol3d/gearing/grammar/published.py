@@ -1,4 +1,4 @@
-"""What others found of trains."""
+"""Published figures for trains."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -65,7 +65,7 @@ class PublishedTrain(Strict):
 
 
 class PublishedTrains(PublishedFigures):
-    """What others found of trains."""
+    """Published figures for trains."""
 
     trains: Mapping[Name, PublishedTrain] = Field(default_factory=dict, description="trains of the scene")
 

@@ -33,7 +33,7 @@ class LinkTrials:
     angles: Array
 
     def __len__(self) -> int:
-        """How many trials."""
+        """Number of trials."""
         return len(self.angles)
 
     def part(self, first: int, last: int) -> "LinkTrials":
@@ -63,15 +63,15 @@ def pin_name(k: int) -> str:
 
 @dataclass(frozen=True)
 class FreeTurn:
-    """How far a driven shaft turns freely while its driver, and its carrier if there is one, are held.
+    """Free turn of a driven shaft while its driver, and its carrier if there is one, are held.
 
     Args:
-        play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds; NaN where nothing is
-            found that stops it.
+        play: from end to end [rad], (trials, positions) or (trials, 1); below 0 the link binds; NaN where no stop is
+            found.
         middle: of that turn about the shaft's z [rad], against its nominal angle, the same shape; None for 0. It
             matters only where load paths are parallel.
-        jams: where the link cannot be assembled, the same shape; the play there is what it lacks, below 0, or NaN where
-            that is not known. None of a link that always can be.
+        jams: where the link cannot be assembled, the same shape; the play there is the missing amount, below 0, or NaN
+            if unknown. None for a link that always can be.
     """
 
     play: Array
@@ -124,22 +124,22 @@ class StatedLink(ABC):
     """
 
     kind: ClassVar[str]
-    """What it is, one word in summaries and tables."""
+    """Kind in one word, for summaries and tables."""
 
     adds_up: ClassVar[bool] = False
-    """Whether its theory is a linear sum of its deviations, the same at every position: then it has a closed form."""
+    """True if its theory is a linear sum of its deviations, the same at every position: then it has a closed form."""
 
     has_middle: ClassVar[bool] = False
-    """Whether its free turns have a middle of their own."""
+    """True if its free turns have a middle of their own."""
 
     unfollowed: ClassVar[str] = "whose error from position to position is not known"
     """Why trains have no transmission error with it, in words."""
 
     compares: ClassVar[bool] = False
-    """Whether load paths within it are compared, so that its play is no sum of effects; see `parts`."""
+    """True if load paths within it are compared, so that its play is no sum of effects; see `parts`."""
 
     housed: ClassVar[bool] = True
-    """Whether pictures show a housing in its place; else somebody shows what is in it."""
+    """True if pictures show a housing in its place; else a presenter shows its inside."""
 
     presenter: ClassVar[str] = ""
     """Import path of the module whose PRESENTER shows what is in it; see gearing/presenting/shown_train.py."""
@@ -160,7 +160,7 @@ class StatedLink(ABC):
 
     @property
     def remark(self) -> str:
-        """What the check of a scene says of its play, if anything."""
+        """Remark on its play for the check of a scene, if any."""
         return self.assumed
 
     @property
@@ -172,7 +172,7 @@ class StatedLink(ABC):
 
     @property
     def coaxial(self) -> bool:
-        """Whether both shafts lie on one axis."""
+        """True if both shafts lie on one axis."""
         pose = self.driver_from_driven
         return bool(np.abs(pose[:2, 3]).max() < SAME_AXIS and np.abs(pose[:2, 2]).max() < SAME_AXIS)
 
@@ -197,13 +197,13 @@ class StatedLink(ABC):
         return 0
 
     def is_compiled(self) -> bool:
-        """Whether the kernels of both laws were compiled on this machine before; it has none unless it says so."""
+        """True if the kernels of both laws are already compiled on this machine; also if the link has none."""
         return True
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-        """What each contributor adds to the play at the first position, against its mean [rad], (trials,) by name.
+        """Contribution of each contributor to the play at the first position, from its mean [rad], (trials,) by name.
 
-        Asked of a link that compares load paths; other contributors are regressed as they are.
+        Used for links that compare load paths; other contributors are regressed as they are.
 
         Args:
             seen: the trials.
@@ -244,7 +244,7 @@ class StatedLink(ABC):
         return ""
 
     def asides(self, seen: LinkTrials) -> Mapping[str, Array]:
-        """How far parts that bores move lie off their places (trials, 2) [mm], in the directions of `Moved`."""
+        """Offsets of parts moved by bores (trials, 2) [mm], in the directions of `Moved`."""
         found: dict[str, Array] = {}
         for own in self.moved:
             by = seen.deviations[own.contributor] @ np.array(own.matrix).T
@@ -267,7 +267,7 @@ class StatedLink(ABC):
         return found
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
-        """What summary.json holds of it, by the section in which it stands under its name; see System.sections."""
+        """Its entries in summary.json, by section; see System.sections."""
         return {}
 
     def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:

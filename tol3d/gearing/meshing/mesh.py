@@ -17,7 +17,7 @@ from tol3d.numerics.arrays import Array
 
 Status = NDArray[np.int8]
 
-LAST_ERROR = 0.8e-6  # modules; what the last step may miss where contact jumps along a face on which the arm varies
+LAST_ERROR = 0.8e-6  # modules; error of the last step where contact jumps along a face of varying arm
 TURN_STEPS = 40  # steps; Newton takes two or three, backing out of an overlap one for each engine depth
 TIE = 0.8e-3  # modules; a pair that has this much further to go than the first one is not asked again,
 TIE_SHARE = 0.02  # of the step itself, for the gaps' curvature: (0.4 mm)^2/(2 x 20 mm) is 1 % of 0.4 mm
@@ -26,7 +26,7 @@ ROOT_FINDING_NOISE = 1e-6  # mm; a free play above minus this is called free
 
 @dataclass(frozen=True)
 class MeshSeat:
-    """Where a mesh came to rest: one row a trial and position.
+    """Rest positions of a mesh: one row per trial and position.
 
     Args:
         driver_angle, driven_angle: turns [rad], (rows,).

@@ -90,7 +90,7 @@ class _Stacks:
         return self._asked(backlash, angles) - self._model.mesh(backlash.mesh).driven_flank * play / 2
 
     def _by_flanks(self, backlash: Backlash, key: SeatKey, angles: Array) -> Array:
-        """Of a mesh whose flanks deviate one by one: gaps at rest and turns are stacks of their own."""
+        """Backlash of a mesh whose flanks deviate one by one: gaps at rest and turns have their own stacks."""
         if (backlash, key) not in self._of_flanks:
             count, positions = angles.shape
             found = np.empty(angles.shape)

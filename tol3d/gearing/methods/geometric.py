@@ -135,7 +135,7 @@ class GeometricMethod:
 
 
 def _only_rests(wanted: Mapping[SeatKey, Sequence[Backlash]], key: SeatKey) -> bool:
-    """Whether no more is wanted of a mesh than where it rests, at positions that all trials share."""
+    """True if a mesh needs only its rest positions, at positions shared by all trials."""
     return key[1] is not None and all(backlash.quantity == "rest_angle" for backlash in wanted[key])
 
 
@@ -145,7 +145,7 @@ def _side(key: SeatKey) -> bool:
 
 
 def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
-    """What became of the meshes that a measure reads, the worst of them, (trials, positions)."""
+    """Worst status of the meshes that a measure reads, (trials, positions)."""
     shape = (len(play.trials), play.measure.positions.in_a_trial)
     codes = np.zeros(shape, dtype=np.int8)
     for key in seat_keys(play.model, play.measure):
@@ -159,7 +159,7 @@ def _codes(play: Play, seated_as: Mapping[SeatKey, Codes]) -> Codes:
 
 
 def _free_or_overlap(play: Play, codes: Codes) -> Array:
-    """What a measure's backlashes leave free; a train that is jammed at one stage is not free by the others' play.
+    """Play of a measure; a train that is jammed at one stage is not freed by the others' play.
 
     A jammed mesh has no transmission error.
     """
@@ -182,9 +182,9 @@ def _contact_columns(mesh: Mesh, point: Array, tooth: NDArray[np.int64], trials_
 
 FLANKS_OF_A_BACKLASH: Final = 4  # two that touch, two that are measured
 ALLOWANCE: Final = 0.02e-3
-"""What FCL may be off besides chord errors, in modules: an edge whose normal lies far off the contact's (0.0073 um a
+"""Error of FCL besides chord errors, in modules: an edge whose normal lies far off the contact's (0.0073 um per
 millimetre of module at 0.46 rad, as a tip reaches a flank a fifth of a pitch beyond the path of contact), its own
-rounding (0.002 um a millimetre), and squares of tilts within a section's width. 0.05 um at module 2.5."""
+rounding (0.002 um per millimetre), and squares of tilts within a section's width. 0.05 um at module 2.5."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,9 +215,9 @@ class FclMethod(GeometricMethod):
         return self._of_gaps(own, chords), self._of_gaps(own, others)
 
     def _of_gaps(self, measure: Measure, normal_backlash: Mapping[str, float]) -> float:
-        """What a measure makes of normal backlashes [mm], one of each mesh, in its unit.
+        """Value of a measure for normal backlashes [mm], one per mesh, in its unit.
 
-        A transmission error sees the two flanks that touch, each further off than at the first position or less.
+        A transmission error depends on the two flanks that touch, each more or less offset than at the first position.
         """
         free = sum(
             abs(factor) * normal_backlash[backlash.mesh] * per_normal_backlash(self.model, backlash)

@@ -1,4 +1,4 @@
-"""Whether a gearing can be built at all: meshes and parallel load paths with every contributor at its mean."""
+"""Check whether a gearing can be built: meshes and parallel load paths with every contributor at its mean."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What the stack-ups of a measure leave out on purpose, in that measure: bounds, trial by trial."""
+"""Terms that the stack-ups of a measure neglect on purpose, in that measure: bounds, trial by trial."""
 
 from collections.abc import Mapping
 
@@ -46,7 +46,7 @@ def _furthest(model: Model, stack: Stack[GearPair], neglect: Neglect, deviations
 
 
 def in_measure(measure: Measure) -> float:
-    """What a measure makes of one mm or rad that its backlashes add up to, in its unit; of a range at both its ends.
+    """Change of a measure, in its unit, per mm or rad of the sum of its backlashes; of a range at both its ends.
 
     A transmission error is a difference of two positions, each of half of what changes the backlash.
     """
@@ -58,9 +58,9 @@ def in_measure(measure: Measure) -> float:
 
 
 def of_gaps(model: Model, measure: Measure, gap: float) -> float:
-    """What a measure makes of a normal backlash [mm] in each of its meshes, in its unit.
+    """Value of a measure, in its unit, for a normal backlash [mm] in each of its meshes.
 
-    Of what two flanks and two more are off, the two that touch move a transmission error, at either position one way.
+    A transmission error depends only on the two flanks that touch, at both of its positions.
     """
     if isinstance(measure.kind, TransmissionError):
         gap /= 2

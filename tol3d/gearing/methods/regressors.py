@@ -1,7 +1,7 @@
-"""What a measure of gears sees of each contributor that acts on it: the columns that its variance is regressed on.
+"""Regressors of a measure of gears for each contributor that acts on it: the columns for its variance.
 
-A turning offset matters by where it points at the mesh, so it is turned into the world at the trial's
-position; over a whole turn only its length matters. Squares catch one-sided effects such as tilts.
+A turning offset matters by its direction at the mesh, so it is turned into the world at the trial's position; over a
+whole turn only its length matters. Squares represent one-sided effects such as tilts.
 """
 
 from collections.abc import Hashable, Mapping, Sequence, Set
@@ -71,12 +71,12 @@ def regress(
             continue
         values = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
         _regress(own, contributor, values, turning)
-        if contributor.name in parts:  # of a shaft: across the line of centres it does nothing to a mesh
+        if contributor.name in parts:  # of a shaft: across the line of centres it has no effect on a mesh
             own[1] = parts[contributor.name]
 
 
 def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
-    """What contributors that act in links add to a measure there (trials,), where a link says it; [its unit]."""
+    """Contribution of each contributor in links to a measure (trials,), if its link states it; [its unit]."""
     found: dict[str, Array] = {}
     for factor, name in measure.kind.links if measure.take == "value" else ():
         link, seen = model.link(name), _link_trials(model, measure, name, columns)
@@ -92,7 +92,7 @@ def _parts_in_links(model: Model, measure: Measure, columns: Columns) -> Mapping
 
 
 def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-    """What contributors add to a link's play; each trial is worked out once, whatever measures and findings ask."""
+    """Contributions to a link's play; each trial is computed once for all measures and evaluations."""
     by_bores = {own.contributor for own in link.moved}
     names = [name for name in seen.deviations if name not in by_bores]
     if not names:
@@ -129,7 +129,7 @@ def _link_trials(model: Model, measure: Measure, link: str, columns: Columns) ->
 
 
 def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) -> Array:
-    """Where the driver of a link stands [rad], (trials, 1); 0 of a link whose play does not depend on it."""
+    """Angle of a link's driver [rad], (trials, 1); 0 for a link whose play does not depend on it."""
     if position_column(link) not in columns:
         return np.zeros((len(next(iter(columns.values()))), 1))
     angles = np.radians(np.asarray(columns[position_column(link)], dtype=np.float64))[:, None]
@@ -138,9 +138,9 @@ def _link_angles(model: Model, measure: Measure, link: str, columns: Columns) ->
 
 
 def _group_term(model: Model, measure: Measure, contributor: Contributor, columns: Columns) -> tuple[Array, float]:
-    """What a group of many components does to a measure by the stack-up (trials,) [mm or rad], and a size of that.
+    """Effect of a group of many components on a measure by the stack-up (trials,) [mm or rad], and its size.
 
-    All others are at their means. Of a curve what it does at the first position.
+    All others are at their means. For a curve, the effect at the first position.
     """
     means = mean_deviations(model, measure.positions)
     own = [np.asarray(columns[name], dtype=np.float64) * contributor.per_unit for name in contributor.columns]
@@ -165,7 +165,7 @@ def _group_term(model: Model, measure: Measure, contributor: Contributor, column
 
 
 def _angles(model: Model, measure: Measure, columns: Columns) -> Mapping[str, Array]:
-    """Where the gears of a measure's meshes stand, each in the first of them [rad], (trials,)."""
+    """Angles of the gears of a measure's meshes, each in the first of them [rad], (trials,)."""
     angles: dict[str, Array] = {}
     for _, backlash in measure.kind.backlashes:
         mesh = model.mesh(backlash.mesh)
@@ -199,7 +199,7 @@ class _Turning:
 
 
 def _acting_effect(contributor: Contributor, turning: _Turning) -> Effect:
-    """What a contributor does to the gears that are read; of a shaft to the first of them, for they turn alike."""
+    """Effect of a contributor on the gears that are read; of a shaft on the first of them, for they turn alike."""
     effects = contributor.effect.singles
     return next((effect for effect in effects if effect.turns_with in turning), effects[0])
 

@@ -1,4 +1,4 @@
-"""What a scene means: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
+"""Model of a scene: parts, contributors, moves and measures in mm and rad. Nothing here is text any more."""
 
 from tol3d.gearing.effects import (
     AxesOffset,

@@ -36,12 +36,12 @@ class BroughtLink:
 
 @dataclass(frozen=True)
 class Brought:
-    """What mechanisms bring into a train.
+    """Links and contributors that mechanisms add to a train.
 
     Args:
         links: of moves of the scene.
         contributors: by name, those that act in these links alone.
-        warnings: of numbers that could be built and are most likely a slip.
+        warnings: of numbers that are possible but likely slips.
     """
 
     links: tuple[BroughtLink, ...] = ()
@@ -58,7 +58,7 @@ NOTHING: Final = Brought()
 
 
 def brought_into(scene: Scene) -> Brought:
-    """What all mechanisms of a scene bring together, in the order of its moves.
+    """Links and contributors of all mechanisms of a scene together, in the order of its moves.
 
     Raises:
         SceneError: parts that two moves have, or that sit on shafts otherwise than their link says.

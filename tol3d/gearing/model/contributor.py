@@ -45,7 +45,7 @@ class Contributor:
 
     @property
     def per_unit(self) -> float:
-        """What one of its unit is in mm, rad or K."""
+        """Factor from its unit to mm, rad or K."""
         return INTERNAL_PER_UNIT[self.unit]
 
     @property

@@ -1,4 +1,4 @@
-"""How far beyond the path of contact pairs of flanks are looked at, where single ones stand out of their neighbours."""
+"""Margin beyond the path of contact within which flank pairs are evaluated, if single flanks stand out."""
 
 import math
 from typing import Final
@@ -38,7 +38,7 @@ def standing_out(pair: GearPair, margin: float) -> float:
 
 
 def margin_of(model: Model, mesh: Mesh) -> float:
-    """How far beyond CONTACT_MARGIN pairs of a mesh are looked at [pitches]: by builds that its tolerances draw."""
+    """Margin of a mesh beyond CONTACT_MARGIN [pitches], from builds drawn by its tolerances."""
     most = sum(_steps(model, mesh, name) for name in (mesh.driver, mesh.driven))
     return next((own for own in MARGINS if standing_out(mesh.pair, own) >= most), MARGINS[-1])
 

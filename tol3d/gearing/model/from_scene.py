@@ -87,10 +87,10 @@ def refuse_other_span(scene: Scene, name: str, spec: ToothThicknessSpec, gear: G
 
 
 def model_from_scene(scene: Scene) -> Model:
-    """What a scene means, with links that other mechanisms bring into it.
+    """Model of a scene, with links added by other mechanisms.
 
     Raises:
-        SceneError: gears that cannot be made or run together, with their numbers and place.
+        SceneError: gears that cannot be made or run together, with their numbers and key.
     """
     brought = brought_into(scene)
     for gear in (name for name in loose_gears(scene) if name not in brought.owners):

@@ -1,4 +1,4 @@
-"""Where the shafts of a model lie, how they turn with each other, and which of them drive: found from its links.
+"""Layout of a model's shafts: positions, turning ratios and drivers, derived from its links.
 
 Shafts make trees; the first shaft of a tree is its root, which lies in the world's origin, its axis z. Where several
 links drive one shaft, the first of them places it and the others close parallel load paths: a gear of each is turned
@@ -54,12 +54,12 @@ RESTS = Turning(0.0, Fraction(0))
 
 @dataclass(frozen=True)
 class Closing:
-    """How the driven gear of a mesh that closes parallel load paths lies in it, for another link places its shaft.
+    """Position of the driven gear in a mesh that closes parallel load paths, as another link places its shaft.
 
     Args:
         azimuth: of its frame at rest in the mesh, in the frame of its axis at rest on its shaft [rad].
         ahead: by which its tooth 0 stands ahead of the one that the mesh counts as such [rad], whole pitches.
-        gap: by which the teeth miss each other where neither gear can be turned on its shaft, an arc [mm].
+        gap: between the teeth if neither gear can be turned on its shaft, an arc [mm].
     """
 
     azimuth: float = 0.0
@@ -104,7 +104,7 @@ class Layout:
     drives: tuple[Drive, ...]
 
     def seating(self, mesh: str) -> Closing:
-        """How the driven gear of a mesh lies in it."""
+        """Position of the driven gear in the mesh."""
         return self.closed.get(mesh, PLACES)
 
     def behind(self, shaft: str) -> tuple[Link, ...]:
@@ -116,15 +116,15 @@ class Layout:
         return upstream(self.driving, shaft)
 
     def load_path(self, first: str, last: str) -> LoadPath:
-        """What lies between two shafts of a tree, in the order of the load path.
+        """Load path between two shafts of a tree, in order.
 
-        Load paths that part and join in series and in parallel are compared where they join; others are networks.
+        Load paths that divide and join in series and in parallel are compared where they join; others are networks.
 
         Raises:
             GeometryError: carriers turn in a network, or it has too many walks.
         """
         try:
-            for end in (first, last):  # a shaft in the midst of load paths is held by all of them
+            for end in (first, last):  # a shaft in the middle of load paths is held by all of them
                 load_path_between(self.links, self.root_of[end], end)
             return load_path_between(self.links, first, last)
         except GeometryError:
@@ -211,7 +211,7 @@ class _Placing:
         self.world[link.driven] = pose @ _wheel_in_mesh(cause) @ np.linalg.inv(self.frames[cause.driven])
 
     def _against_carrier(self, link: Link, cause: StatedLink) -> tuple[Turning, Turning]:
-        """How the driver of a link turns against its carrier, and how that turns."""
+        """Turning of a link's driver against its carrier, and that of the carrier."""
         about = RESTS if link.carrier is None else self.turn[link.carrier]
         driver = self.turn[link.driver]
         before = Turning(driver.offset - about.offset, driver.rate - about.rate)

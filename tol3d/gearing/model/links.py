@@ -12,7 +12,7 @@ from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
 
 @dataclass(frozen=True)
 class Link:
-    """What makes one shaft turn with another: a mesh, or a StatedLink.
+    """Link that makes one shaft turn with another: a mesh, or a StatedLink.
 
     Args:
         name: the move's.
@@ -140,10 +140,10 @@ def back_to_root(driving: Mapping[str, Link], shaft: str) -> tuple[Link, ...]:
 
 
 def load_path_between(links: Sequence[Link], first: str, last: str) -> LoadPath:
-    """What lies between two shafts of a tree, in the order of the load path.
+    """Load path between two shafts of a tree, in order.
 
     Raises:
-        GeometryError: one of them lies inside parallel load paths, or these are not apart.
+        GeometryError: one of them lies inside parallel load paths, or these are not separate.
     """
     up, down = load_path_from_root(links, first), load_path_from_root(links, last)
     if any(link.carrier for link in links_of((*up, *down))):

@@ -1,4 +1,4 @@
-"""What is measured, over which positions, and what is taken of it."""
+"""Measures: quantity, positions, and value taken over them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ TrainQuantity = Literal["lost_motion", "tip_displacement", "tip_error"]
 
 @dataclass(frozen=True)
 class Reading:
-    """Where on the face, and at which teeth, a mesh is brought to contact and its gap is read.
+    """Place on the face, and teeth, at which a mesh is brought to contact and its gap is read.
 
     Args:
         contact: the working flanks touch over the whole face, or in the section in its middle.
@@ -48,12 +48,12 @@ class Backlash:
 
     @property
     def is_angle(self) -> bool:
-        """Whether the value is an angle [rad] rather than a length [mm]."""
+        """True if the value is an angle [rad] rather than a length [mm]."""
         return self.quantity in ("angular_backlash", "rest_angle")
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is the sum of its backlashes: it is its own."""
+        """True: it is its own backlash."""
         return True
 
     @property
@@ -159,7 +159,7 @@ class LostMotion:
 
     @property
     def is_angle(self) -> bool:
-        """Whether the value is an angle [rad] rather than a length [mm]."""
+        """True if the value is an angle [rad] rather than a length [mm]."""
         return self.tip is None
 
     @property
@@ -170,12 +170,12 @@ class LostMotion:
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is the sum of its backlashes: no load paths are in parallel, nor within a link."""
+        """True if it is the sum of its backlashes: no load paths are in parallel, nor within a link."""
         return not self.joins and not any(stage.compares for stage in self.singles)
 
     @property
     def joins(self) -> bool:
-        """Whether load paths are in parallel."""
+        """True if load paths are in parallel."""
         return any(isinstance(stage, ParallelStage) for stage in self.stages)
 
     @property
@@ -191,9 +191,9 @@ class LostMotion:
 
 @dataclass(frozen=True)
 class TransmissionError:
-    """How far a driven gear, or a train's output, leads its nominal position while one side of the teeth touches [rad].
+    """Lead of a driven gear, or a train's output, over its nominal position with one flank side in contact [rad].
 
-    Counted in the sense in which the working flank of the driver pushes it, from where it leads at the first position.
+    Counted in the sense in which the driver's working flank pushes it, relative to its lead at the first position.
 
     Args:
         of: the mesh or the train.
@@ -201,7 +201,7 @@ class TransmissionError:
         flank: the driver's flanks that touch, the working ones or the others.
         backlashes: rest angles of the driven gears with their factors: turns of the output, in its sense, for a turn
             of the driven gear about its own z.
-        train: whether it is a train's, whose positions are those of its first shaft.
+        train: True for a train, whose positions are those of its first shaft.
     """
 
     of: str
@@ -225,7 +225,7 @@ Kind = Backlash | LostMotion | TransmissionError
 
 
 def at_one_position(kind: Kind) -> Kind:
-    """What a measure of a swing reads where the flanks have changed; any other as it is."""
+    """Kind read at one position where a swing's flanks have changed; any other kind unchanged."""
     if isinstance(kind, LostMotion) and kind.turned:
         return replace(kind, quantity="tip_displacement", turned=(), changes=())
     return kind
@@ -251,7 +251,7 @@ class Measure:
 
     @property
     def per_internal(self) -> float:
-        """What one mm or rad is in that unit."""
+        """Factor from mm or rad to its unit."""
         return {"arcmin": ARCMIN, "mm": 1.0, "um": 1000.0}[self.unit]
 
     @property
@@ -261,7 +261,7 @@ class Measure:
 
     @property
     def adds_up(self) -> bool:
-        """Whether it is the sum of its backlashes: no load paths are in parallel."""
+        """True if it is the sum of its backlashes: no load paths are in parallel."""
         return self.kind.adds_up
 
     @property
@@ -276,7 +276,7 @@ class Measure:
 
     @property
     def keeps_overlap(self) -> bool:
-        """Whether it is a backlash, which is below 0 where teeth overlap, and smooth through 0."""
+        """True if it is a backlash, which is below 0 where teeth overlap, and smooth through 0."""
         return isinstance(self.kind, Backlash)
 
 

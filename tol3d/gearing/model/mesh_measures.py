@@ -25,7 +25,7 @@ from tol3d.scene.measure import MeasureEntry
 from tol3d.system.positions import Positions
 
 Reader = Callable[[Mesh], Reading]
-"""How each mesh on a path is read."""
+"""Reading of each mesh on a path."""
 
 
 def default_reading(mesh: Mesh) -> Reading:
@@ -34,7 +34,7 @@ def default_reading(mesh: Mesh) -> Reading:
 
 
 def reader_of(spec: FlankMeasureSpec) -> Reader:
-    """What was said, or what fits the pair. A free turn goes from contact to contact, and both are read alike."""
+    """Reading as stated, or the default of the pair. A free turn reads both contacts alike."""
 
     def read(mesh: Mesh) -> Reading:
         fitting = default_reading(mesh)

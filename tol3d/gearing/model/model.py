@@ -20,7 +20,7 @@ from tol3d.system import contributor as system_contributor
 from tol3d.system.positions import Positions
 
 DRIVER_POSITION = "driver position"
-MOST_PERIODS = Fraction(2**30)  # of 52 bits of a draw 22 are left to say where in one of them a mesh stands
+MOST_PERIODS = Fraction(2**30)  # 22 of a draw's 52 bits are left for the position of a mesh in one of them
 
 
 def driver_angles(
@@ -44,7 +44,7 @@ def driver_angles(
 
 
 def _counts(layout: Layout, periods: Mapping[str, Fraction], drive: Drive) -> Mapping[str, Fraction]:
-    """How many long periods of its own each mesh goes through in that of its tree, or in its first MOST_PERIODS."""
+    """Number of each mesh's own long periods in that of its tree, or in its first MOST_PERIODS."""
     counts = {move: drive.turns * abs(layout.mesh_turn[move].rate) / periods[move] for move in drive.moves}
     share = min(Fraction(1), MOST_PERIODS / max(counts.values()))
     return {move: own * share for move, own in counts.items()}
@@ -74,7 +74,7 @@ class GearPart:
 
 @dataclass(frozen=True)
 class Housing:
-    """What holds the axes apart: it gives the centre distance its coefficient of expansion [1/K]."""
+    """Housing that holds the axes apart: its coefficient of expansion applies to the centre distance [1/K]."""
 
     name: str
     expansion: float
@@ -119,7 +119,7 @@ class Model:
 
     @cached_property
     def layout(self) -> Layout:
-        """Where its shafts lie and how they turn with each other."""
+        """Positions of its shafts and their turning ratios."""
         return layout_of(self.meshes, self.shafts, self.links)
 
     @cached_property

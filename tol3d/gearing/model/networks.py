@@ -39,10 +39,10 @@ class Network(Parallel):
 
 
 def network_path(links: Sequence[Link], first: str, last: str) -> LoadPath:
-    """What lies between two shafts: links in series, and networks where there are several walks.
+    """Load path between two shafts: links in series, and networks where there are several walks.
 
     Raises:
-        GeometryError: carriers turn there, or there are too many walks.
+        GeometryError: carriers turn in it, or there are too many walks.
     """
     walks = tuple(_walks(links, first, last, frozenset((first,))))
     used = dict.fromkeys(link for walk in walks for link, _ in walk)

@@ -20,7 +20,7 @@ from tol3d.system.draw import Planar, Scalar
 
 @dataclass(frozen=True)
 class Nominal:
-    """What a tolerance's meaning depends on: the scene, its meshes, and where its shafts lie."""
+    """Nominal data for the meaning of a tolerance: the scene, its meshes and the positions of its shafts."""
 
     scene: Scene
     meshes: Mapping[str, Mesh]
@@ -38,7 +38,7 @@ class Nominal:
         return pair
 
     def smaller_face_width(self, mesh: str) -> float:
-        """Of the gears of a mesh [mm]."""
+        """Smaller face width of the gears of a mesh [mm]."""
         pair = self.meshes[mesh].pair
         return min(pair.pinion.face_width, pair.wheel.face_width)
 
@@ -93,7 +93,7 @@ class Nominal:
             raise self.scene.refuse(("tolerances", name), str(error)) from error
 
     def _active_roll(self, name: str, gear: SpurGear) -> float:
-        """Where the active profile of a gear begins: the least roll at which a mate's nominal tip touches it [rad]."""
+        """Roll at which a gear's active profile begins: the least at which a mate's nominal tip touches it [rad]."""
         found = []
         for mesh in (self.meshes[own] for own in meshes_of(name, self.scene.moves)):
             pair = mesh.pair

@@ -45,7 +45,7 @@ class OutputLink(StatedLink):
 
     @cached_property
     def acts(self) -> Mapping[str, Any]:
-        """What each contributor acts on."""
+        """Action of each contributor."""
         return dict(self.actions)
 
     def output_turns(self, seen: LinkTrials) -> Array:
@@ -62,11 +62,11 @@ class OutputLink(StatedLink):
 
     @abstractmethod
     def part_of(self, slopes: Any, acts: Any, off: Array) -> Array:
-        """What a contributor that lies off its mean (trials, components) adds to the play (trials,) [rad]."""
+        """Play added by a contributor off its mean (trials, components) (trials,) [rad]."""
 
     @abstractmethod
     def slopes_at(self, piece: LinkTrials, turns: Array) -> Any:
-        """What the play at the first position, turns (trials, 1) of the output, changes by per deviation."""
+        """Slopes of the play at the first position for each deviation; turns (trials, 1) of the output."""
 
     def slopes(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, Any]]:
         """The same piece by piece of the trials, with turns of the output (trials,)."""

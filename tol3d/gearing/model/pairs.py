@@ -38,13 +38,13 @@ def pair_of(move: GearMeshSpec, name: str, scene: Scene) -> GearPair:
 
 @singledispatch
 def undercut_warning(gear: Gear) -> str:
-    """What a generating rack would take off a flank, outside the flank in use; or nothing."""
+    """Warning of undercut by a generating rack outside the flank in use; or ""."""
     return ""
 
 
 @singledispatch
 def assembly_warning(pair: GearPair) -> str:
-    """How the gears of a pair cannot be put together though they run together; or nothing."""
+    """Warning if the gears of a pair run together but cannot be assembled; or ""."""
     return ""
 
 

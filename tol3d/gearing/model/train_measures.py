@@ -44,7 +44,7 @@ def _(spec: LostMotionSpec, scene: Scene, name: str, model: Model) -> Measure:
 def lost_motion(
     model: Model, train: Train, shaft: str, quantity: TrainQuantity, read: Reader, tip: Tip | None = None
 ) -> LostMotion:
-    """What a train's links leave free at one of its shafts, its meshes read as `read` says."""
+    """Lost motion of a train at one of its shafts, its meshes read by `read`."""
     path = model.layout.load_path(train.held, shaft)
     stages = tuple(_stage(model, element, (shaft, train.held), read) for element in path)
     return LostMotion(quantity, train.name, shaft, train.held, stages, tip)
@@ -127,7 +127,7 @@ def tip_of(arm: Arm, point: str) -> Tip:
     return Tip(arm.name, point, arm.lever(point))
 
 
-SAME_ANGLE = 1e-9  # rad; a load that changes sides at an end of a swing does not on it
+SAME_ANGLE = 1e-9  # rad; a load change at an end of a swing is not within it
 
 
 @measured.register
@@ -172,7 +172,7 @@ def over_swing(model: Model, train: Train, plain: LostMotion, shown: tuple[float
 
 
 def load_changes(model: Model, train: Train, swing: tuple[float, float]) -> Iterator[float]:
-    """Where on a swing gravity's torque, a cos(angle) + b sin(angle), goes through 0 [rad]."""
+    """Zeros of gravity's torque, a cos(angle) + b sin(angle), within a swing [rad]."""
     a, b = (gravity_torque(train, model.layout, model.arms, angle) or 0.0 for angle in (0.0, math.pi / 2))
     if not a and not b:
         return
@@ -182,7 +182,7 @@ def load_changes(model: Model, train: Train, swing: tuple[float, float]) -> Iter
 
 
 def _turned(torques: list[float]) -> tuple[bool, ...]:
-    """Where the torque has another sense than at the start; without torque the flanks stay where they were."""
+    """Flags of positions with another sense of the torque than at the start; without torque the flanks stay."""
     first = math.copysign(1.0, next((torque for torque in torques if torque), 1.0))
     turned, now = [], first
     for torque in torques:

@@ -157,7 +157,7 @@ def refuse_other_ratios(scene: Scene, meshes: Sequence[Mesh], layout: Layout) ->
 
 
 def _ratio_of(layout: Layout, move: TrainSpec) -> str:
-    """Of which ratios that of a train is made."""
+    """Ratios that make up the ratio of a train."""
     carried = [link for link in layout.upstream(move.output) if link.carrier is not None]
     if carried:
         each = ", ".join(f"{ratio_text(1 / link.rate)} ({link.name}, on {link.carrier!r})" for link in carried)

@@ -1,4 +1,4 @@
-"""What links that are no gear meshes leave free in some trials, by either method's law."""
+"""Play of links that are no gear meshes in some trials, by either method's law."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -35,7 +35,7 @@ class Remembered:
 
 
 def _each_once(law: LinkLaw, link: StatedLink, seen: LinkTrials) -> FreeTurn:
-    """Of trials that a link sees alike, such as those in which something else deviates, one is solved for all."""
+    """Free turns, solved once for trials that are alike for the link, such as if something else deviates."""
     rows = np.ascontiguousarray(np.concatenate([seen.angles, *seen.deviations.values()], axis=1))
     first: dict[bytes, int] = {}
     places = np.array([first.setdefault(row.tobytes(), len(first)) for row in rows], dtype=np.intp)
@@ -62,7 +62,7 @@ def link_contributors(model: Model, link: str) -> tuple[Contributor, ...]:
 
 
 def link_trials(model: Model, measure: Measure, link: StatedLink, trials: Trials) -> LinkTrials:
-    """What a link sees of some trials where a measure is read."""
+    """Trials as seen by a link where a measure is read."""
     own = link_contributors(model, link.name)
     deviations = {each.name: trials.deviations[:, model.component_slices[each.name]] for each in own}
     return LinkTrials(own, deviations, _angles(model, measure, link, trials))

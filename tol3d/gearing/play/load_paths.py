@@ -32,7 +32,7 @@ WorkingFlank = Callable[[Stage], int | None]
 
 
 def value(form: LinearForm, read: VariableValues) -> Array:
-    """What a form adds up to [rad], (trials, positions)."""
+    """Value of a linear form [rad], (trials, positions)."""
     return np.asarray(sum(weight * read(variable) for variable, weight in form.items()))
 
 
@@ -50,7 +50,7 @@ def free_form(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -
 
 
 def _around(loop: tuple[Stage, ...], flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
-    """How far links that make a loop leave it open either way round; below 0 it cannot be closed."""
+    """Play of a loop of links in either sense; below 0 it cannot be closed."""
     low, high = _ends_of_path(loop, flank, read)
     return high, _reversed(low)
 

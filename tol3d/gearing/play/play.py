@@ -1,6 +1,6 @@
-"""What a measure's backlashes leave free, together: added up along a train, compared where parallel load paths join.
+"""Play of a measure: its backlashes added along a train, compared where parallel load paths join.
 
-Both methods go through here; what a single backlash is, each of them reads for itself.
+Both methods use this module; each reads single backlashes for itself.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -75,7 +75,7 @@ Read = Callable[[Backlash, SeatKey], Array]
 
 
 def seat_key(model: Model, measure: Measure, backlash: Backlash) -> SeatKey:
-    """Where and how a measure reads one of its backlashes."""
+    """Key of a measure's reading of one of its backlashes."""
     return backlash.mesh, model.driver_angles(measure, backlash.mesh), backlash.reading
 
 
@@ -102,11 +102,11 @@ class Play:
     law: LinkLaw
 
     def free(self) -> Array:
-        """What they leave free together [mm or rad], (trials, positions)."""
+        """Total play [mm or rad], (trials, positions)."""
         return np.asarray(sum(factor * values for _, factor, values in self.parts()))
 
     def parts(self) -> Iterator[tuple[str, float, Array]]:
-        """What is added up: the name of each link or group of parallel load paths, its factor, its play."""
+        """Parts of the sum: the name of each link or group of parallel load paths, its factor, its play."""
         kind = self.measure.kind
         if isinstance(kind, Backlash):
             yield kind.mesh, 1.0, self.read(kind, seat_key(self.model, self.measure, kind))
@@ -119,23 +119,23 @@ class Play:
             yield stage.link, stage.factor, self.of(stage)
 
     def overlap(self) -> Array:
-        """What meshes, parallel load paths and other links lack where they bind [mm or rad], (trials, positions).
+        """Interference of meshes, parallel load paths and other links where they bind [mm or rad], (trials, positions).
 
-        0 or less. That of a train which is jammed somewhere: the play of its other stages does not free it.
+        0 or less. In a train that is jammed somewhere the play of other stages does not compensate for it.
         """
         if not isinstance(self.measure.kind, LostMotion):
             return np.minimum(self.free(), 0.0)
         return np.asarray(sum(stage.factor * self._lacking(stage) for stage in self.measure.kind.stages))
 
     def _lacking(self, stage: AnyStage) -> Array:
-        """What a stage lacks [rad]; of a link that is no mesh only where it jams, for data sheets may say anything."""
+        """Interference of a stage [rad]; of a link that is no mesh only where it jams: data sheets may say anything."""
         lacking = np.minimum(self.of(stage), 0.0)
         if isinstance(stage, Stage) and stage.backlash is None:
             return np.where(self._jams(stage), lacking, 0.0)
         return lacking
 
     def jammed(self) -> NDArray[np.bool_]:
-        """Where a link that is no mesh cannot be assembled, (trials, positions)."""
+        """True where a link that is no mesh cannot be assembled, (trials, positions)."""
         found = np.zeros(self._shape, dtype=bool)
         for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
             if stage.backlash is None:
@@ -143,7 +143,7 @@ class Play:
         return found
 
     def untouched(self) -> NDArray[np.bool_]:
-        """Where nothing is found that stops a link that is no mesh, (trials, positions)."""
+        """True where no stop is found for a link that is no mesh, (trials, positions)."""
         found = np.zeros(self._shape, dtype=bool)
         for stage in self.measure.kind.singles if isinstance(self.measure.kind, LostMotion) else ():
             if stage.backlash is None:
@@ -155,7 +155,7 @@ class Play:
         return np.broadcast_to(False if turn.jams is None else turn.jams, self._shape)
 
     def bound(self) -> NDArray[np.bool_]:
-        """Where parallel load paths bind each other, (trials, positions)."""
+        """True where parallel load paths bind each other, (trials, positions)."""
         tight = np.zeros(self._shape, dtype=bool)
         stages = self.measure.kind.stages if isinstance(self.measure.kind, LostMotion) else ()
         for stage in _parallel(stages):
@@ -163,7 +163,7 @@ class Play:
         return tight
 
     def of(self, stage: AnyStage) -> Array:
-        """What a stage leaves free at the shaft that it drives [rad], (trials, positions)."""
+        """Play of a stage at the shaft that it drives [rad], (trials, positions)."""
         return value(self.form(stage), self.values_of)
 
     def form(self, stage: AnyStage) -> LinearForm:

@@ -1,4 +1,4 @@
-"""How gears in mesh and their trains are shown: chains, tables of stages, parts in one world, contacts and gaps."""
+"""Presentation of gears in mesh and trains: chains, tables of stages, parts in one world, contacts and gaps."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial

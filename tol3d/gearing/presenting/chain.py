@@ -47,7 +47,7 @@ SENSE_HEIGHT: Final = SHAFT_HEIGHT / 2 + 0.14  # inch, from the middle of the sh
 TIP_REACH: Final = 0.42  # inch, of the arrow at the tip
 LINE_CAPTIONS: Final = ("ratio", "working flank", "own lost motion", "low … high (±3σ)")
 TITLE, SENSE = 16.0, 15.0  # points
-PUBLISHED_LETTERS, MOST_LETTERS = 60, 28  # of all names of others together, which leaves room for the title; of one
+PUBLISHED_LETTERS, MOST_LETTERS = 60, 28  # of all published names together, which leaves room for the title; of one
 OF_ITS_LAW: Final = ", its law's"  # after ends that are nearer than 3 sigma
 NO_LINKS: Final = "there is no link between the shaft that is held and the one that is read"
 
@@ -138,14 +138,14 @@ def _draw_row(axes: Axes, train: TrainSummary, row: ChainRow) -> None:
 
 
 def _draw_words(axes: Axes, row: ChainRow) -> None:
-    """What each link of a row is, line by line."""
+    """Draw the words for each link of a row, line by line."""
     for x, stage in zip(row.links, row.stages, strict=True):
         for line, (text, weight) in enumerate(_link_lines(stage)):
             draw_text(axes, x, line, text, TEXT, weight)
 
 
 def _link_lines(stage: ShownStage) -> Iterator[tuple[str, str]]:
-    """What stands below a link, with its weight: ratio, flank, and its own lost motion at its driven shaft."""
+    """Lines below a link, with their weight: ratio, flank, and its own lost motion at its driven shaft."""
     yield stage.ratio_text, "bold"
     yield stage.working_flank or NOTHING, "normal"
     yield value_text(stage.own.mean, "arcmin"), "normal"

@@ -33,7 +33,7 @@ from tol3d.runs.summary.run import RunSummary
 BAR_LABEL: Final = 0.46  # inch, of two lines of text
 LEAST_HEIGHT: Final = 1e-9  # arcmin; of a bar that has a label above it
 LABEL_LIFT: Final = 3.6  # points, from a bar to its label
-LONG_MM: Final = 10.0  # mm; from there on two decimals, or two labels do not stand side by side
+LONG_MM: Final = 10.0  # mm; from there on two decimals, else two labels do not fit side by side
 MOST_APART: Final = 0.85  # inch, from a mean's bar to its high's
 GAUGE_LENGTH: Final = 1.0  # inch
 GAUGE_SHARE: Final = 0.8  # of the height of its part
@@ -73,7 +73,7 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: Chai
         heights = np.array([max(value or 0.0, LEAST_HEIGHT) for value in values])
         axes.bar(at, heights, 0.62 * apart, color=row.colours, alpha=opacity, linewidth=0)
         texts = [_bar_text(value, train.lever_mm) for value in values]
-        labelled = axes.bar(at, np.maximum(heights, least), alpha=0.0)  # to what is higher: the bar or a mark
+        labelled = axes.bar(at, np.maximum(heights, least), alpha=0.0)  # to the higher of bar and mark
         axes.bar_label(labelled, texts, padding=LABEL_LIFT, fontsize=SMALL, color=BLACK, linespacing=1.1)
 
 

@@ -60,7 +60,7 @@ class ChainRow:
 
     @property
     def goes_on(self) -> bool:
-        """Whether its first shaft stood at the end of the row before."""
+        """True if its first shaft was at the end of the previous row."""
         return self.stages[0].number > 1
 
     @property
@@ -75,7 +75,7 @@ class ChainRow:
 
     @property
     def colours(self) -> list[str]:
-        """Of its links, by their kinds."""
+        """Colours of its links, by kind."""
         return [link_colour(stage.kind) for stage in self.stages]
 
 

@@ -135,7 +135,7 @@ def _frame(moved: SeatedBuild, first: SeatedBuild, name: str) -> Frame:
 
 
 def _place(build: SeatedBuild, mesh: SeatedMesh) -> Array:
-    """Where the world of a mesh lies in the one that is shown, (4, 4)."""
+    """Pose of a mesh's world in the displayed one, (4, 4)."""
     return build.model.layout.world_from_mesh[mesh.mesh.name] if shows_shafts(build.model) else np.eye(4)
 
 
@@ -185,12 +185,12 @@ class GearDisplay:
 
     @property
     def label(self) -> str:
-        """What it is, such as "trial-17" or "nominal"."""
+        """Label, such as "trial-17" or "nominal"."""
         return self.build.label
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know."""
+        """Notes for the user."""
         return self.build.notes
 
     @cached_property
@@ -245,7 +245,7 @@ class GearDisplay:
         return next((seated for seated in meshes if train is None or seated.mesh.driver in train.shaft_of), None)
 
     def _left_out(self, trains: list[WholeTrain], close: SeatedMesh | None) -> Iterator[str]:
-        """What the window does not show."""
+        """Notes on all that the window does not show."""
         others = [seated.mesh.name for seated in self.build.meshes if seated is not close]
         if close and others:
             what = "close up" if trains else "shown"

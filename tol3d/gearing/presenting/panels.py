@@ -97,10 +97,10 @@ MAIN_TITLE, SIDE_TITLE = 13, 10  # sizes of titles
 
 
 def panels_of(build: SeatedBuild, train: WholeTrain | None, close: SeatedMesh | None) -> tuple[Panel, ...]:
-    """What the window shows: teeth, the whole pair and the gap; of a train, the train, teeth and gap.
+    """Panels of the window: teeth, the whole pair and the gap; of a train, the train, teeth and gap.
 
     Args:
-        build: whose.
+        build: the build shown.
         train: the train that is shown whole; None of a build of single pairs.
         close: the mesh that is shown close up; None of a train without any.
     """

@@ -1,4 +1,4 @@
-"""What a scene of gears means, as tables: gears, meshes, measures, contributors and their coefficients."""
+"""Tables of a scene of gears: gears, meshes, measures, contributors and their coefficients."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,7 +35,7 @@ from tol3d.units import angle_text
 
 
 def train_blocks(model: Model) -> list[PageItem]:
-    """What a scene says of shafts, where any of them carries or drives more than one gear; else nothing."""
+    """Shafts of a scene, if any of them carries or drives more than one gear; else nothing."""
     if len(model.layout.links) == len(model.layout.drives) and not model.trains:
         return []
     words = [Heading(word, words=True) for word in ("driven by", "carries", "axis through [mm]", "along")]
@@ -87,7 +87,7 @@ def _path(first: str, path: LoadPath) -> Iterator[str]:
     for element in path:
         if isinstance(element, Parallel):
             yield f"({element.name})"
-        if at not in (element.driver, element.driven):  # a carrier: its path has ended, that of what it carries begins
+        if at not in (element.driver, element.driven):  # a carrier: its path has ended, that of its gears begins
             at = element.driver
             yield at
         at = element.driven if at == element.driver else element.driver
@@ -148,7 +148,7 @@ def _merged(columns: Sequence[Mapping[str, str]]) -> dict[str, list[str]]:
 
 @singledispatch
 def gear_rows(gear: Gear) -> dict[str, str]:
-    """What a gear is, by label; each kind of gear registers its own."""
+    """Data of a gear, by label; each kind of gear registers its own."""
     raise TypeError(f"there are no rows of {type(gear).__name__}")
 
 
@@ -165,7 +165,7 @@ def _(gear: InternalGear) -> dict[str, str]:
 
 
 def _cylindrical_rows(gear: SpurGear | InternalGear) -> dict[str, str]:
-    """What external and internal gears have alike, but for the number of teeth."""
+    """Rows common to external and internal gears, except the number of teeth."""
     return {
         "module m [mm]": f"{gear.module:g}",
         "pressure angle α [°]": degrees_text(gear.pressure_angle),
@@ -225,7 +225,7 @@ def meshes_table(model: Model) -> list[PageItem]:
 
 @singledispatch
 def pair_rows(pair: GearPair) -> dict[str, str]:
-    """What a nominal pair gives, by label; each kind of pair registers its own."""
+    """Data of a nominal pair, by label; each kind of pair registers its own."""
     raise TypeError(f"there are no rows of {type(pair).__name__}")
 
 

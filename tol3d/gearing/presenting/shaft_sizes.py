@@ -1,4 +1,4 @@
-"""How large shafts, arms and housings of links are drawn where the scene leaves it open: so that the picture reads.
+"""Display sizes of shafts, arms and housings of links where the scene states none, chosen for a readable picture.
 
 Nothing is measured on them.
 """
@@ -67,7 +67,7 @@ class ShaftSizes:
         return start, end
 
     def _collars(self, shaft: Shaft, diameter: float, span: Span) -> Iterator[Collar]:
-        """What fills the bores of gears that are wider than the shaft."""
+        """Collars that fill the bores of gears wider than the shaft."""
         for carried in shaft.carries:
             bore = self._bore(carried.gear)
             low, high = sorted(carried.at + carried.sense * place for place in self._faces[carried.gear])

@@ -41,12 +41,12 @@ class Range:
 
     @property
     def by_word(self) -> Mapping[str, float | None]:
-        """What is summed over stages, in the plural."""
+        """Sums over stages, by word in the plural."""
         return {"lows": self.low, "means": self.mean, "highs": self.high}
 
     @property
     def known(self) -> bool:
-        """Whether there is any value."""
+        """True if there is any value."""
         return (self.low, self.mean, self.high) != (None, None, None)
 
 
@@ -87,7 +87,7 @@ class ShownStage:
 
     @property
     def opposite(self) -> bool:
-        """Whether its shafts turn opposite."""
+        """True if its shafts turn in opposite senses."""
         return self.ratio < 0
 
     @property
@@ -139,7 +139,7 @@ def _stage(number: int, stage: StageSummary, values: Ends) -> ShownStage:
 
 
 def _nearer_than_3_sigma(own: Range, sigma: float | None) -> bool:
-    """Whether an end lies nearer to the mean than 3 sigma, by more than rounding.
+    """True if an end lies nearer to the mean than 3 sigma, by more than rounding.
 
     >>> _nearer_than_3_sigma(Range(2.0, 5.0, 9.0), 1.5), _nearer_than_3_sigma(Range(0.5, 5.0, 9.5), 1.5)
     (True, False)
@@ -219,7 +219,7 @@ def whole_ratio_text(ratio: float) -> str:
 
 
 def sense_text(stage: ShownStage) -> str:
-    """How the shafts of a stage turn."""
+    """Relative sense of rotation of a stage's shafts."""
     return "opposite" if stage.opposite else "same"
 
 

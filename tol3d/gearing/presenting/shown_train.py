@@ -46,10 +46,10 @@ class ShownLink:
 
 @runtime_checkable
 class ShowsLinks(Protocol):
-    """What a presenter besides does whose mechanism brings links into trains."""
+    """Interface of a presenter whose mechanism adds links to trains."""
 
     def link_blocks(self, link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-        """What a link of a scene is, and what contributors act on it, before any trial."""
+        """Description of a link of a scene and of its contributors, before any trial."""
 
     def link_sections(self, summary: RunSummary) -> Sequence[PageItem]:
         """Further tables of a run of a train; none where its summary has nothing of such links."""
@@ -65,13 +65,13 @@ class ShowsLinks(Protocol):
 
 
 def shows(link: StatedLink) -> ShowsLinks | None:
-    """What shows a link; None where pictures have a housing or a symbol for it."""
+    """Presenter of a link; None if pictures have a housing or a symbol for it."""
     found = presenter_at(link.presenter)
     return found if isinstance(found, ShowsLinks) else None
 
 
 def link_blocks(model: Model) -> list[PageItem]:
-    """What the links of a scene are that somebody shows."""
+    """Blocks of those links of a scene that have a presenter."""
     found: list[PageItem] = []
     for link in model.links:
         if shown := shows(link):
@@ -169,7 +169,7 @@ class ShownTrain:
         return replace(found, world=world, frames=tuple(turned), shots=(whole_train(world), *found.shots[1:]))
 
     def _poses(self, links: list[StatedLink], beyond: float) -> dict[str, Array]:
-        """Of what is in some links, by the names of bodies; see _at."""
+        """Poses of the bodies in some links, by name; see _at."""
         shown = (self._at(link, beyond) for link in links)
         return {body.name: body.world_from_part for own in shown for body in _in_pictures(own)}
 

@@ -138,7 +138,7 @@ def _train(build: SeatedBuild, root: str) -> WholeTrain:
 
 
 def _shaft_pose(layout: Layout, shaft: str, angles: Mapping[str, float]) -> Array:
-    """Where a shaft stands; one on a carrier has gone round with it, and turns against it about its own axis."""
+    """Pose of a shaft; one on a carrier has gone round with it, and turns against it about its own axis."""
     at_0 = layout.world_from_shaft[shaft]
     link = layout.driving.get(shaft)
     if link is None or link.carrier is None:
@@ -166,7 +166,7 @@ def _free_name(name: str, taken: set[str]) -> str:
 
 
 def _gravity(model: Model, root: str, angles: Mapping[str, float]) -> tuple[Array, Array] | None:
-    """Where gravity pulls: at the weight of an arm, or at the axis of the train's output."""
+    """Direction and point of gravity: at the weight of an arm, or at the axis of the train's output."""
     for train in model.trains:
         if train.driven == root and train.gravity is not None:
             arm = next((arm for arm in model.arms if arm.on == train.output), None)
@@ -181,7 +181,7 @@ def _gravity(model: Model, root: str, angles: Mapping[str, float]) -> tuple[Arra
 
 
 def _meshes(build: SeatedBuild, gear: str) -> bool:
-    """Whether a gear is in a mesh; one in another link is not."""
+    """True if a gear is in a mesh; one in another link is not."""
     return any(gear in (seated.mesh.driver, seated.mesh.driven) for seated in build.meshes)
 
 

@@ -140,7 +140,7 @@ def _seats_of(seen: Replay) -> Seats:
 
 
 def shows_shafts(model: Model) -> bool:
-    """Whether its parts make more than single pairs: they are shown in one world then, at the trial's position."""
+    """True if its parts make more than single pairs: they are shown in one world then, at the trial's position."""
     plain = all(len(drive.moves) == 1 for drive in model.layout.drives)
     return bool(model.shafts or model.arms or model.links) or not plain
 
@@ -150,7 +150,7 @@ def _first_measure(model: Model, mesh: Mesh) -> Measure | None:
 
 
 def _key(model: Model, measure: Measure, mesh: Mesh) -> SeatKey | None:
-    """Where a measure reads a mesh; None where it does not."""
+    """Key of a measure's reading of a mesh; None if it does not read the mesh."""
     return next((key for key in seat_keys(model, measure) if key[0] == mesh.name), None)
 
 
@@ -178,7 +178,7 @@ def _of_measure(seen: Replay, mesh: Mesh) -> MeshSeat:
 
 
 def _own_key(seen: Replay, mesh: Mesh) -> SeatKey:
-    """Where a mesh is read first; one that is not read counts as the first that is."""
+    """Key of the first reading of a mesh; a mesh that is not read takes the first that is."""
     measure = _first_measure(_model(seen), mesh)
     key = _key(_model(seen), measure, mesh) if measure else None
     return key or next(iter(_seats_of(seen).seats))

@@ -55,7 +55,7 @@ class PlacedGear:
 
     @property
     def unfolded(self) -> bool:
-        """Whether the deviation turns no triangle over, as it does where a flank passes points of the tip."""
+        """True if the deviation folds no triangle over, as happens where a flank passes points of the tip."""
         display = self.display
         corners = (shape[display.triangles] for shape in (display.vertices, display.thickened(self.flank_turn)))
         before, after = (np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]) for c in corners)

@@ -25,7 +25,7 @@ STEP_ASIDE: dict[Unit, float] = {"um": 1e-4, "mrad": 1e-5, "arcmin": 1e-5, "K": 
 
 @dataclass(frozen=True)
 class Slope:
-    """How a measure changes with one contributor alone, others at their means; at a kink differently on both sides.
+    """Slope of a measure for one contributor, others at their means; at a kink it has two values.
 
     Args:
         name: the contributor's.
@@ -88,9 +88,9 @@ def _direction(contributor: Contributor, measure: Measure, gradient: Array) -> f
 UM = 1000.0  # um in a mm
 ARCSEC = 648000 / math.pi  # arcsec in a rad
 ONE_SIDED = ("axis_in_plane", "axis_out_of_plane")  # kinds whose coefficient acts by absolute value
-LEAST_SLOPE = 5e-4  # um or arcsec per unit; what rounds to 0.000 is nothing
+LEAST_SLOPE = 5e-4  # um or arcsec per unit; less rounds to 0.000
 DISAGREES = 0.05  # of the largest slope; beyond that a coefficient of the geometry is marked
-BESIDE = 0.01  # of a step aside; what a slope is taken over there
+BESIDE = 0.01  # of a step aside; the step of the slope there
 KINK = 0.01  # of the larger slope; two sides that differ by less are one
 
 
@@ -109,7 +109,7 @@ class Slopes:
         return _slope_text((self.below + self.above) / 2)
 
     def differs(self, other: "Slopes", share: float) -> bool:
-        """Whether either slope is off by more than a share of the largest of all."""
+        """True if either slope is off by more than a fraction of the largest of all."""
         slopes = (self.below, self.above, other.below, other.above)
         off = max(abs(self.below - other.below), abs(self.above - other.above))
         return off > max(share * max(map(abs, slopes)), LEAST_SLOPE)
@@ -121,12 +121,12 @@ UNKNOWN = Slopes(math.nan, math.nan)
 
 @dataclass(frozen=True)
 class Coefficient:
-    """What a contributor does to a measure at the mean build, one with a direction in its worst one.
+    """Effect of a contributor on a measure at the mean build, in its worst direction if it has one.
 
     Args:
         name: the contributor's.
         unit: of the slopes, "µm/µm" or "″/K".
-        stack_up, geometry: by either method.
+        stack_up, geometry: by each method.
         percent: its share of the variance by the stack-up; None with parallel load paths, or if only 3D sees it.
     """
 
@@ -138,7 +138,7 @@ class Coefficient:
 
     @property
     def disagrees(self) -> bool:
-        """Whether the geometry has another slope than the stack-up."""
+        """True if the geometry has another slope than the stack-up."""
         return self.geometry.differs(self.stack_up, DISAGREES)
 
 
@@ -187,7 +187,7 @@ def _of_measure(model: Model, engine: Engine, measure: Measure) -> Iterator[Coef
 
 
 def _linear(contributor: Contributor, share: Share) -> Slopes:
-    """Of what acts linearly; a tilt acts by its absolute value: away from 0 one slope, at 0 two."""
+    """Slopes for a linear effect; a tilt acts by its absolute value: away from 0 one slope, at 0 two."""
     if contributor.kind not in ONE_SIDED:
         return Slopes(share.coefficient, share.coefficient)
     sides = np.sign(contributor.distribution.mean + STEP_ASIDE[contributor.unit] * np.array([-1.0, 1.0]))

@@ -143,7 +143,7 @@ def _of_turn(contacts: "_Contacts", at_rest: tuple[Array, Array], working: Gaps,
 
 @dataclass(frozen=True)
 class _GapRates:
-    """How one gap of each row changes.
+    """Rates of one gap of each row.
 
     Args:
         by_deviation: (rows, components) [mm per mm, rad, K], both gears held at their turns.
@@ -187,7 +187,7 @@ class _Contacts:
         return _GapRates(behind + before, (turns[0], turns[1]))
 
     def _standing_out(self, seat: int, angle: Array, flank: Flank, point: Array, teeth: NDArray[np.int64]) -> Array:
-        """How fast single flanks of a gear stand out further [mm] at a point, (rows, components)."""
+        """Rate of a gear's single-flank offsets at a point [mm], (rows, components)."""
         made, model = self.meshing.build, self.meshing.model
         arm = (point - made.centre_of(seat, angle)) / made.scale[:, seat, None]
         height = _dot(arm, made.axis(seat)[1])
@@ -197,7 +197,7 @@ class _Contacts:
         return FlankPlaces.of(model).rates(model, seat, flank, teeth, (roll, height))
 
     def _along(self, gear: int, angle: Array, flank: Flank, point: Array, normal: Array) -> Array:
-        """How fast a gear's flank recedes [mm] at a point, (rows, components); the normal points into the gear.
+        """Rate at which a gear's flank recedes at a point [mm], (rows, components); the normal points into the gear.
 
         A flank that is turned out of its tooth turns about the gear's own centre, against its own sign. Growth moves
         the flank that has no offset yet.

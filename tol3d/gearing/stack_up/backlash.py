@@ -126,7 +126,7 @@ class BevelStack(Stack[BevelPair]):
 
     @property
     def _aside_by_shifts(self) -> Terms:
-        """What shifts take from one flank side and give to the other."""
+        """Terms of shifts that take from one flank side and give to the other."""
         return (*self.sideways, *self._left_out("aside_by_turns"))
 
 
@@ -157,7 +157,7 @@ def analytic_backlash(model: Model, kind: Backlash, deviations: Array, driver_an
 
 
 def per_normal_backlash(model: Model, kind: Backlash) -> float:
-    """What turns j_bn [mm] into the measure: 1, 1/cos(alpha_w) or one over the gear's arm [rad/mm]."""
+    """Factor from j_bn [mm] to the measure: 1, 1/cos(alpha_w) or one over the gear's arm [rad/mm]."""
     if kind.quantity == "normal_backlash":
         return 1.0
     if kind.quantity == "circumferential_backlash":

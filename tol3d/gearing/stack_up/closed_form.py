@@ -117,7 +117,7 @@ class _Part:
             yield _ReadTerm(self.stack.mesh.name, term, self.factor, phase, int(term.sense) * rate)
 
     def _turn_of(self, term: Term) -> tuple[float, Fraction]:
-        """Where the gear that a term turns with stands [rad], and how fast it goes."""
+        """Angle of the gear with which a term turns [rad], and its rate."""
         if term.turns is None:
             return 0.0, Fraction(0)
         mesh = self.stack.mesh
@@ -135,7 +135,7 @@ def factored_stacks(model: Model, measure: Measure) -> list[tuple[float, Stack[G
 
 
 def _lever(measure: Measure) -> float:
-    """What the measure makes of what its backlashes leave free."""
+    """Factor from the play of its backlashes to the measure."""
     kind = measure.kind
     return kind.tip.lever if isinstance(kind, LostMotion) and kind.tip else 1.0
 
@@ -181,7 +181,7 @@ class _Linear:
 
 
 def _of_link(factor: float, rates: Sequence[float]) -> Wave:
-    """What a deviation does through a link whose play is the same at every position."""
+    """Effect of a deviation through a link whose play is the same at every position."""
     if len(rates) == 1:
         return factor * rates[0], 0.0, Fraction(0)
     x, y = rates
@@ -212,7 +212,7 @@ def _linear(contributor: Contributor, terms: Sequence[_ReadTerm], sums: _Sums) -
 
 
 def _root(square: float) -> float:
-    """Of a sum whose terms may cancel to a rounding error below 0, as those of an idler between two gears facing it."""
+    """Square root of a sum whose terms may cancel to just below 0, as for an idler between two gears facing it."""
     return math.sqrt(max(square, 0.0))
 
 

@@ -32,7 +32,7 @@ class NominalMesh(Generic[Pair]):
         self.sense = float(pair.mating_flank(RIGHT))
 
     def role(self, part: str, mesh: str | None = None) -> Role | None:
-        """What the part is in this mesh; None where it is in others only, or is meant to act in another one."""
+        """Role of the part in this mesh; None if it is in others only, or acts in another one."""
         if mesh not in (None, self.mesh.name):
             return None
         return "driver" if part == self.mesh.driver else "driven" if part == self.mesh.driven else None

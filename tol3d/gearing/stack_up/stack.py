@@ -55,7 +55,7 @@ class Stack(NominalMesh[Pair]):
 
     @property
     def both_sides_alike(self) -> bool:
-        """Whether both flank sides are read at the same place of the face; else tilts count on the working one only."""
+        """True if both flank sides are read at the same place of the face; else tilts count on the working one only."""
         return self.reading.contact == self.reading.gap
 
     def lost(self, in_plane: Array, across: Array) -> Array:
@@ -69,7 +69,7 @@ class Stack(NominalMesh[Pair]):
         return np.abs(in_plane + self.mesh.working_flank * across)
 
     def _lost_by_tilts(self, deviations: Array) -> tuple[Array, Array]:
-        """What tilts in the plane of the axes and across it take from the flank sides that are read over the face.
+        """Loss of the flank sides read over the face by tilts in the plane of the axes and across it.
 
         Signed [mm], (rows,).
 
@@ -87,7 +87,7 @@ class Stack(NominalMesh[Pair]):
     def _lost_by_teeth(
         self, teeth: ToothPairs, deviations: Array, driver_angle: Array, whole: Array, turns: Role | None
     ) -> Array:
-        """What single flanks and tilts together take from a normal backlash `whole` [mm], (rows,)."""
+        """Loss of a normal backlash `whole` by single flanks and tilts together [mm], (rows,)."""
         builds, trial = distinct(deviations)
         leans, built = self._leans(builds), teeth.built(builds, trial)
         work = self.mesh.resting_flank(self.reading.flank)
@@ -118,7 +118,7 @@ class Stack(NominalMesh[Pair]):
     def _moved(
         self, deviations: Array, driver_angle: Array, trial: NDArray[np.int64] | None = None
     ) -> tuple[Array, Array] | None:
-        """How much further apart the axes stand and how much further aside the driven one, (rows,) [mm] each.
+        """Increase of the distance of the axes and sideways shift of the driven one, (rows,) [mm] each.
 
         Args:
             deviations: (rows, components), or (trials, components) where `trial` says which of them each row is.
@@ -136,7 +136,7 @@ class Stack(NominalMesh[Pair]):
         return apart, aside
 
     def _leans(self, deviations: Array) -> Mapping[int, Array]:
-        """What tilts take at the upper end of the face where the driver's right and left flanks touch [mm], (rows,)."""
+        """Loss by tilts at the upper end of the face, by side of the driver's touching flanks [mm], (rows,)."""
         in_plane, across = self._lost_by_tilts(deviations)
         half = 2.0 if self.both_sides_alike else 1.0  # tilts count both flank sides, or the one that reads the face
         return {side: -(in_plane + side * across) / half for side in (1, -1)}
@@ -167,5 +167,5 @@ class Stack(NominalMesh[Pair]):
 
     @property
     def neglects(self) -> tuple[Neglect, ...]:
-        """What it leaves out of the first order, each with its size; nothing else may differ to first order."""
+        """Neglected first-order terms, each with its size; nothing else may differ to first order."""
         return ()

@@ -37,7 +37,7 @@ class Term:
 
     @property
     def leans(self) -> bool:
-        """Whether it enters through the loss by tilts; none does in a mesh that is read in the middle of its face."""
+        """True if it enters through the loss by tilts; none does in a mesh read in the middle of its face."""
         return self.tilts is not None and any(map(any, self.tilts))
 
     def change(self, deviation: Array, angles: tuple[Array, Array]) -> Array:

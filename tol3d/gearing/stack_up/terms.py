@@ -30,18 +30,18 @@ from tol3d.numerics.arrays import Array
 
 @dataclass(frozen=True)
 class Contribution:
-    """What one effect does in one mesh, to first order; then what a stack-up leaves out of that, for its bounds.
+    """First-order effect in one mesh, and the parts of it that a stack-up neglects, for its bounds.
 
     Args:
         opening: change of the normal backlash [mm].
         aside: shift [mm] of the middle of the driven gear's play, along the flanks' normals; positive turns the driven
             gear in the positive sense about its z.
         strains: of parts that grow [1/K], by name.
-        by_shifts, by_turns: of the opening, what is alike on the whole face, and what grows with the distance from the
-            apex of a cone.
-        aside_by_turns: a shift of that middle which `aside` lacks, by turns about a pivot that is not the apex.
+        by_shifts, by_turns: of the opening, the part that is constant over the face, and the one that grows with the
+            distance from the apex of a cone.
+        aside_by_turns: a shift of that middle not in `aside`, by turns about a pivot that is not the apex.
         along_line: shift of the driver's apex less the driven gear's, along the pitch line [mm].
-        claimed: of the opening, what a source claims and the geometry does not show.
+        claimed: of the opening, the part that a source claims and the geometry does not show.
     """
 
     opening: Term | None = None
@@ -76,7 +76,7 @@ def contributes(effect: type[Effect], pair: type[GearPair] | None = None) -> Cal
 
 
 def contribution(effect: Effect, mesh: NominalMesh[GearPair], contributor: Contributor) -> Contribution:
-    """What an effect does in a mesh.
+    """Contribution of an effect in a mesh.
 
     Raises:
         TypeError: nothing is registered for it.

@@ -17,9 +17,9 @@ from tol3d.numerics.quick_waves import cos_and_sin
 
 Integers = NDArray[np.int64]
 
-FAR = 0.1  # mm; a pair that takes so much less than the first one does not come before it by another look
-AGAIN = 2.0  # times what a look moved a pair by: all other looks together move it by less
-LOOKS = 3  # at pairs; a look moves what an edge takes by a twentieth of what the look before did
+FAR = 0.1  # mm; a pair whose loss is so much smaller than the first one's does not overtake it by iteration
+AGAIN = 2.0  # times the change by an iteration: all further ones together change less
+LOOKS = 3  # iterations of pairs; each changes an edge's loss by a twentieth of the previous change
 LEAST_ROLL = 1e-3  # rad; nearer to its base circle an involute is too sharp for a radius of curvature
 BY_NONE, BY_DRIVEN, BY_DRIVER = 0, 1, 2  # which gear turns until a side touches: none, its gap is read
 
@@ -44,7 +44,7 @@ class GearTeeth(NamedTuple):
 
 
 class LineOfContact(NamedTuple):
-    """Where the pairs of a mesh touch.
+    """Line of contact of a mesh's pairs.
 
     Args:
         tangent: length of the tangent of both base circles [mm].
@@ -74,7 +74,7 @@ def taken(
     built: tuple[Array, Array, Integers],
     rows: tuple[Integers, Array, Array, Array, Array],
 ) -> Array:
-    """What flanks take from a flank side [mm], (rows,); see `take` for driver, driven and line, and for all others."""
+    """Loss of a flank side by its flanks [mm], (rows,); see `take` for driver, driven and line, and for all others."""
     first, angles, lean, apart, shifts = (np.require(each, requirements=["C", "W"]) for each in rows)
     found = np.empty(len(angles))
     driver, driven, line = GearTeeth(*mesh[0]), GearTeeth(*mesh[1]), LineOfContact(*mesh[2])
@@ -98,7 +98,7 @@ def flank_in(numbers: Array, trial: int, tooth: int, teeth: int, side: int) -> F
 
 @part
 def profile_at(gear: GearTeeth, flank: Flank, roll: float) -> tuple[float, float]:
-    """What a flank stands out by in the middle of the face [mm] at a roll [rad], and its change per roll [mm/rad]."""
+    """Offset of a flank in the middle of the face [mm] at a roll [rad], and its change per roll [mm/rad]."""
     if flank.slope == 0.0 and flank.form == 0.0:
         return flank.uniform, 0.0
     length = gear.tip - gear.form
@@ -147,7 +147,7 @@ def gone(gear: GearTeeth, mate: GearTeeth, roll: float, tangent: float) -> float
 def aside(
     driver: GearTeeth, driven: GearTeeth, slope: float, mate_slope: float, roll: float, mate_roll: float
 ) -> float:
-    """What a pair takes more where it touches beside the line of action, of flanks that slope there [mm; mm/rad].
+    """Additional loss by a pair that touches beside the line of action, of flanks that slope there [mm; mm/rad].
 
     As the driver's point rolls on by dt, the foot on the mate rolls back by rho_1/rho_2 dt, and both flanks curve away
     by b dt^2/2, b = rho_1^2 (1/rho_1 + 1/rho_2): of a slope g they touch g/b on and take g^2/(2 b) more, or less where
@@ -179,7 +179,7 @@ def taken_by(
     rolls: tuple[float, float],
     lean: float,
 ) -> float:
-    """What a pair takes [mm] that touches at some rolls [rad], less what its edges have left their mates."""
+    """Loss by a pair [mm] that touches at some rolls [rad], less the distance of its edges from their mates."""
     roll, mate_roll = rolls
     out, slope = profile_at(driver, flank, roll)
     mate_out, mate_slope = profile_at(driven, mating, mate_roll)
@@ -197,7 +197,7 @@ def taken_by(
 
 @part
 def changes(driver: GearTeeth, driven: GearTeeth, flank: Flank, mating: Flank, rolls: tuple[float, float]) -> bool:
-    """Whether a pair takes another length at another roll: it slopes, or touches at an edge."""
+    """True if a pair's loss depends on the roll: it slopes, or touches at an edge."""
     if flank.slope != 0.0 or flank.form != 0.0 or mating.slope != 0.0 or mating.form != 0.0:
         return True
     return rolls[0] > driver.tip or rolls[1] > driven.tip
@@ -215,14 +215,14 @@ def look_at(
     lean: float,
     took: float,
 ) -> tuple[float, bool]:
-    """What a pair takes [mm] once the gear that turns has turned by what it `took`, and whether another look helps.
+    """Loss by a pair [mm] after the turning gear has turned by the loss `took`, and a flag for another iteration.
 
     Args:
         driver, driven, line, which: as in `take`.
         pair: flanks of driver and driven.
         azimuth: of the driver's tooth [rad].
         apart, lean: as in `take`, of the row.
-        took: what it took by the look before [mm]; 0 before the first.
+        took: loss by the previous iteration [mm]; 0 before the first.
     """
     roll = line.start - which[0] * azimuth
     mate_roll = (line.tangent - driver.base * roll) / driven.base
@@ -260,7 +260,7 @@ def take(
     shifts: Array,
     found: Array,
 ) -> None:
-    """What flanks take from a flank side.
+    """Find the loss of a flank side by its flanks.
 
     Args:
         driver, driven, line: the mesh.
@@ -272,10 +272,10 @@ def take(
         trial: (rows,), that of each row.
         first: (rows,), the driver's first tooth that may touch, as the mesh counts; the others follow against `side`.
         angles: (rows,), of the driver [rad].
-        lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
+        lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
         apart: (rows,), by which the side stands open before [mm]; no rows where it touches already.
         shifts: (rows, 2), by how much more roll a driver's tooth has on the line of centres [rad], and how much longer
-            the tangent of both base circles is [mm]; no rows where axes stand where they should.
+            the tangent of both base circles is [mm]; no rows where axes are at their nominal places.
         found: (rows,) [mm], written; positive where the side touches earlier.
     """
     side, count, right = which[0], which[2], 0 if which[0] == 1 else 1
@@ -288,7 +288,7 @@ def take(
         here = line
         if len(shifts):
             here = LineOfContact(line.tangent + shifts[row, 1], line.start + shifts[row, 0], line.pitch, line.half)
-        for _ in range(LOOKS):  # a gear that has turned by what its pair takes stands at another roll
+        for _ in range(LOOKS):  # a gear turned by its pair's loss is at another roll
             for k in range(count):
                 if again[k]:
                     flank = flank_in(numbers, own, place - side * k, which[5], right)

@@ -1,12 +1,12 @@
-"""What flanks that deviate one by one take from each flank side of a spur pair: the pair that stands out most touches.
+"""Loss of each flank side of a spur pair by flanks that deviate one by one: the pair that stands out most touches.
 
 On the tangent of both base circles, T = a sin(alpha_w) long, a pair of flanks touches r_b1 t_1 from its one end and
 r_b2 t_2 = T - r_b1 t_1 from the other; t_1 falls by as much as the driver's tooth goes on. To first order each pair
-loses what both flanks stand out by there, and a pair with parallel axes loses it at the end of the common face where
-that is more. Beyond the path of contact the tip edge of one gear may still touch first, where its pair stands out by
+loses the sum of both flank offsets there, with parallel axes at the end of the common face where the sum is larger.
+Beyond the path of contact the tip edge of one gear may still touch first, where its pair stands out by
 more than the edge has left the mate's flank.
 
-Neglected: what goes with the curvature of a deviation. Axes that move take the path of contact along, to first order.
+Neglected: effects of the curvature of a deviation. Axes that move take the path of contact along, to first order.
 """
 
 import importlib
@@ -55,7 +55,9 @@ class ToothFlanks:
     acting: Sequence[tuple[slice, FlankDeviation]]
 
     def numbers(self, deviations: Array) -> Array:
-        """Of trials (trials, components): (trials, teeth x 2 x SHAPES) [mm], of each tooth right flanks first.
+        """Flank deviations of trials: (trials, teeth x 2 x SHAPES) [mm], right flanks of each tooth first.
+
+        The input is (trials, components).
 
         No columns where no flank deviates.
         """
@@ -132,15 +134,15 @@ class ToothPairs:
         turns: Role | None = "driven",
         apart: Array | None = None,
     ) -> Array:
-        """What flanks take from a flank side [mm], (rows,): positive where it touches earlier.
+        """Loss of a flank side by its flanks [mm], (rows,): positive where it touches earlier.
 
         Args:
             side: 1 where the driver's right flanks touch, -1 where its left ones do.
             built: their trials.
             driver_angle: (rows,) [rad].
-            lean: (trials,), what leaning axes take at the upper end of the common face, signed [mm].
+            lean: (trials,), loss by tilted axes at the upper end of the common face, signed [mm].
             moved: how much further apart the axes stand, and how much further the driven one in the world's +y,
-                (rows,) [mm] each; None where they stand where they should.
+                (rows,) [mm] each; None if they are at their nominal places.
             turns: the gear that turns until the side touches; None reads its gap as the gears stand.
             apart: by which the side stands open before [mm], (rows,), where anything but the driven gear turns.
         """
@@ -158,7 +160,7 @@ class ToothPairs:
         return found
 
     def _shifts(self, side: int, moved: tuple[Array, Array] | None) -> Array:
-        """What moved axes add to a tooth's roll on the line of centres [rad] and to the common tangent [mm], (rows, 2).
+        """Change by moved axes of a tooth's roll on the line of centres [rad] and of the tangent [mm], (rows, 2).
 
         Axes that stand dx further apart touch at a pressure angle that is dx/(a tan alpha_w) larger, along a tangent
         that is dx/sin(alpha_w) longer; a line of centres that turns by dy/a takes the path of contact along.
@@ -218,7 +220,7 @@ def tooth_pairs(model: Model, mesh: Mesh, reading: Reading) -> ToothPairs | None
 
 
 def teeth_deviate(model: Model, mesh: Mesh) -> bool:
-    """Whether single flanks of a mesh's gears deviate."""
+    """True if single flanks of a mesh's gears deviate."""
     gears = (mesh.driver, mesh.driven)
     return any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
 

@@ -71,7 +71,7 @@ def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[ra
 
 
 def _wave(term: Term, stack: Stack[GearPair], driver: Array) -> Array:
-    """Of one mm along x and along y of a gear's frame [mm], (2, positions)."""
+    """Effect of one mm along x and along y of a gear's frame [mm], (2, positions)."""
     turn = driver if term.turns == "driver" else stack.pair.driven_angle(driver)
     azimuth = term.along - term.sense * turn
     return term.coefficient * np.stack([np.cos(azimuth), np.sin(azimuth)])

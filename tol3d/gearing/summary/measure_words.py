@@ -38,7 +38,7 @@ TEETH_WORDS: Final[Mapping[str, str]] = {"all": "", "driver": ", one driver toot
 
 
 class Reading(Section):
-    """Where on the face, and at which teeth, contact and gap of a mesh are read."""
+    """Place on the face, and teeth, at which contact and gap of a mesh are read."""
 
     contact: Literal["face", "section"]
     gap: Literal["face", "section"]
@@ -46,7 +46,7 @@ class Reading(Section):
 
     @property
     def words(self) -> str:
-        """Where it is read, unless that is everywhere and at all teeth.
+        """Words for the place of reading, unless it is everywhere and at all teeth.
 
         >>> Reading(contact="section", gap="section", teeth="driven").words
         '; mean section, one driven tooth'

@@ -1,4 +1,4 @@
-"""What summary.json says of measures of gears, and of trains: their stages, and the sums of the stages' ends."""
+"""Sections of summary.json for measures of gears, and for trains: their stages, and the sums of the stages' ends."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -152,7 +152,7 @@ def _tip_of(model: Model, kind: LostMotion) -> Tip | None:
 def _stage(
     model: Model, stage: AnyStage, methods: Mapping[str, ByLink], published: Mapping[str, ByLink]
 ) -> StageSummary:
-    """What a stage is, its shafts, gears and ratio, and what was found of it."""
+    """A stage: its shafts, gears and ratio, and its results."""
     mesh = model.mesh(stage.link) if stage.backlash else None
     if isinstance(stage, ParallelStage):
         driver, driven, ratio = stage.first, stage.last, float(model.layout.ratio(stage.first, stage.last))
@@ -191,7 +191,7 @@ def _kind(model: Model, stage: AnyStage, mesh: Mesh | None) -> str:
 
 
 def _of_method(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:
-    """What a method found of each stage, by link."""
+    """Results of a method for each stage, by link."""
     shares = tallied.shares(np.array([stage.factor for stage in stages]))
     return {
         stage.link: made(
@@ -225,16 +225,16 @@ def _within(ends: Ends, law: tuple[float, float] | None) -> Ends:
 
 @dataclass(frozen=True)
 class _Others:
-    """What others found of a train [arcmin], by column: of stages, by link, and the sum of the stages' ends."""
+    """Published figures for a train [arcmin], by column: of stages, by link, and the sum of the stages' ends."""
 
     stages: Mapping[str, ByLink]
     sums: ByLink
 
 
 def _published(model: Model, kind: LostMotion, ours: ByLink, others: Published) -> _Others:
-    """What others say of a train itself; else what follows of their meshes, where they have every one of them.
+    """Published figures for a train itself; else those that follow from all of its meshes.
 
-    What is no single mesh is as we have it where nothing is said of it.
+    A stage that is no single mesh takes our own figures if none are published.
     """
     stages: dict[str, ByLink] = {}
     sums: dict[str, Ends] = {}

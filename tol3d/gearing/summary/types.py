@@ -1,4 +1,4 @@
-"""What summary.json holds of gears: keys of their measures, what the measures say of themselves, and trains."""
+"""Gear entries in summary.json: keys of their measures, descriptions of the measures, and trains."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Final, Literal, Self
@@ -33,14 +33,14 @@ LOST_MOTION_MEANS: Final = (
 
 
 class FreeTurn(Section):
-    """What a normal backlash leaves free."""
+    """Free turn from a normal backlash."""
 
     of: Label = Field(description="the driven gear")
     arcmin_per_um: Number
 
 
 class BacklashWords(Section):
-    """What the backlash of a mesh is."""
+    """Description of the backlash of a mesh."""
 
     kind: Literal["normal_backlash", "circumferential_backlash", "angular_backlash"]
     of: Label = Field(description="the mesh")
@@ -88,12 +88,12 @@ class BacklashSummary(BacklashWords, MeasureSummary):
         return (Conversion("lost motion", free.of, "arcmin", free.arcmin_per_um, LOST_MOTION_MEANS),)
 
     def chord_words(self, chord_error_um: float) -> str:
-        """What the chords of measuring strips may explain."""
+        """Words for the possible effect of measuring strips' chords."""
         return _chord_words(chord_error_um, "")
 
 
 class TransmissionErrorWords(Section):
-    """What a transmission error is."""
+    """Description of a transmission error."""
 
     kind: Literal["transmission_error"]
     of: Label = Field(description="the mesh or the train")
@@ -128,7 +128,7 @@ class TransmissionErrorSummary(TransmissionErrorWords, MeasureSummary):
         return self.kind, self.gear, self.flank, readings_words(self.readings)
 
     def chord_words(self, chord_error_um: float) -> str:
-        """What the chords of measuring strips may explain."""
+        """Words for the possible effect of measuring strips' chords."""
         whole = FLANKS_THAT_TOUCH * chord_error_um
         return (
             f"up to {whole:.3f} µm along the line of action in each mesh may be chord error ({chord_error_um:.3f} µm "
@@ -137,7 +137,7 @@ class TransmissionErrorSummary(TransmissionErrorWords, MeasureSummary):
 
 
 class TrainMeasureWords(Section):
-    """What the lost motion of a train is, or what it does to the tip of an arm."""
+    """Description of a train's lost motion, or of its effect on the tip of an arm."""
 
     kind: Literal["lost_motion", "tip_displacement", "tip_error"]
     of: Label = Field(description="the train")
@@ -184,12 +184,12 @@ class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
 
     @property
     def jumps_deg(self) -> Sequence[float]:
-        """Where the load changes side."""
+        """Positions at which the load changes sides."""
         return self.load_changes_deg
 
     @property
     def jump_words(self) -> str:
-        """What happens there."""
+        """Words for these positions."""
         return "the load changes sides"
 
     @property
@@ -198,7 +198,7 @@ class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
         return self.kind, self.point or self.shaft, readings_words(self.readings)
 
     def chord_words(self, chord_error_um: float) -> str:
-        """What the chords of measuring strips may explain."""
+        """Words for the possible effect of measuring strips' chords."""
         return _chord_words(chord_error_um, " in each mesh")
 
 
@@ -214,7 +214,7 @@ def _chord_words(chord_error_um: float, whose: str) -> str:
 
 
 class Ends(Section):
-    """What a method, or somebody else, found of a train's stage or of their sum [arcmin]."""
+    """Ends of a train's stage, or of their sum, by a method or as published [arcmin]."""
 
     low_3sigma: Maybe[Known] = LEFT_OUT
     mean: Maybe[Known] = LEFT_OUT
@@ -226,13 +226,13 @@ class Ends(Section):
 
 
 class StageMethods(Section):
-    """What both methods found of a stage."""
+    """Results of both methods for a stage."""
 
     analytic: Ends
     geometric: Maybe[Ends] = LEFT_OUT
 
     def by(self, method: str) -> Ends:
-        """What a method found; the analytic one where there is no 3D simulation."""
+        """Result of a method; the analytic one if there is no 3D simulation."""
         return self.geometric if method == "geometric" and self.geometric is not None else self.analytic
 
 
@@ -293,7 +293,7 @@ class TrainsOfRun(RunSummary):
 
 
 class ProfileSteps(Section):
-    """How finely flanks were measured."""
+    """Resolution of flank measurement."""
 
     profile_steps: Maybe[Annotated[int, Field(ge=FEWEST_PROFILE_STEPS, le=MOST_PROFILE_STEPS)]] = LEFT_OUT
 

@@ -10,7 +10,7 @@ from tol3d.report.canvas import angle_step, minutes_seconds
 from tol3d.report.html.tags import Markup, tag
 
 WIDTH, LEFT, RIGHT = 720.0, 64.0, 16.0
-"""Of charts, in their own unit."""
+"""Sizes of charts, in their own unit."""
 
 
 @dataclass(frozen=True)

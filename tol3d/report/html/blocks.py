@@ -68,7 +68,7 @@ def _row(row: Row, headings: Sequence[Heading]) -> Markup:
 
 
 def _class_of(text: str) -> str:
-    """How words may break: short ones stay whole, one without a blank breaks anywhere."""
+    """CSS class for line breaks: short words stay whole, one without a blank breaks anywhere."""
     if len(text) <= SHORT:
         return "words short"
     return "words long" if max(map(len, text.split()), default=0) > LONG else "words"

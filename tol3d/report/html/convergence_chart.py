@@ -1,4 +1,4 @@
-"""How mean and sigma settle with the number of trials, as SVG, with what 95 % of other draws would give."""
+"""Convergence of mean and sigma with the number of trials, as SVG, with the 95 % range of other draws."""
 
 import math
 from collections.abc import Iterator

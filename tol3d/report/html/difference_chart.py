@@ -1,4 +1,4 @@
-"""How much both methods differ, trial by trial, as SVG."""
+"""Difference of both methods, trial by trial, as SVG."""
 
 from tol3d.report.compare import Difference
 from tol3d.report.comparison_picture import DIFFERENCE_UNITS

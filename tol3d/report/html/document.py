@@ -121,7 +121,7 @@ def _head(run: Run) -> Iterator[Markup]:
 
 
 def _described(run: Run) -> str:
-    """What the scene says of itself."""
+    """Description of the scene in its own words."""
     try:
         node, _ = scene_text(run.scene_path, run.scene_path.read_bytes())
         found = plain(node).get("description")
@@ -167,7 +167,7 @@ def _matrix(chart: Markup) -> Markup:
 
 
 def _presenter(run: RunSummary) -> Presenter:
-    """What shows more of the run's system; nothing more where its mechanism is not installed here."""
+    """Presenter of the run's system; one that adds nothing if its mechanism is not installed here."""
     return presenter_of(run)
 
 
@@ -212,7 +212,7 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
 
 
 def _convergence(run: Run, name: str, measure: MeasureSummary) -> Markup | None:
-    """How mean and sigma settle; None of a curve, of few trials, and of a run that kept none."""
+    """Convergence of mean and sigma; None for a curve, for few trials, and for a run that kept none."""
     try:
         found = convergence_of(run, name, POINTS)
     except (InputError, RunError):
@@ -281,7 +281,7 @@ def _first_trials(run: Run, column: str, bars: Bars, factor: float) -> Mapping[s
 
 
 def _trials(run: RunSummary) -> Iterator[Markup]:
-    """How many trials ended how, and why."""
+    """Numbers of trials by status, with reasons."""
     yield page_blocks(trials_blocks(run))
     if run.witness:
         words = f"witness: {run.witness.engine.upper()} measured {run.witness.trials} of these trials again"

@@ -26,7 +26,7 @@ from tol3d.report.number import limit_text, short_text
 from tol3d.runs.summary.measure import MeasureSummary
 
 TOP, BOTTOM = 44.0, 290.0
-"""Of the bars; words of mean, ends and limits stand above."""
+"""Ends of the bars; words of mean, ends and limits stand above."""
 RANGE: Final = 22.0
 """Height of the line of a column below."""
 CURVE_POINTS: Final = 121

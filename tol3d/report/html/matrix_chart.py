@@ -11,7 +11,7 @@ from tol3d.report.label import legible
 from tol3d.runs.summary.run import RunSummary
 
 Shares = Mapping[str, Mapping[str, float]]
-"""Of contributors [%], by measure."""
+"""Shares of contributors [%], by measure."""
 
 MOST_COLUMNS, MOST_ROWS = 24, 40
 NAMES, CELL = 230.0, 18.0

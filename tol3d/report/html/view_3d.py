@@ -36,7 +36,7 @@ MOST_TRIES: Final = 4
 LEAST_LEFT: Final = 0.02
 """Share of a mesh's triangles that is left at least."""
 ALIKE: Final = 2e-3
-"""Of a part's size: shapes that differ by less are drawn as one, where they lie best on each other."""
+"""Fraction of a part's size: shapes that differ by less are drawn as one, at their best fit."""
 STILL_WIDTH, STILL_QUALITY = 1100, 80
 GRID: Final = 2.0**-13
 """mm; places of corners are rounded to it, an eighth of a micrometre, so that they pack."""
@@ -162,7 +162,7 @@ def _surface(body: Body) -> Surface:
 
 
 def _pose(body: Body, on_part: Array) -> list[float]:
-    """Of a part's mesh that lies so on it, the growth in it; column by column."""
+    """Matrix of a part's mesh that lies so on it, with the growth in it; column by column."""
     grown = np.array(body.world_from_part, dtype=np.float64)
     grown[:3, :3] *= body.scale
     pose = grown @ on_part
@@ -210,7 +210,7 @@ def fewer_facets(vertices: Array, triangles: NDArray[np.int64], left: float) -> 
 def _notes(
     builds: Sequence[tuple[str, list[_State]]], world: World, nominal: Sequence[str], coarser: Set[int]
 ) -> list[str]:
-    """What of the picture is not as it was built."""
+    """Notes on differences between the picture and the build."""
     rough = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh in coarser}
     named = ", ".join(world.bodies[k].name for k in sorted(rough))
     notes = [f"shown nominal: {', '.join(nominal)}"] if nominal else []

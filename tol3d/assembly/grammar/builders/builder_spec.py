@@ -1,4 +1,4 @@
-"""What every kind of builder has in common."""
+"""Common base of all kinds of builder."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ class BuilderSpec(Strict, ABC):
     @property
     @abstractmethod
     def shape(self) -> BuiltShape:
-        """What its solid is built of."""
+        """Shape from which the solid is built."""
 
 
 def place(at: Place) -> tuple[float, float]:
@@ -38,7 +38,7 @@ def place(at: Place) -> tuple[float, float]:
 
 
 def place_of(builder: Strict, detail: str) -> KeyPath:
-    """Where a hole, a pin or the like stands, from its builder on; the builder if it names no such detail."""
+    """Key of a detail such as a hole or pin, relative to its builder; the builder itself if it has no such detail."""
     for field in type(builder).model_fields:
         named = getattr(builder, field)
         if isinstance(named, Mapping) and detail in named:

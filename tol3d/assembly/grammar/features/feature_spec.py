@@ -1,4 +1,4 @@
-"""What every kind of feature has in common."""
+"""Common base of all kinds of feature."""
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -42,7 +42,7 @@ class FaceSpec(Strict):
 Known = TypeVar("Known")
 
 Found = Quantity | tuple[Quantity, ...] | tuple[float, float, float] | bool
-"""What a face says of a feature: a length, some lengths, a direction, or whether."""
+"""Property of a feature read from its face: a length, some lengths, a direction or a flag."""
 
 
 class FeatureSpec(Strict):
@@ -50,7 +50,7 @@ class FeatureSpec(Strict):
 
     words: ClassVar[str]
     face_kinds: ClassVar[tuple[FaceKind, ...]]
-    """What its face may be; any kind where it is empty."""
+    """Kinds of face that it may have; any kind if empty."""
     numbers: ClassVar[tuple[str, ...]] = ("at",)
     """Fields that it must have where it is by numbers."""
 
@@ -68,7 +68,7 @@ class FeatureSpec(Strict):
     @property
     @abstractmethod
     def shape(self) -> Shape:
-        """What may deviate on it."""
+        """Shape with the deviations that it can have."""
 
     @property
     @abstractmethod
@@ -100,7 +100,7 @@ class FeatureSpec(Strict):
         """The features that it stands for: itself, or those of its pattern, numbered row by row."""
         if self.pattern is None:
             return {name: self}
-        if isinstance(self.pattern, Scattered):  # only of a scene whose selectors were looked up
+        if isinstance(self.pattern, Scattered):  # only in a scene with resolved selectors
             return {f"{name} {k}": own for k, own in enumerate(self.pattern.members, start=1)}
         places = self.pattern.places(known(self.at, "at"), self.frame)
         return {

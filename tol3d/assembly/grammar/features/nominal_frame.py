@@ -10,8 +10,8 @@ from tol3d.numerics.arrays import Array
 
 Triple = tuple[float, float, float]
 
-KEPT: Final = 4096  # ways in which features look; parts have few, which all their features share
-ALONG: Final = 1e-6  # sine; less than that off z, a direction cannot say where x points
+KEPT: Final = 4096  # orientations of features; parts have few, shared by their features
+ALONG: Final = 1e-6  # sine; a direction nearer to z cannot orient x
 
 
 def unit(direction: Triple) -> Array:
@@ -22,7 +22,7 @@ def unit(direction: Triple) -> Array:
 
 
 def is_across(x: Triple, z: Triple) -> bool:
-    """Whether a direction says where x points: it is not along z."""
+    """True if a direction can orient x: it is not along z."""
     return bool(np.linalg.norm(np.cross(unit(x), unit(z))) > ALONG)
 
 

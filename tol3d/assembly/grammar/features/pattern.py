@@ -47,7 +47,7 @@ class PatternSpec(Strict):
 
     @property
     def count(self) -> int:
-        """How many features there are."""
+        """Number of features."""
         return self.rows * self.columns
 
     def ways(self, frame: Array) -> tuple[Array, Array]:
@@ -60,10 +60,10 @@ class PatternSpec(Strict):
         return x, y / size if size > ALONG else np.zeros(3)
 
     def places(self, at: tuple[Quantity, ...], frame: Array) -> Iterator[tuple[Quantity, ...]]:
-        """Where their middles lie, row by row.
+        """Midpoints of the features, row by row.
 
         Args:
-            at: that of the first.
+            at: midpoint of the first one.
             frame: its nominal frame (4, 4).
         """
         x, y = self.ways(frame)
@@ -93,7 +93,7 @@ class Scattered:
 
     @property
     def count(self) -> int:
-        """How many features there are."""
+        """Number of features."""
         return len(self.members)
 
 

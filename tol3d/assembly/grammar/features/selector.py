@@ -101,7 +101,7 @@ class SelectorSpec(Strict):
 
 
 def _which(given: Any) -> str:
-    """Whether a feature is selected, or by numbers."""
+    """Tag of a feature: "selected" from a solid or "stated" by numbers."""
     if isinstance(given, Mapping):
         return (
             "stated"

@@ -1,4 +1,4 @@
-"""What every measure of an assembly has in common."""
+"""Common base of all measures of an assembly."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Sequence
@@ -66,7 +66,7 @@ class AssemblyMeasureSpec(MeasureEntry):
 
     @abstractmethod
     def measured(self, moves: Sequence[str]) -> Measured:
-        """What is read, but for datum frames, bonuses and when.
+        """Model of the measure without datum frames, bonuses and moment.
 
         Args:
             moves: names of the scene's moves, in order.

@@ -24,9 +24,9 @@ CHORD_ERROR: Final = 2e-3
 
 
 class ClearanceSpec(TimedSpec):
-    """How far two parts with solids are apart where they are nearest, within the `chord_error`.
+    """Smallest distance of two parts with solids, within the `chord_error`.
 
-    That is 2 um if not given.
+    The default chord error is 2 um.
     """
 
     requires: ClassVar[tuple[str, ...]] = ("python-fcl", "cadquery")

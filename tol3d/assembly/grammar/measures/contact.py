@@ -1,4 +1,4 @@
-"""What is read where round features touch: how far surfaces are apart, the angle of the contact's normal."""
+"""Measures at round features that touch: gap between surfaces, angle of the contact normal."""
 
 from collections.abc import Sequence
 from typing import ClassVar, Literal, Self
@@ -16,7 +16,7 @@ from tol3d.units import Dimension
 
 
 class SurfaceGapSpec(BetweenSpec):
-    """How far two surfaces are apart, one of them round, by the sizes of the trial; negative where they overlap."""
+    """Gap between two surfaces, one of them round, at the sizes of the trial; negative if they overlap."""
 
     reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
 
@@ -27,9 +27,9 @@ class SurfaceGapSpec(BetweenSpec):
 
 
 class ContactAngleSpec(BetweenSpec):
-    """Of the normal of a contact, from the middle or plane of `from` towards that of `to`, 0 to 180°.
+    """Angle of a contact normal, from the middle or plane of `from` towards that of `to`, 0 to 180°.
 
-    It is the angle to the normal of a plane or to an axis, `against`, or to a direction, `along`: one of both is given.
+    It is measured to the normal of a plane or an axis, `against`, or to a direction, `along`; give one of the two.
     """
 
     dimension: ClassVar[Dimension] = "angle"

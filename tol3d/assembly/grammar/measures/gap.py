@@ -22,7 +22,7 @@ class DistanceSpec(BetweenSpec):
 
 
 class DirectedSpec(OverPlaySpec):
-    """How far `to` lies from `from` along a direction."""
+    """Distance of `to` from `from` along a direction."""
 
     reads: ClassVar[Reading] = Reading("gap", f"{PLACING}:gap", f"{TORSORS}:gap", is_linear=True)
 
@@ -34,7 +34,7 @@ class DirectedSpec(OverPlaySpec):
 
 
 class GapSpec(DirectedSpec):
-    """How far `to` lies from `from` along a direction, with its sign."""
+    """Signed distance of `to` from `from` along a direction."""
 
     kind: Literal["gap"]
 
@@ -46,7 +46,7 @@ class FlushSpec(DirectedSpec):
 
 
 class PointPlaneSpec(OverPlaySpec):
-    """How far a point lies above the plane `to`, along its normal as it tilts."""
+    """Height of a point above the plane `to`, along the plane's actual normal."""
 
     reads: ClassVar[Reading] = Reading(
         "point_plane", f"{PLACING}:point_plane", f"{TORSORS}:point_plane", is_linear=True

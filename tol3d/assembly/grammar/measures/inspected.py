@@ -1,4 +1,4 @@
-"""What a measuring machine says of a feature, in the datum frame of the same trial."""
+"""Inspection of a feature, as by a measuring machine, in the datum frame of the same trial."""
 
 from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal, Self
@@ -79,7 +79,7 @@ class InspectedOrientationSpec(InspectedSpec):
 
 
 class InspectedFlatnessSpec(FeatureMeasureSpec):
-    """Of 4 or more `points` of one part, between two parallel planes."""
+    """Flatness of 4 or more `points` of one part: the distance of two parallel planes that contain them."""
 
     reads: ClassVar[Reading] = Reading(
         "flatness", f"{PLACING}:flatness", f"{TORSORS}:flatness", of_part=True, worse="high"

@@ -1,4 +1,4 @@
-"""How far a feature lies from where it is nominally, as another part sees it; and differences of measures."""
+"""Deviation of a feature from its nominal pose, as seen from another part; and differences of measures."""
 
 from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal, Self
@@ -24,7 +24,7 @@ class PoseErrorSpec(TimedSpec):
     """A feature against its nominal place, in the frame of a part."""
 
     words: ClassVar[str] = "an error of place or turn"
-    reads_along: ClassVar[Reading]  # along a component; `reads` is of the size
+    reads_along: ClassVar[Reading]  # along a component; `reads` reads the size
 
     of: FeatureName = Field(description="the feature, such as link 6.flange")
     from_: Name = Field(alias="from", description="the part that sees it, such as base")
@@ -63,7 +63,7 @@ class PoseErrorSpec(TimedSpec):
 
 
 class PositionErrorSpec(PoseErrorSpec):
-    """Where the feature lies less where it lies nominally, as the part `from` sees it.
+    """Deviation of the feature's position from nominal, as seen from the part `from`.
 
     Along `x`, `y` or `z` of that part, or the `size` of all three.
     """

@@ -15,7 +15,7 @@ from tol3d.units import Of, Quantity
 
 
 class RelationSpec(PairSpec):
-    """What one feature is to the other."""
+    """Relation of one feature to another."""
 
     kind: Literal["coincident", "coaxial", "tangent", "distance"]
     distance: Annotated[Quantity, Of("length")] | None = Field(

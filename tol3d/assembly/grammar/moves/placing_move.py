@@ -1,4 +1,4 @@
-"""What every move that places a part has in common."""
+"""Common base of all moves that place a part."""
 
 from abc import abstractmethod
 from collections.abc import Iterator

@@ -57,7 +57,7 @@ def _bolt(value: Any) -> Any:
 
 
 class PatternPairSpec(EngagementSpec):
-    """What engages in a pattern: also two holes with a bolt through both."""
+    """Engagement in a pattern; it may also be two holes with a bolt through both."""
 
     bolt: Annotated[BoltSpec, BeforeValidator(_bolt, json_schema_input_type=str | BoltSpec)] | None = Field(
         default=None, description="that goes through two holes, loose in both: a pin of a part, or its diameter and law"
@@ -124,7 +124,7 @@ class PlaySpec(PlacingSpec):
     @property
     @abstractmethod
     def engaged(self) -> tuple[EngagementSpec, ...]:
-        """What engages, in order."""
+        """Engagements, in order."""
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         yield from ((("relations", k), pair) for k, pair in enumerate(self.relations))

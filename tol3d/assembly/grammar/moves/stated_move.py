@@ -46,22 +46,22 @@ class StatedMoveSpec(MoveSpec):
         return pose if pose in own else next(iter(own), "")
 
     def contributors(self, name: str, scene: "Scene") -> "Sequence[PlainContributor]":
-        """What it draws besides the tolerances of the scene, such as floats; a name that begins with . is hidden."""
+        """Contributors of the move itself, such as floats; a name that begins with . is hidden."""
         return ()
 
     @abstractmethod
     def stated(
         self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: "Mapping[str, slice]", pose: str
     ) -> "StatedMove":
-        """What the move of that name stands for.
+        """Model of the move.
 
         Args:
-            name: of the move.
+            name: name of the move.
             understood: the scene's drawings; datum frames that the move needs are named here.
             touched: features of all parts, and where parts are nominally.
             drawn: the columns of its contributors.
             pose: one of its poses, on a path too; "" where it has none.
 
         Raises:
-            SceneError: nothing that can be placed, with its place.
+            SceneError: the part cannot be placed; with the key in the scene.
         """

@@ -19,11 +19,11 @@ from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
 from tol3d.units import shown
 
-MOST_ALIKE: Final = 8  # parts in sequence that are each like another; what a reader follows
+MOST_ALIKE: Final = 8  # parts in sequence that copy each other; as many as a reader can follow
 
 
 class Placement(Strict):
-    """Where a part is nominally."""
+    """Nominal pose of a part."""
 
     at: Vector | None = Field(default=None, description="its origin, in the world; the world's origin if not given")
     z: Direction = Field(default=(0.0, 0.0, 1.0), description="its z axis")

@@ -1,4 +1,4 @@
-"""What every tolerance of a feature has in common."""
+"""Common base of all tolerances of a feature."""
 
 from collections.abc import Iterator
 from typing import ClassVar

@@ -18,7 +18,7 @@ from tol3d.units import Of, Quantity
 
 
 class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
-    """How far a feature lies off along a direction; it does not tilt. A feature may have one along each direction."""
+    """Offset of a feature along a direction, without tilt. A feature may have one along each direction."""
 
     words: ClassVar[str] = "a plus-minus tolerance"
 
@@ -39,7 +39,7 @@ Deviation = Annotated[Quantity, Of("length")]
 
 
 class SizeSpec(FeatureTolerance, ToleranceSpec):
-    """How much larger a diameter or width is than nominal."""
+    """Deviation of a diameter or width from nominal."""
 
     words: ClassVar[str] = "a size tolerance"
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "slot", "sphere")
@@ -59,7 +59,7 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
 
 
 class LocatorSpec(ToleranceSpec):
-    """How far a locator stands off along its normal; positive lifts the part."""
+    """Offset of a locator along its normal; positive lifts the part."""
 
     words: ClassVar[str] = "a locator's tolerance"
 

@@ -18,7 +18,7 @@ from tol3d.numerics.arrays import Array
 
 @dataclass(frozen=True, eq=False)
 class CompiledDisplacements:
-    """What deviations add to the seats of a build, as the kernel sums it.
+    """Dependence of a build's seats on deviations, as summed by the kernel.
 
     Args:
         terms: (terms, 2), component of the deviations and slot: SLOTS a seat, then the growth of each mesh's housing.

@@ -64,7 +64,7 @@ class FlankOffsets(NamedTuple):
 
 
 class Offset(NamedTuple):
-    """What a flank stands out by at a point [mm], its derivatives by roll and height, and the second one by roll."""
+    """Offset of a flank at a point, outwards [mm]: its derivatives by roll and height, and the second one by roll."""
 
     value: float
     by_roll: float
@@ -103,7 +103,7 @@ def of_plain(tooth: DeviatedTooth, own: SpurTooth, scale: float) -> DeviatedToot
 
 @part
 def is_level(tooth: DeviatedTooth) -> bool:
-    """Whether a flank is a parallel involute."""
+    """True if a flank is a parallel involute."""
     return tooth.slope == 0.0 and tooth.form == 0.0 and tooth.helix == 0.0
 
 
@@ -119,7 +119,7 @@ def wave_at(tooth: DeviatedTooth, roll: float) -> tuple[float, float]:
 
 @part
 def offset_of(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: float) -> Offset:
-    """What a flank stands out by at a roll [rad] and a height [mm], of its waves there."""
+    """Offset of a flank at a roll [rad] and a height [mm], from the phase of its waves there."""
     u = (roll - tooth.middle) * tooth.per_length
     value = tooth.level + tooth.slope * u + tooth.helix * tooth.per_face * z
     by_roll, bend = tooth.slope, 0.0
@@ -140,7 +140,7 @@ def offset_of(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: floa
 
 @part
 def offset_at(tooth: DeviatedTooth, roll: float, z: float) -> Offset:
-    """What a flank stands out by at a roll [rad] and a height [mm]."""
+    """Offset of a flank at a roll [rad] and a height [mm]."""
     cos, sin = wave_at(tooth, roll)
     return offset_of(tooth, roll, z, cos, sin)
 
@@ -256,7 +256,7 @@ def deviated_turn(mate: DeviatedTooth, gap: float, offset: float, at: Foot) -> f
 def deviated_line_of_action(
     own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, face: float
 ) -> Nearest:
-    """Of parallel involutes as of SpurTooth, but each pair has a gap of its own; of others nothing is known."""
+    """Nearest points of parallel involutes as for SpurTooth, but with the pair's own gap; nowhere for other flanks."""
     own_azimuth, mate_azimuth, sigma, offset = facing
     out = own.level + mate.level
     if not (is_level(own) and is_level(mate)):

@@ -104,7 +104,7 @@ LATER = (
 
 @part
 def turns_later(mate: DeviatedTooth, gap: float, first: Touch) -> bool:
-    """Whether a pair with a gap of a tip edge [mm], or no less, surely touches after the first one."""
+    """True if a pair with a gap of a tip edge [mm], or more, certainly touches after the first pair."""
     arm = mate.base * (1.0 + 0.5 * mate.end * mate.end)  # beyond the tip radius, sqrt(1 + t^2) times the base radius
     return gap > max(first.gap, 0.0) and LATER * gap / arm > first.turn
 
@@ -158,7 +158,7 @@ def quick_turn(build: MeshBuild, at: Turn, look: Look) -> tuple[bool, float]:
             if edges and turns_later(mate, far_beyond(flank, mating, line.tangent, gap, rolls), best):
                 continue
             z = height(flank, mating, line.low, line.high, middle.low)
-            if rolls[1] > mate.end:  # of its edge no more than the gap is known
+            if rolls[1] > mate.end:  # of its edge only the gap is known
                 back, heights = (rolls[1], rolls[0]), (z + pose.z, z)
                 its = touch(mating, flank, line.tangent, gap, back, heights)
                 if not (its.known and turns_later(mate, its.gap, best)):

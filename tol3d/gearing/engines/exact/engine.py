@@ -39,7 +39,7 @@ class ExactEngine:
 
     @property
     def kept(self) -> bool:
-        """Whether this machine has compiled what its studies need."""
+        """True if the kernels for its studies are compiled on this machine."""
         rests = any(isinstance(measure.kind, TransmissionError) for measure in self._model.measures)
         return all(pair.read.kept and (pair.rests.kept or not rests) for pair in self._pairs.values())
 

@@ -1,4 +1,4 @@
-"""What kernels need of a kind of gear: the foot of a point of one flank on the other, and how gears grow.
+"""Functions that kernels need of a kind of gear: foot of a point of one flank on the other, and growth of gears.
 
 The bodies here are never run: as a kernel is compiled for a kind of teeth, each call becomes that kind's variant.
 """

@@ -103,7 +103,7 @@ def _spur(gear: SpurGear) -> SpurTooth:
 
 @kernels_of.register
 def _(pair: InternalPair) -> PairKernels:
-    """Of a ring's flank counts its roll backwards; see InternalTooth."""
+    """Kernels of an internal pair; a ring's flank counts its roll backwards, see InternalTooth."""
     alpha = pair.working_pressure_angle
     tangent = pair.centre_distance * math.sin(alpha)
     driver, driven = _in_ring(pair.pinion), _in_ring(pair.wheel)
@@ -166,7 +166,7 @@ def _bevel(gear: BevelGear) -> BevelTooth:
 
 
 def _pair_numbers(pair: GearPair, **own: float) -> PairNumbers:
-    """What all pairs say alike, with what a kind says of its own."""
+    """Numbers common to all pairs, with those of the kind."""
     lowest, highest = pair.touching_azimuths
     return PairNumbers(
         lowest=lowest,

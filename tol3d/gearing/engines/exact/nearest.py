@@ -1,7 +1,7 @@
-"""Where two flanks are nearest: Newton on the gap over profile and face, ends of both flanks included.
+"""Nearest points of two flanks: Newton's method on the gap over profile and face, ends of both flanks included.
 
-`foot` gives the gap of a point of one flank from the other's endless flank, with its derivatives: of a kind of gears
-it is all that has to be known.
+`foot` gives the gap of a point of one flank from the other's endless flank, with its derivatives: nothing else is
+needed of a kind of gears.
 """
 
 import math
@@ -12,7 +12,7 @@ from tol3d.gearing.engines.exact.numbers import AT_EDGE, BEYOND, CLOSED, NOWHERE
 from tol3d.numerics.compiled import part
 
 STEPS = 20  # Newton takes one or two from the line of action; more only where a face ends
-QUICK_FALL = 1e-8  # mm; for the gap's own sake: it is a parabola to 1e-4 of such a step's fall
+QUICK_FALL = 1e-8  # mm; enough for the gap: it is a parabola to 1e-4 of such a step's fall
 SHARP_FALL = 1e-14  # mm; for points and normals too
 END = 1e-9  # mm; a foot so near to an end of the face is at it
 SHORT = 1e-3  # mm; of a last step along the face
@@ -105,7 +105,7 @@ def nearest(
         gap = at.gap + fall
         turn = turn_to(mate, gap, offset, at)
         how = CLOSED if mate.begin <= at.touching <= mate.end else AT_EDGE
-        if profile <= own.begin:  # what lies below is no flank, and no edge either
+        if profile <= own.begin:  # below it there is neither flank nor edge
             how = BEYOND
         at_end = not own.begin < profile < own.end
         return Nearest(gap, turn, how, profile, face, at.x, at.y, at.z, at.nx, at.ny, at.nz, at_end, lean)

@@ -1,4 +1,4 @@
-"""What kernels know of gears, poses and feet: tuples of numbers, lengths in mm, angles in rad."""
+"""Gears, poses and feet in kernels: tuples of numbers, lengths in mm, angles in rad."""
 
 import math
 from typing import NamedTuple
@@ -9,7 +9,7 @@ CLOSED, AT_EDGE, BEYOND, ALIKE, NOWHERE = 0, 1, 2, 3, 4
 
 
 class Pose(NamedTuple):
-    """Where one gear sees another: `target = matrix source + shift`, each gear's own centre the origin."""
+    """Pose of one gear seen from another: `target = matrix source + shift`, each gear's own centre the origin."""
 
     xx: float
     xy: float

@@ -1,4 +1,4 @@
-"""How far gears may lie from their nominal places before other teeth than the candidates may touch."""
+"""Distance of gears from their nominal places up to which no other teeth than the candidates can touch."""
 
 import math
 
@@ -9,7 +9,7 @@ from tol3d.numerics.compiled import part
 
 @part
 def within_reach(build: MeshBuild, driver_scale: float, driven_scale: float) -> bool:
-    """Whether the candidate teeth are those of the nominal pose still.
+    """True if the candidate teeth are still those of the nominal pose.
 
     Gears that grow with their housing are the nominal ones at another scale; gears that grow apart are gears at
     another distance of their axes. Where base pitches differ by d a tip touches sqrt(2 rho d) before the path of

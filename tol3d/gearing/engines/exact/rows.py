@@ -32,12 +32,12 @@ Integers = NDArray[np.int64]
 
 FREE = 1e-6  # mm; a play above minus this is called free
 DRIVEN_ANGLE, GAP, DRIVEN_TURN, DRIVER_TURN, CONTACT = 0, 1, 2, 3, 4
-READINGS = 7  # columns of what is read of a row: the four above, and the contact's x, y, z
+READINGS = 7  # columns of a row's readings: the four above, and the contact's x, y, z
 
 
 @part
 def pose_of(shafts: Array, row: int, driver: int, driven: int) -> Pose:
-    """Where the driven shaft's frame sees the driver's; `shafts` (rows, gears, 4, 4) as in a Build."""
+    """Pose of the driver in the driven shaft's frame; `shafts` (rows, gears, 4, 4) as in a Build."""
     a, b = shafts[row, driver], shafts[row, driven]
     x, y, z = a[0, 3] - b[0, 3], a[1, 3] - b[1, 3], a[2, 3] - b[2, 3]
     return Pose(
@@ -91,12 +91,12 @@ def build_of(
 
 
 class Looks(NamedTuple):
-    """How the sides of a mesh are looked at.
+    """Evaluations of the sides of a mesh.
 
     Args:
-        working, gap: at the working flanks until they touch, at the gap of the others.
-        closing: at those others until they touch.
-        gap_closes: whether what the gap's look shows is as good for that.
+        working, gap: of the working flanks until they touch, of the gap of the others.
+        closing: of those others until they touch.
+        gap_closes: True if the gap's evaluation serves for that too.
         of_driver: for the turn of the driver until they touch.
     """
 
@@ -109,7 +109,7 @@ class Looks(NamedTuple):
 
 @part
 def looks_of(pair: PairNumbers, which: Integers) -> Looks:
-    """How sides are looked at; `which` as in `read_rows`."""
+    """Evaluations of the sides; `which` as in `read_rows`."""
     sigma, contact, tapers = float(which[2]), which[4] != 0, pair.along > 0.0
     return Looks(
         Look(sigma, which[3], contact, 1.0),
@@ -124,7 +124,7 @@ def looks_of(pair: PairNumbers, which: Integers) -> Looks:
 def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Looks) -> float:
     """Turn of the driven gear [rad] until the non-working flanks touch; nan where it cannot be known."""
     sense, near_at, near = looks.working.sigma * opening(build.driven), at, other
-    if not looks.gap_closes:  # the smallest gap shows nearly by how much
+    if not looks.gap_closes:  # the smallest gap nearly gives the turn
         near_at = driven_on(at, sense * other.turn)
         near = seen(build, near_at, angle, looks.closing)
     end, last = closed(near, build, near_at, looks.closing)

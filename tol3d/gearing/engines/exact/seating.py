@@ -25,12 +25,12 @@ from tol3d.gearing.engines.exact.numbers import (
 )
 from tol3d.numerics.compiled import part
 
-LOOKS = 8  # at the candidate pairs until they are at rest; the second one is needed only far from the start
+LOOKS = 8  # evaluations of the candidate pairs until they rest; the second is needed only far from the start
 CLOSE = 1e-6  # mm; a gap over its arm is exact to this much squared over a radius
-ASIDE = 3e-5  # mm; by which a mate may move aside on the way to contact until it is looked at again
+ASIDE = 3e-5  # mm; sideways motion of a mate on the way to contact that needs another evaluation
 ASIDE_ON_FACE = 4e-6  # mm; the same where the contact may change ends of a tapering face, whose arms differ by a tenth
 EDGE_SHARE = 0.02  # of a turn at an edge, gap over arm: the arm changes by less on the way to contact
-DOUBT = 1e-6  # mm; what ends on both sides may bound a gap no lower than this below the others
+DOUBT = 1e-6  # mm; accuracy of a gap's lower bound by ends on both sides
 SAME_PITCH = 1e-13  # relative; rounding
 ALL_TEETH, DRIVER_TOOTH, DRIVEN_TOOTH = 0, 1, 2
 
@@ -66,7 +66,7 @@ class MeshBuild(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """Where the gears of a build stand.
+    """Positions of the gears of a build.
 
     Args:
         driver, driven: their angles [rad].
@@ -84,13 +84,13 @@ class Turn(NamedTuple):
 
 
 class Look(NamedTuple):
-    """What is looked at of a mesh.
+    """Evaluation of one side of a mesh.
 
     Args:
         sigma: side of the flanks.
         teeth: ALL_TEETH, or the one of a gear.
-        in_section: whether only the section in the middle of the common face is looked at.
-        per_turn: 1 to look along the face for the smallest turn, 0 for the smallest gap.
+        in_section: True to evaluate only the section in the middle of the common face.
+        per_turn: 1 to find the smallest turn along the face, 0 the smallest gap.
     """
 
     sigma: float
@@ -148,7 +148,7 @@ def driven_on(at: Turn, angle: float) -> Turn:
 
 @part
 def pose_at(build: MeshBuild, at: Turn) -> Pose:
-    """Where the driven gear's centre sees the driver's: their shafts' frames, from centre to centre."""
+    """Pose of the driver seen from the driven gear: their shafts' frames, from centre to centre."""
     p = build.pose
     return Pose(p.xx, p.xy, p.xz, p.yx, p.yy, p.yz, p.zx, p.zy, p.zz, at.x - at.fx, at.y - at.fy, at.z)
 
@@ -313,10 +313,10 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
 
 @part
 def closed(side: Side, build: MeshBuild, at: Turn, look: Look) -> tuple[Turn, Side]:
-    """Where the gears stand when the driven one has turned to the first contact of a side, and how that looked last.
+    """Turn of the driven gear to the first contact of a side, with the side's last evaluation.
 
     Args:
-        side: how it looks at `at`, seen along the face for the smallest turn.
+        side: its evaluation at `at`, for the smallest turn along the face.
         build, at, look: as in `seen`.
     """
     for _ in range(LOOKS):

@@ -15,7 +15,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import FULL, kernel, part
 from tol3d.numerics.loops import fill
 
-SCALE = DISPLACED  # growth of the seat's gear comes after what is displaced
+SCALE = DISPLACED  # growth of the seat's gear comes after the displacements
 SLOTS = DISPLACED + 1
 BUILD_ARRAYS = (
     "float64[:, ::1], int64[:, ::1], float64[::1], int64[:, ::1], float64[:, ::1], float64[:, ::1], "

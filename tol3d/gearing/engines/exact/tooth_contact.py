@@ -100,7 +100,7 @@ def beside(base: float, mate_base: float, rho: float, mate_rho: float, d: float)
 
 @part
 def near_offset(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: float, by: float) -> Offset:
-    """What a flank stands out by at a roll [rad], of its waves at a roll that is `by` less."""
+    """Offset of a flank at a roll [rad], from the phase of its waves at a roll that is smaller by `by`."""
     if tooth.form == 0.0 or tooth.waves == 0.0:
         return offset_of(tooth, roll, z, 1.0, 0.0)
     across = sine(TURN * tooth.waves * by * tooth.per_length)
@@ -131,7 +131,7 @@ def edge_gap(own: DeviatedTooth, mate: DeviatedTooth, tangent: float, beyond: fl
 
 @part
 def level_touch(own: DeviatedTooth, mate: DeviatedTooth, gap: float, mate_roll: float) -> Touch:
-    """Of parallel involutes within both flanks, the plain ones a gap [mm] apart and the mate's at a roll [rad]."""
+    """Touch of two parallel involutes, plain flanks a gap [mm] apart, at the mate's roll [rad]."""
     gap -= own.level + mate.level
     turn = gap * mate.per_base
     return Touch(mate_roll + turn <= mate.end, gap, turn, 0.0)
@@ -139,7 +139,7 @@ def level_touch(own: DeviatedTooth, mate: DeviatedTooth, gap: float, mate_roll: 
 
 @part
 def height(own: DeviatedTooth, mate: DeviatedTooth, low: float, high: float, face: float) -> float:
-    """Where on own face flanks stand out most together [mm], between two ends; where they do not lean, at `face`."""
+    """Height on own face with the largest sum of both offsets [mm], between two ends; `face` if they are level."""
     lean = own.helix * own.per_face + mate.helix * mate.per_face
     return high if lean > 0.0 else (low if lean < 0.0 else min(max(face, low), high))
 
@@ -155,7 +155,7 @@ def touched(
     by: float,
     along: float,
 ) -> Touch:
-    """Of a gap [mm] at a roll [rad] of the mate, which stands out by `out` there; its waves as in near_offset."""
+    """Touch over a gap [mm] at a roll [rad] of the mate with offset `out` there; its waves as in near_offset."""
     turn = gap * mate.per_base
     if not mate.begin <= roll + turn <= mate.end:
         return Touch(False, 0.0, 0.0, 0.0)
@@ -175,14 +175,14 @@ def touch(
     rolls: tuple[float, float],
     heights: tuple[float, float],
 ) -> Touch:
-    """Of two flanks whose involutes are a gap [mm] apart on the line of action; own tip edge may be what touches.
+    """Touch of two flanks whose involutes are a gap [mm] apart on the line of action, or of own tip edge.
 
     Args:
         own, mate: the flanks.
         tangent: length of the tangent of both base circles [mm].
         gap: of the involutes that all teeth have.
-        rolls: at which those would touch there, of own and mate [rad].
-        heights: at which flanks are looked at, of own and mate [mm].
+        rolls: at which those would touch, of own and mate [rad].
+        heights: at which flanks are evaluated, of own and mate [mm].
     """
     unknown = Touch(False, 0.0, 0.0, 0.0)
     roll, least = rolls[0], rolls[0] - own.end

@@ -41,7 +41,7 @@ class Lever:
 
     @property
     def share(self) -> float:
-        """What the gear moves of what the point moves."""
+        """Displacement of the gear per displacement of the point."""
         return 1.0 if self.fixed is None else (self.own.at - self.fixed) / (self.moved - self.fixed)
 
     def anywhere(self) -> Iterator[Effect]:

@@ -16,7 +16,7 @@ from tol3d.scene.listed import listed
 from tol3d.units import Of, Quantity
 
 FORM_SHARE: Final = 0.95
-"""Of the length of roll from control to tip diameter in which the form of a profile counts."""
+"""Fraction of the length of roll from control to tip diameter in which the form of a profile counts."""
 
 AT_END: Final = 1e-6  # mm; of a diameter or a height that is written with some digits: so far beyond is at the end
 
@@ -39,13 +39,13 @@ class Part:
 
     @property
     def slope(self) -> tuple[float, float]:
-        """How 1 and u over the whole flank add up to u over this part, which is -1/2 and 1/2 at its ends."""
+        """Coefficients of 1 and u over the whole flank that give u over this part, -1/2 and 1/2 at its ends."""
         length = self.end - self.begin
         return (self.least + self.most - self.begin - self.end) / (2 * length), (self.most - self.least) / length
 
     @property
     def barrel(self) -> tuple[float, float, float]:
-        """How 1, u and 1/3 - 4 u^2 over the whole flank add up to 1/3 - 4 u^2 over this part."""
+        """Coefficients of 1, u and 1/3 - 4 u^2 over the whole flank that give 1/3 - 4 u^2 over this part."""
         level, times = self.slope
         return (1 - times**2) / 3 - 4 * level**2, -8 * times * level, times**2
 

@@ -174,7 +174,7 @@ class FlankShapeSpec(FlankToleranceSpec):
         return GivenDraw(names, tuple(found))
 
     def _measured(self, law: RecordSpec, teeth: int, files: Files) -> GivenDraw:
-        """Of each tooth, or of all teeth the mean of those that were measured."""
+        """Measured values of each tooth, or their mean for all teeth."""
         found: list[float] = []
         for values in law.record(teeth, files).measured(self.sides, gaps=self.each == "gear").values():
             own = [value for value in values if value is not None]

@@ -1,4 +1,4 @@
-"""What every tolerance of a gear's single flanks has in common, and the law of flanks that were measured."""
+"""Common base of tolerances of a gear's single flanks, and the law of measured flanks."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
@@ -117,7 +117,7 @@ class FlankToleranceSpec(ToleranceEntry):
 
     @abstractmethod
     def draw(self, gear: SpurGear, files: Files) -> Draw:
-        """How its components are drawn; `files` holds what its law reads.
+        """Draw of its components; `files` holds the input of its law.
 
         Raises:
             GeometryError: the tolerance does not go with the gear.
@@ -125,7 +125,7 @@ class FlankToleranceSpec(ToleranceEntry):
 
     @abstractmethod
     def effect(self, gear: SpurGear, active_roll: float) -> Effect:
-        """What its components do to a gear whose active profile begins at a roll [rad].
+        """Effect of its components on a gear whose active profile begins at a roll [rad].
 
         Raises:
             GeometryError: the tolerance does not go with the gear.

@@ -1,4 +1,4 @@
-"""What every tolerance of gears, their shafts and their reducers has in common: it means an effect."""
+"""Common base of tolerances of gears, their shafts and their reducers: each has an effect."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a deviation does.
+    """Meaning of a deviation.
 
     Args:
-        effect: on which parts and how; see effects.py.
-        planar: whether the deviation is a length in a direction across an axis.
+        effect: on the parts; see effects.py.
+        planar: True if the deviation is a length in a direction across an axis.
         azimuth: that direction [rad]; None for a random one.
         least: smallest physical deviation [mm, rad or K], such as 0 of a clearance, if there is one.
     """
@@ -46,7 +46,7 @@ class GearingToleranceSpec(ToleranceSpec):
 
     @abstractmethod
     def meaning(self, nominal: Any) -> Meaning:
-        """What a deviation does in a scene whose Nominal geometry is known."""
+        """Meaning of a deviation in a scene with known Nominal geometry."""
 
     @property
     def unit(self) -> "Unit":

@@ -104,7 +104,7 @@ class RunOutSpec(GearToleranceSpec):
     )
 
     def meaning(self, nominal: "Nominal") -> Meaning:
-        """Of a shaft: its direction is counted on the shaft, and every gear on it is displaced alike."""
+        """Displacement of every gear on a shaft alike; the direction is counted on the shaft."""
         if not isinstance(nominal.scene.parts[self.of], ShaftSpec):
             return in_direction([TurningOffset(self.of)], self.direction)
         offsets = [TurningOffset(own.gear, Plane(-own.phase, own.backward)) for own in nominal.carried_by(self.of)]

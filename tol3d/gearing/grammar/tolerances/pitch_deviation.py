@@ -90,7 +90,7 @@ class RandomWalkSpec(FilledSpec):
 
     @property
     def pattern(self) -> Pattern:
-        """How deviations go round."""
+        """Pattern of the deviations round the gear."""
         return RandomWalk()
 
 
@@ -102,7 +102,7 @@ class RunOutAndRandomSpec(FilledSpec):
 
     @property
     def pattern(self) -> Pattern:
-        """How deviations go round."""
+        """Pattern of the deviations round the gear."""
         return RunOutAndRandom(self.run_out)
 
 
