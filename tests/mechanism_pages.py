@@ -68,7 +68,7 @@ ASSEMBLIES = MechanismPage(
     "assemblies",
     ASSEMBLY,
     {
-        "tolerances": ["Each has `kind` and, if you like, `description`"],
+        "tolerances": ["Each has `kind` and, optionally, `description`"],
         "moves": ["A pair has `from`"],
         "measures": ["Each has `kind` and may have `lower_limit`"],
     },

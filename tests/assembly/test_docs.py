@@ -31,7 +31,7 @@ from tol3d.units import FACTORS
 PAGE = ASSEMBLIES.kinds
 DOCS, SCHEMA = PAGE.text, PAGE.schema
 KINDS = Grammar((ASSEMBLY,))
-WORDS = "What the words mean"
+WORDS = "Definitions"
 OWN = ("tol3d.assembly", "tol3d.scene.temperature")  # modules of its kinds
 TABLES = re.findall(r"```text\n([^\n]*analytic.*?)```", DOCS, re.DOTALL)
 
