@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
+from pydantic import Field
 
 from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.errors import InputError
@@ -58,7 +59,7 @@ class ConstantSpec(DistributionSpec):
     """`{value}`."""
 
     kind: Literal["constant"]
-    value: Quantity
+    value: Quantity = Field(description="the deviation of every build")
 
     def resolve(self, files: Files) -> Constant:
         """The law in mm, rad or K."""

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions.base import LARGEST_DEVIATION, Distribution, DistributionSpec, Place
 from tol3d.distributions.csv_table import csv_table
@@ -83,9 +83,9 @@ class EmpiricalSpec(DistributionSpec):
     """
 
     kind: Literal["empirical"]
-    file: str
-    column: str
-    unit: str
+    file: str = Field(description="CSV file with a header row, from the folder of the scene")
+    column: str = Field(description="its column of measured deviations")
+    unit: str = Field(description="of the numbers in that column, such as um")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Final, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions import standard_normal
 from tol3d.distributions.base import Distribution, DistributionSpec, Place
@@ -74,11 +74,11 @@ class NormalSpec(DistributionSpec):
     """`{lower, upper, sigmas}`: limits at +-sigmas about their middle; or `{mean, sigma}`."""
 
     kind: Literal["normal"]
-    lower: Quantity | None = None
-    upper: Quantity | None = None
-    sigmas: float = 3.0
-    mean: Quantity | None = None
-    sigma: Quantity | None = None
+    lower: Quantity | None = Field(default=None, description="lower limit")
+    upper: Quantity | None = Field(default=None, description="upper limit")
+    sigmas: float = Field(default=3.0, description="standard deviations from the middle to either limit")
+    mean: Quantity | None = Field(default=None, description="mean, instead of limits")
+    sigma: Quantity | None = Field(default=None, description="standard deviation, with the mean")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

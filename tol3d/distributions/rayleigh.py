@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.errors import InputError
@@ -74,7 +74,7 @@ class RayleighSpec(DistributionSpec):
     """`{scale}`."""
 
     kind: Literal["rayleigh"]
-    scale: Quantity
+    scale: Quantity = Field(description="most frequent value; the mean is 1.253 times as large")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Literal, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions import standard_normal
 from tol3d.distributions.base import Distribution, DistributionSpec, Place
@@ -84,10 +84,10 @@ class TruncatedNormalSpec(DistributionSpec):
     """`{mean, sigma, lower, upper}`: mean and sigma are those of the normal before it is cut."""
 
     kind: Literal["truncated_normal"]
-    mean: Quantity
-    sigma: Quantity
-    lower: Quantity
-    upper: Quantity
+    mean: Quantity = Field(description="mean before it is cut")
+    sigma: Quantity = Field(description="standard deviation before it is cut")
+    lower: Quantity = Field(description="smallest deviation")
+    upper: Quantity = Field(description="largest deviation")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, Self
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from tol3d.distributions.base import Distribution, DistributionSpec, Place
 from tol3d.files import Files
@@ -51,8 +51,8 @@ class UniformSpec(DistributionSpec):
     """`{lower, upper}`."""
 
     kind: Literal["uniform"]
-    lower: Quantity
-    upper: Quantity
+    lower: Quantity = Field(description="smallest deviation")
+    upper: Quantity = Field(description="largest deviation")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

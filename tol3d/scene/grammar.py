@@ -32,6 +32,13 @@ Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 
 REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
 
+SECTIONS_MEAN: Final[Mapping[str, str]] = {
+    "parts": "what is assembled, by name",
+    "tolerances": "what deviates, by name",
+    "moves": "how parts are placed, by name and in this order",
+    "measures": "what is read of each build, by name",
+}
+
 BASES: Final[Mapping[str, type[Entry]]] = {
     "parts": PartSpec,
     "tolerances": ToleranceEntry,
@@ -304,10 +311,11 @@ def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[
     sections: dict[str, Any] = {} if required else {"scene": (str, "")}
     for section in SECTIONS:
         union, given = _union(grammar, section), section in required
-        field = Field(min_length=1) if given else Field(default_factory=dict)
+        means = SECTIONS_MEAN[section]
+        field = Field(min_length=1, description=means) if given else Field(default_factory=dict, description=means)
         sections[section] = (Mapping[Name, union], field)  # type: ignore[valid-type]  # made at run time
     study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
-    sections["study"] = (study, Field(default_factory=study))
+    sections["study"] = (study, Field(default_factory=study, description="how many builds, and how they are drawn"))
     column: Any = published_column_class(tuple(each.published for each in grammar.vocabularies if each.published))
     sections["published"] = (Mapping[Name, column], Field(default_factory=dict, description=PUBLISHED_MEANS))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)

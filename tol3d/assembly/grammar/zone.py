@@ -21,8 +21,10 @@ from tol3d.units import Of, Quantity, shown
 class ZoneSpec(Strict):
     """Tolerance zone of a drawing: a diameter for an axis or a point, else a width."""
 
-    diameter: Length | None = None
-    width: Length | None = None
+    diameter: Length | None = Field(default=None, description="of the zone of an axis or a point")
+    width: Length | None = Field(
+        default=None, description="of the zone of a surface, or of an axis or a point in one direction"
+    )
     along: Direction | None = Field(
         default=None, description="of a width for an axis or a point: the one direction in which it limits"
     )

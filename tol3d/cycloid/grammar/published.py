@@ -16,19 +16,23 @@ from tol3d.strict import Strict
 class PublishedSource(Strict):
     """One source of transmission error; three standard deviations of the output's angle [arc second]."""
 
-    tolerance_um: NotNegative | None = None
-    by_formula_arcsec: NotNegative | None = None
-    first_principles_arcsec: NotNegative | None = None
-    arcsec_per_um: NotNegative | None = None
+    tolerance_um: NotNegative | None = Field(default=None, description="tolerance of the source [um]")
+    by_formula_arcsec: NotNegative | None = Field(default=None, description="by the paper's own formula [arc second]")
+    first_principles_arcsec: NotNegative | None = Field(
+        default=None, description="of the pin with the largest lever [arc second]"
+    )
+    arcsec_per_um: NotNegative | None = Field(default=None, description="rate [arc second/um]")
 
 
 class PublishedTotals(Strict):
     """Cycloid stage and carrier added up; three standard deviations of the output's angle [arc second]."""
 
-    cycloid_arcsec: NotNegative | None = None
-    carrier_arcsec: NotNegative | None = None
+    cycloid_arcsec: NotNegative | None = Field(default=None, description="of the cycloid stage [arc second]")
+    carrier_arcsec: NotNegative | None = Field(default=None, description="of the carrier [arc second]")
     added_arcsec: NotNegative | None = Field(default=None, description="both added")
-    root_sum_square_arcsec: NotNegative | None = None
+    root_sum_square_arcsec: NotNegative | None = Field(
+        default=None, description="root of the sum of both squares [arc second]"
+    )
 
 
 class PublishedFormulaTotals(PublishedTotals):

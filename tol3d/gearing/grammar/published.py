@@ -27,12 +27,12 @@ Angle = Annotated[Quantity, Of("angle")]
 class PublishedEnds(Strict):
     """Lost motion of a stage at its driven shaft, or the sum of the stages' ends at the shaft that is read."""
 
-    low_3sigma: Angle | None = None
-    mean: Angle | None = None
-    high_3sigma: Angle | None = None
-    sigma: Angle | None = None
-    sample_min: Angle | None = None
-    sample_max: Angle | None = None
+    low_3sigma: Angle | None = Field(default=None, description="mean - 3 sigma")
+    mean: Angle | None = Field(default=None, description="mean")
+    high_3sigma: Angle | None = Field(default=None, description="mean + 3 sigma")
+    sigma: Angle | None = Field(default=None, description="standard deviation")
+    sample_min: Angle | None = Field(default=None, description="smallest of the trials")
+    sample_max: Angle | None = Field(default=None, description="largest of the trials")
     share_percent: Percent | None = Field(default=None, description="share of the variance of the sum")
 
     @model_validator(mode="after")
@@ -48,7 +48,7 @@ class PublishedEnds(Strict):
 class PublishedStage(PublishedEnds):
     """A link of a train."""
 
-    ratio: Figure | None = None
+    ratio: Figure | None = Field(default=None, description="turns of its driving shaft per turn of its driven one")
     factor: Figure | None = Field(
         default=None, description="turn of the shaft that is read per turn of the driven shaft"
     )
@@ -57,8 +57,10 @@ class PublishedStage(PublishedEnds):
 class PublishedTrain(Strict):
     """A train and its stages."""
 
-    ratio: Figure | None = None
-    lever_mm: NotNegative | None = None
+    ratio: Figure | None = Field(default=None, description="turns of the driven shaft per turn of the output")
+    lever_mm: NotNegative | None = Field(
+        default=None, description="distance of the tip from the axis of the output [mm]"
+    )
     stages: Mapping[Name, PublishedStage] = Field(default_factory=dict, description="by the name of the link")
     sums: PublishedEnds | None = Field(default=None, description="sums of the stages' ends at the shaft that is read")
     description: Remark = Field(default="", description="what must be known of these numbers")

@@ -95,14 +95,14 @@ class OutputSpec(Strict):
 class TiltPoseSpec(Strict):
     """Pose by the direction of the output."""
 
-    tilt: Angle
-    azimuth: Angle
+    tilt: Angle = Field(description="angle by which the output leans from its z")
+    azimuth: Angle = Field(description="azimuth of the direction in which it leans")
 
 
 class PlacePoseSpec(Strict):
     """Pose by the place of the output, in the frame from which it is read."""
 
-    at: Vector
+    at: Vector = Field(description="place of the output [x, y, z], in the frame from which it is read")
     turned: Annotated[tuple[Angle, Angle, Angle], three("three angles: a rotation vector")] | None = Field(
         default=None, description="a rotation vector, from the frame from which it is read; none turned if not given"
     )

@@ -23,7 +23,7 @@ class PublishedEfficiency(Strict):
 class PublishedPlanetarySet(Strict):
     """A planetary set: its efficiencies, however they were found."""
 
-    ratio: Figure | None = None
+    ratio: Figure | None = Field(default=None, description="turns of the input per turn of the output")
     friction: NotNegative | None = Field(default=None, description="coefficient of friction of the teeth")
     meshes_percent: Mapping[Name, Figure] = Field(
         default_factory=dict, description="efficiency of each mesh, by its central gear [%]"

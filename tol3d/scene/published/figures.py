@@ -49,7 +49,7 @@ def _number_or_keys(value: Any) -> Any:
 class PublishedShare(Strict):
     """Published figures of a contributor: shares of the measure's variance [%]."""
 
-    percent: Percent | None = None
+    percent: Percent | None = Field(default=None, description="share of the variance [%]")
     percent_se: Percent | None = Field(default=None, description="standard error of the share")
     high_low_mean_percent: Percent | None = Field(
         default=None, description="share of the squares of high-low-mean ranges"
@@ -60,8 +60,8 @@ class PublishedCorrelation(Strict):
     """Published figures of two measures together."""
 
     r: R | None = Field(default=None, description="Pearson's")
-    r_low_95: R | None = None
-    r_high_95: R | None = None
+    r_low_95: R | None = Field(default=None, description="lower bound of the true r, 95 % confidence")
+    r_high_95: R | None = Field(default=None, description="upper bound of the true r, 95 % confidence")
     trials: Count | None = Field(default=None, description="trials that have both values")
 
 
@@ -115,12 +115,12 @@ class PublishedSpectrum(Strict):
     """Amplitudes of harmonics, half of peak to peak: a list each, as `order`."""
 
     order: Figures = Field(description="cycles per turn")
-    mean: Quantities | None = None
-    sigma: Quantities | None = None
+    mean: Quantities | None = Field(default=None, description="means")
+    sigma: Quantities | None = Field(default=None, description="standard deviations")
     p0_135: Quantities | None = Field(default=None, alias="p0.135", description="0.135 % quantiles")
-    p50: Quantities | None = None
-    p99_865: Quantities | None = Field(default=None, alias="p99.865")
-    max: Quantities | None = None
+    p50: Quantities | None = Field(default=None, description="medians")
+    p99_865: Quantities | None = Field(default=None, alias="p99.865", description="99.865 % quantiles")
+    max: Quantities | None = Field(default=None, description="largest values of the trials")
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -131,18 +131,18 @@ class PublishedSpectrum(Strict):
 class PublishedCurve(Strict):
     """A curve: a list of each statistic, as the measure's `position_deg`."""
 
-    mean: Quantities | None = None
-    sigma: Quantities | None = None
-    min: Quantities | None = None
-    max: Quantities | None = None
-    trials: Count | None = None
+    mean: Quantities | None = Field(default=None, description="means")
+    sigma: Quantities | None = Field(default=None, description="standard deviations")
+    min: Quantities | None = Field(default=None, description="smallest values of the trials")
+    max: Quantities | None = Field(default=None, description="largest values of the trials")
+    trials: Count | None = Field(default=None, description="all of them, failed ones too")
     below_limit_ppm: Ppm | None = Field(default=None, description="share below the lower limit at any position [ppm]")
-    above_limit_ppm: Ppm | None = None
-    failed_ppm: Ppm | None = None
-    out_ppm: Ppm | None = None
+    above_limit_ppm: Ppm | None = Field(default=None, description="share above the upper limit at any position [ppm]")
+    failed_ppm: Ppm | None = Field(default=None, description="share that could not be assembled [ppm]")
+    out_ppm: Ppm | None = Field(default=None, description="share that failed or is out of limits [ppm]")
     out_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
     ppk: Figure | None = Field(default=None, description="Ppk")
-    spectrum: PublishedSpectrum | None = None
+    spectrum: PublishedSpectrum | None = Field(default=None, description="its harmonics")
 
     @property
     def is_listed(self) -> bool:
@@ -153,9 +153,9 @@ class PublishedCurve(Strict):
 class PublishedHistogram(Strict):
     """Counts over bars of one width."""
 
-    lower_edge: Quantity
-    bin_width: Quantity
-    counts: Counts
+    lower_edge: Quantity = Field(description="of the first bar")
+    bin_width: Quantity = Field(description="of each bar")
+    counts: Counts = Field(description="trials in each bar")
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -167,7 +167,7 @@ class PublishedHistogram(Strict):
 class PublishedAgreement(Strict):
     """Published difference of two methods, trial by trial: simulation less theory."""
 
-    max_abs_difference: Quantity | None = None
-    rms_difference: Quantity | None = None
-    mean_difference: Quantity | None = None
+    max_abs_difference: Quantity | None = Field(default=None, description="largest difference, without its sign")
+    rms_difference: Quantity | None = Field(default=None, description="root mean square of the differences")
+    mean_difference: Quantity | None = Field(default=None, description="mean of the differences")
     compared: Count | None = Field(default=None, description="trials that both have a value of")

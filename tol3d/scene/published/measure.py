@@ -45,7 +45,7 @@ class PublishedMeasure(Strict):
     """Published figures of a measure, in its dimension; contributors in percent of the variance."""
 
     low_3sigma: Quantity | None = Field(default=None, description="mean - 3 sigma, or the lower end at 99.7 %")
-    mean: Quantity | None = None
+    mean: Quantity | None = Field(default=None, description="mean")
     high_3sigma: Quantity | None = Field(default=None, description="mean + 3 sigma, or the upper end at 99.7 %")
     sigma: Quantity | None = Field(default=None, description="standard deviation")
     sample_min: Quantity | None = Field(default=None, description="smallest of the trials")
@@ -56,12 +56,12 @@ class PublishedMeasure(Strict):
     mean_se: Quantity | None = Field(default=None, description="standard error of the mean")
     sigma_se: Quantity | None = Field(default=None, description="standard error of sigma")
     mean_95: Range | None = Field(default=None, description="bounds of the true mean, 95 % confidence")
-    sigma_95: Range | None = None
+    sigma_95: Range | None = Field(default=None, description="bounds of the true sigma, 95 % confidence")
     contributors: Mapping[Name, Share] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
     description: Remark = Field(default="", description="what must be known of these numbers, shown below the table")
-    skewness: Figure | None = None
+    skewness: Figure | None = Field(default=None, description="skewness")
     kurtosis: Figure | None = Field(default=None, description="excess kurtosis")
     pp: Figure | None = Field(default=None, description="Pp")
     ppk: Figure | None = Field(default=None, description="Ppk")
@@ -76,18 +76,18 @@ class PublishedMeasure(Strict):
     nominal: Quantity | None = Field(default=None, description="of the build without deviations")
     mean_build: Quantity | None = Field(default=None, description="of the build with all deviations at their means")
     below_limit_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence")
-    above_limit_ppm_95: PpmRange | None = None
-    out_ppm_95: PpmRange | None = None
+    above_limit_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence")
+    out_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence")
     quantile_error: Quantity | None = Field(default=None, description="how finely quantiles were read")
-    outside_grid: Count | None = None
-    deepest_overlap: Quantity | None = None
+    outside_grid: Count | None = Field(default=None, description="trials beyond the ends of the histogram")
+    deepest_overlap: Quantity | None = Field(default=None, description="of builds that interfere, by the normal")
     pooled: Mapping[Name, Quantity] = Field(
         default_factory=dict, description="statistics that the measure names besides"
     )
-    histogram: PublishedHistogram | None = None
-    agreement: PublishedAgreement | None = None
+    histogram: PublishedHistogram | None = Field(default=None, description="counts of trials")
+    agreement: PublishedAgreement | None = Field(default=None, description="difference of both methods, trial by trial")
     position_deg: Figures | None = Field(default=None, description="where the curve was read [deg]")
-    curve: PublishedCurve | None = None
+    curve: PublishedCurve | None = Field(default=None, description="statistics at each position")
 
     @property
     def internal(self) -> dict[str, float]:

@@ -43,7 +43,7 @@ class PublishedFigures(Strict):
 class PublishedYield(Strict):
     """The share of trials within all limits."""
 
-    trials: Count | None = None
+    trials: Count | None = Field(default=None, description="all of them, failed ones too")
     within: Count | None = Field(default=None, description="trials within all limits")
     yield_ppm: Ppm | None = Field(default=None, description="share of all trials [ppm]")
     yield_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
@@ -83,34 +83,34 @@ class PublishedJoint(Strict):
 class PublishedStudy(Strict):
     """The study of others."""
 
-    trials: Count | None = None
-    seed: Count | None = None
-    replicates: Count | None = None
-    witness: Count | None = None
+    trials: Count | None = Field(default=None, description="number of trials")
+    seed: Count | None = Field(default=None, description="seed of the draws")
+    replicates: Count | None = Field(default=None, description="number of replicates")
+    witness: Count | None = Field(default=None, description="trials that another engine measured again")
 
 
 class PublishedTiming(Strict):
     """Published durations."""
 
-    setup_s: NotNegative | None = None
-    simulate_s: NotNegative | None = None
-    first_block_s: NotNegative | None = None
-    trials_per_s: NotNegative | None = None
-    resumed_trials: Count | None = None
-    workers: Count | None = None
-    peak_memory_mb: NotNegative | None = None
+    setup_s: NotNegative | None = Field(default=None, description="time to set up [s]")
+    simulate_s: NotNegative | None = Field(default=None, description="time of the trials [s]")
+    first_block_s: NotNegative | None = Field(default=None, description="time of the first block [s]")
+    trials_per_s: NotNegative | None = Field(default=None, description="trials a second")
+    resumed_trials: Count | None = Field(default=None, description="trials that were there already")
+    workers: Count | None = Field(default=None, description="number of processes")
+    peak_memory_mb: NotNegative | None = Field(default=None, description="most memory at once [MB]")
 
 
 class PublishedWhole(PublishedFigures):
     """Published figures that any run may have."""
 
-    seed: Count | None = None
-    trials: Count | None = None
-    chord_error_um: NotNegative | None = None
+    seed: Count | None = Field(default=None, description="seed of the draws")
+    trials: Count | None = Field(default=None, description="number of trials")
+    chord_error_um: NotNegative | None = Field(default=None, description="error of facets at curved faces [um]")
     status: Mapping[Name, Count] = Field(default_factory=dict, description="how many trials ended how")
-    joint: PublishedJoint | None = None
-    study: PublishedStudy | None = None
-    timing: PublishedTiming | None = None
+    joint: PublishedJoint | None = Field(default=None, description="what measures do together")
+    study: PublishedStudy | None = Field(default=None, description="how it was simulated")
+    timing: PublishedTiming | None = Field(default=None, description="how long it took")
 
     def problems(self, scene: Any) -> Iterator[Problem]:
         """Correlations of unknown measures, or of a curve."""

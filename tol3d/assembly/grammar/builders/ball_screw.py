@@ -13,7 +13,7 @@ from tol3d.strict import Strict
 class JournalSpec(Strict):
     """An end that is turned down."""
 
-    diameter: Length
+    diameter: Length = Field(description="of the journal")
     length: Length = Field(description="along z")
 
 

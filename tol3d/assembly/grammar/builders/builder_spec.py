@@ -50,7 +50,7 @@ class HoleSpec(Strict):
     """A drilled hole."""
 
     at: Place = Field(description="its axis on the face: x, y and z of the part without the one square to the face")
-    diameter: Length
+    diameter: Length = Field(description="of the hole")
     depth: Length | None = Field(default=None, description="of a blind hole; it goes through if not given")
 
     def named(self, name: str, face: str = "top") -> Hole:
@@ -81,7 +81,7 @@ class PinSpec(Strict):
     """A round pin that stands on the top, or on a rim."""
 
     at: Place = Field(description="its axis")
-    diameter: Length
+    diameter: Length = Field(description="of the pin")
     height: Length = Field(description="above what it stands on")
 
     def named(self, name: str) -> Pin:

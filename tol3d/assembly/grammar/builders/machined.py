@@ -158,7 +158,7 @@ class BoreSpec(Strict):
     """A bore through an end wall, and through the boss that it lies in."""
 
     at: Place = Field(description="x and y of its axis")
-    diameter: Length
+    diameter: Length = Field(description="of the bore")
     wall: EndWall = Field(description="the one at +z is the front")
 
 
@@ -166,7 +166,7 @@ class BossSpec(Strict):
     """A round boss on the outside of an end wall."""
 
     at: Place = Field(description="x and y of its axis")
-    diameter: Length
+    diameter: Length = Field(description="of the boss")
     height: Length = Field(description="above the wall")
     wall: EndWall = Field(description="the one at +z is the front")
 

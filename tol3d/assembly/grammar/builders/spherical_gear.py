@@ -18,7 +18,7 @@ USUAL_PRESSURE_ANGLE = math.radians(20)
 class BlindBoreSpec(Strict):
     """A hole from the bottom along z."""
 
-    diameter: Length
+    diameter: Length = Field(description="of the bore")
     depth: Length = Field(description="from the bottom")
 
 

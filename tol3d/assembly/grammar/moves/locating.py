@@ -50,9 +50,9 @@ class ThreeTwoOneSpec(LocatingSpec):
     words: ClassVar[str] = "a 3-2-1 move"
 
     kind: Literal["three_two_one"]
-    primary: Annotated[tuple[ContactSpec, ...], listed("pairs", 3, 3)]
-    secondary: Annotated[tuple[ContactSpec, ...], listed("pairs", 2, 2)]
-    tertiary: Annotated[tuple[ContactSpec, ...], listed("pairs", 1, 1)]
+    primary: Annotated[tuple[ContactSpec, ...], listed("pairs", 3, 3)] = Field(description="three contacts")
+    secondary: Annotated[tuple[ContactSpec, ...], listed("pairs", 2, 2)] = Field(description="two contacts")
+    tertiary: Annotated[tuple[ContactSpec, ...], listed("pairs", 1, 1)] = Field(description="one contact")
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
@@ -68,7 +68,9 @@ class SixPlaneSpec(LocatingSpec):
     words: ClassVar[str] = "a six-plane move"
 
     kind: Literal["six_plane"]
-    pairs: Annotated[tuple[ContactSpec, ...], listed("pairs", 6, 6)]
+    pairs: Annotated[tuple[ContactSpec, ...], listed("pairs", 6, 6)] = Field(
+        description="six contacts that together hold all freedoms"
+    )
 
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
@@ -88,8 +90,10 @@ class RestSpec(LocatingSpec):
     words: ClassVar[str] = "a rest"
 
     kind: Literal["rest"]
-    contacts: Annotated[tuple[ContactSpec, ...], listed("contacts", 1)]
-    force: ForceSpec
+    contacts: Annotated[tuple[ContactSpec, ...], listed("contacts", 1)] = Field(
+        description="pairs of features that may touch"
+    )
+    force: ForceSpec = Field(description="what presses the part on")
     relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)] = Field(
         default=(), description="as of a mate, kept while the force moves what they leave free"
     )

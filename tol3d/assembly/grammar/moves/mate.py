@@ -17,7 +17,9 @@ from tol3d.units import Of, Quantity
 class RelationSpec(PairSpec):
     """Relation of one feature to another."""
 
-    kind: Literal["coincident", "coaxial", "tangent", "distance"]
+    kind: Literal["coincident", "coaxial", "tangent", "distance"] = Field(
+        description="what one feature is to the other"
+    )
     distance: Annotated[Quantity, Of("length")] | None = Field(
         default=None, description="along the target's normal, for kind: distance"
     )
@@ -37,7 +39,9 @@ class MateSpec(PlacingSpec):
     words: ClassVar[str] = "a mate"
 
     kind: Literal["mate"]
-    relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)]
+    relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)] = Field(
+        description="held in this order; a later one holds what the earlier ones leave free"
+    )
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         return ((("relations", k), pair) for k, pair in enumerate(self.relations))
@@ -58,7 +62,9 @@ class BestFitSpec(PlacingSpec):
     words: ClassVar[str] = "a best fit"
 
     kind: Literal["best_fit"]
-    pairs: Annotated[tuple[FitSpec, ...], listed("pairs", 3)]
+    pairs: Annotated[tuple[FitSpec, ...], listed("pairs", 3)] = Field(
+        description="points that are to coincide, three at least"
+    )
     criterion: Literal["squares", "minimax"] = Field(default="squares", description="what is made least")
 
     @model_validator(mode="after")
@@ -82,7 +88,9 @@ class TouchSpec(PlacingSpec):
     words: ClassVar[str] = "a touch"
 
     kind: Literal["touch"]
-    contacts: Annotated[tuple[PairSpec, ...], listed("contacts", 1, 6)]
+    contacts: Annotated[tuple[PairSpec, ...], listed("contacts", 1, 6)] = Field(
+        description="pairs of features that touch"
+    )
     pressed: Direction | None = Field(
         default=None,
         description="where the part is pressed to, in the frame of the part of the first `to`; contacts do not pull",

@@ -149,7 +149,9 @@ class PinAndHoleSpec(PlaySpec):
     words: ClassVar[str] = "a pin-and-hole move"
 
     kind: Literal["pin_and_hole"]
-    pairs: Annotated[tuple[EngagementSpec, ...], listed("pairs", 1, 2)]
+    pairs: Annotated[tuple[EngagementSpec, ...], listed("pairs", 1, 2)] = Field(
+        description="one or two pins in holes or slots"
+    )
 
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:
@@ -162,7 +164,7 @@ class PatternSpec(PlaySpec):
     words: ClassVar[str] = "a pattern"
 
     kind: Literal["pattern"]
-    pairs: Annotated[tuple[PatternPairSpec, ...], listed("pairs", 1)]
+    pairs: Annotated[tuple[PatternPairSpec, ...], listed("pairs", 1)] = Field(description="what engages, all at once")
 
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:

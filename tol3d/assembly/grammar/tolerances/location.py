@@ -31,7 +31,7 @@ class SegmentSpec(Strict):
 class LocationSpec(FeatureTolerance):
     """A zone for where a feature lies; zones of orientation and form of the same feature refine it."""
 
-    zone: ZoneSpec
+    zone: ZoneSpec = Field(description="where the feature may lie, about its nominal place")
     law: LawUnion
     datums: Datums | None = Field(default=None, description="the part's frame if not given")
 
@@ -148,7 +148,7 @@ class OrientationSpec(Modified, FeatureTolerance):
 
     applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
 
-    zone: ZoneSpec
+    zone: ZoneSpec = Field(description="within which the feature may lean")
     law: LawUnion | None = Field(
         default=None, description="of a feature without a location zone; else that zone's law counts"
     )
@@ -200,7 +200,7 @@ class AxialRunOutSpec(OrientationSpec):
 class FormSpec(FeatureTolerance):
     """A zone for the form of a feature; where it touches at a point, that point lies off by up to half of it."""
 
-    zone: ZoneSpec
+    zone: ZoneSpec = Field(description="width within which the surface or line lies")
     law: LawUnion | None = Field(
         default=None, description="of the points that touch; they lie on the shape if not given"
     )
