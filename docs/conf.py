@@ -21,7 +21,6 @@ project = "tol3d"
 author = "the tol3d authors"
 copyright = f"2026, {author}"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-exclude_patterns = ["_build"]
 
 myst_heading_anchors = 4  # as file views make them, so that links work in both
 
@@ -67,7 +66,7 @@ def page_of(file: str) -> str:
 def write_pages(app: Any) -> None:
     """Write the pages that are made, where they have changed; others that were made before are deleted."""
     linked = {own[1] for page in DOCS.glob("*.md") for own in LINK.finditer(page.read_text("utf-8"))}
-    pages = {MADE / f"{name}.md": text for name, text in reference_pages(all_kinds()).items()}
+    pages = {MADE / f"{name}.md": text for name, text in reference_pages(all_kinds(), DOCS).items()}
     pages |= {DOCS / place_of(file)[1:]: page_of(file) for file in linked}
     for old in set(MADE.rglob("*.md")) - pages.keys():
         old.unlink()

@@ -5,9 +5,9 @@ A kind that a mechanism registers has its fields, units, defaults, values and an
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -37,10 +37,10 @@ class Reference:
 
     Args:
         grammar: every kind that scenes may have.
-        scenes: texts of scenes, from which examples are taken; the first ones are preferred.
+        scenes: texts of scenes or of sections, from which examples are taken; the first ones are preferred.
     """
 
-    def __init__(self, grammar: Grammar, scenes: Mapping[str, str]) -> None:
+    def __init__(self, grammar: Grammar, scenes: Sequence[str]) -> None:
         self._grammar, self._scenes = grammar, scenes
         self._schema = grammar.scene.model_json_schema()
         self._definitions: dict[str, Node] = {ROOT: self._schema, **self._schema["$defs"]}
@@ -59,7 +59,7 @@ class Reference:
         """Fields without a description: `SpurGearSpec.bore`."""
         for name, definition in self._definitions.items():
             for field, node in definition.get("properties", {}).items():
-                if "const" not in node and not node.get("description"):
+                if not _is_word(field, node) and not node.get("description"):
                     yield f"{name}.{field}"
 
     # what is on which page -------------------------------------------------------------------------
@@ -149,7 +149,7 @@ class Reference:
         definition = self._definitions[name]
         yield f"(ref-{name})=\n{level} {self._title(name)}\n"
         yield re.sub(r"(?<!`)\b[A-Z]\w+Spec\b", lambda own: _said(own[0]), definition.get("description", "")) + "\n"
-        fields = {key: node for key, node in definition.get("properties", {}).items() if "const" not in node}
+        fields = {key: node for key, node in definition.get("properties", {}).items() if not _is_word(key, node)}
         if fields:
             yield "| field | values | default | meaning |\n|---|---|---|---|"
             needed = definition.get("required", ())
@@ -208,8 +208,8 @@ class Reference:
     def _examples(self) -> Mapping[str, str]:
         """An example of each definition that the scenes have: of the first few, the one of about six lines."""
         found: dict[str, list[str]] = defaultdict(list)
-        for text in self._scenes.values():
-            for name, key, data in self._met(yaml.load(text, LOADER), {"$ref": f"{DEFINITIONS}{ROOT}"}, ""):
+        for text in self._scenes:
+            for name, key, data in self._met(_loaded(text), {"$ref": f"{DEFINITIONS}{ROOT}"}, ""):
                 if name != ROOT:
                     section = self._sections.get(name)
                     shown = {section: {key: data}} if section else {key: data} if key else data
@@ -243,6 +243,19 @@ class Reference:
         return isinstance(data, dict) and data.keys() <= fields.keys() and data.get("kind") == self._word(name)
 
 
+def _is_word(field: str, node: Node) -> bool:
+    """Whether a field is the word by which its definition is chosen."""
+    return field == "kind" and "const" in node
+
+
+def _loaded(text: str) -> Any:
+    """What a text says; nothing if it is none of YAML, as what is printed in a page."""
+    try:
+        return yaml.load(text, LOADER)
+    except yaml.YAMLError:
+        return None
+
+
 def _targets(node: Any) -> list[str]:
     """Definitions between which a union chooses, or the one that a node refers to."""
     union = [node, *(node.get("oneOf") or node.get("anyOf") or [])] if isinstance(node, Mapping) else []
@@ -264,8 +277,16 @@ def _bounds(node: Node) -> str:
     return f" {', '.join(limits)}" if limits else ""
 
 
-def reference_pages(grammar: Grammar) -> dict[str, str]:
-    """See Reference: with examples from the bundled scenes, those that show every field last."""
-    folder = files("tol3d.scenes")
-    texts = {name: (folder / f"{name}.yaml").read_text("utf-8") for name in bundled_scenes()}
-    return Reference(grammar, dict(sorted(texts.items(), key=lambda own: own[0].startswith("every_")))).pages()
+def reference_pages(grammar: Grammar, pages: Path) -> dict[str, str]:
+    """See Reference: with examples from the bundled scenes, those that show every field last, and from pages.
+
+    Raises:
+        UndescribedError: see Reference.
+    """
+    bundled = sorted(bundled_scenes().items(), key=lambda own: own[0].startswith("every_"))
+    texts = [path.read_text("utf-8") for _, path in bundled]
+    for page in sorted(pages.glob("*.md")):
+        texts += re.findall(
+            r"^```(?:yaml|text)\n((?:\w+:|#).*?)^```", page.read_text("utf-8"), re.MULTILINE | re.DOTALL
+        )
+    return Reference(grammar, texts).pages()

@@ -1,4 +1,4 @@
-"""The site: built from docs/ with warnings as errors, and opened from the file system in a browser without a network."""
+"""The site: built from docs/ with warnings as errors, opened from the file system in a browser without a network."""
 
 import re
 import subprocess
@@ -41,7 +41,7 @@ class BareSpec(PartSpec):
 @pytest.fixture(scope="module")
 def pages() -> dict[str, str]:
     """Those of every kind that is shipped: made only where every field has a description."""
-    return reference_pages(all_kinds())
+    return reference_pages(all_kinds(), DOCS)
 
 
 def test_every_kind_is_on_a_page_with_its_fields_and_an_example(pages: dict[str, str]) -> None:
@@ -66,7 +66,7 @@ def test_a_field_has_its_unit_default_and_values(pages: dict[str, str]) -> None:
 
 
 def pages_with(spec: type[PartSpec]) -> dict[str, str]:
-    return Reference(Grammar((*all_kinds().vocabularies, Vocabulary("workshop", parts=(spec,)))), {}).pages()
+    return Reference(Grammar((*all_kinds().vocabularies, Vocabulary("workshop", parts=(spec,)))), []).pages()
 
 
 def test_a_kind_that_is_registered_has_a_page_by_itself() -> None:
