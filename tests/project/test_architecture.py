@@ -118,6 +118,14 @@ def test_no_lint() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_docstrings_open_with_a_noun_phrase_or_a_verb() -> None:
+    """Those of attributes too: less than one in a hundred may open like a question."""
+    package = [path for path in python_files() if path.is_relative_to(PACKAGE_FOLDERS["tol3d"])]
+    openings = [word for path in package for word in re.findall(r'^ *r?"""(\w+)', text_of(path), re.MULTILINE)]
+    assert len(openings) > 9000
+    assert sum(word in {"What", "How", "Whether", "Where", "Of"} for word in openings) < 0.01 * len(openings)
+
+
 def test_every_public_method_says_what_it_does_or_overrides_one_that_does() -> None:
     """By the names of classes and of their bases."""
     classes: dict[str, list[ast.ClassDef]] = {}

@@ -74,7 +74,7 @@ def allocation(
 
     Args:
         response: with the tolerances of the scene.
-        targets: one a measure.
+        targets: one per measure.
         question: costs, bounds, what stays.
         draws: of importance sampling, each time.
         seed: of it; the last look has another one.

@@ -105,7 +105,7 @@ def points_from(state: LimitState, starts: Array, positions: Positions, beyond: 
     """Design points from builds (n, dimension) that fail, at their positions.
 
     Args:
-        state: whose.
+        state: the limit state.
         starts, positions: of the builds.
         beyond: where the build at the origin fails; without a gradient none is sought there.
     """
@@ -174,7 +174,7 @@ class _Walk:
     """Rows on their way to design points, each by the steps of Rackwitz and Fiessler as far as they lead somewhere.
 
     Args:
-        state: whose.
+        state: the limit state.
         positions: at which each row is read.
         normals: where they are (n, dimension).
         inside: the limit state there (n,).

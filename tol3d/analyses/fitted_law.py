@@ -138,7 +138,7 @@ def fitted(values: Array, seed: int = 1) -> FittedLaw:
 
 
 def _distance(kind: Kind, samples: Array, arguments: Sequence[Array]) -> Array:
-    """A² of samples (samples, n) and of laws with arguments (samples,) each; not a number where there is no law."""
+    """A² of samples (samples, n) and of laws with arguments (samples,) each; NaN where there is no law."""
     count = samples.shape[1]
     ordered = np.sort(samples, axis=1)
     nearly = BEYOND / count

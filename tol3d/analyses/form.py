@@ -48,7 +48,7 @@ class Points:
     """Design points of a limit, and where they are read.
 
     Args:
-        state: whose.
+        state: the limit state.
         normals: (points, dimension).
         gradients: of the limit state there (points, dimension).
         positions: of each, a row.

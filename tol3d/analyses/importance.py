@@ -68,7 +68,7 @@ def importance_sampled(
     """The probability by importance sampling, and the places with the design points that the draws found besides.
 
     Args:
-        state: whose.
+        state: the limit state.
         places: positions and design points.
         draws: how many in all.
         generator: of the draws.

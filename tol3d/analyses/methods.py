@@ -86,7 +86,7 @@ class Trials(Protocol):
     """Trials that stand for the simulation."""
 
     def column(self, measure: str) -> Array:
-        """A measure (trials,) in its unit, not a number of those that failed."""
+        """A measure (trials,) in its unit, NaN for failed builds."""
         ...
 
     def builds(self, numbers: NDArray[np.int64]) -> tuple[Array, Standing]:
@@ -135,7 +135,7 @@ class Kept:
 
     Args:
         simulation: the run's.
-        columns: by measure (trials,), not a number of those that failed.
+        columns: by measure (trials,), NaN for failed builds.
     """
 
     simulation: Simulation
@@ -183,7 +183,7 @@ def methods(
     Args:
         response: of the scene.
         trials: of the simulation; as many as the study has, MOST_TRIALS at most, if not given.
-        activity: told of what goes on.
+        activity: progress callback.
     """
     before = response.evaluations
     activity("trials")

@@ -58,13 +58,13 @@ class RareEvent:
 
     @property
     def probability(self) -> float:
-        """By its method; not a number where first or second order have none."""
+        """By its method; NaN where first or second order have none."""
         found = self.estimate.probability
         return float("nan") if found is None else found
 
     @property
     def error(self) -> float:
-        """One standard error of it; not a number of first and second order."""
+        """One standard error of it; NaN for first and second order."""
         found = self.estimate.error
         return float("nan") if found is None else found
 

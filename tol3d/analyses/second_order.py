@@ -39,7 +39,7 @@ def second_order(
     """By the nearest design point of each position; None where one has no curvatures, and why.
 
     Args:
-        state: whose.
+        state: the limit state.
         points: of each position; where there are none all builds do as the one at the origin.
         weights: how much each position stands for.
         out: where the build at the origin fails.

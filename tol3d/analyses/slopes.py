@@ -29,7 +29,7 @@ class Rates:
     """Rates of measures by contributors, in the units of the measures a mm, rad or K.
 
     Args:
-        response: whose.
+        response: the response.
         slopes: mean over builds (measures, components).
         steadiness: its size over the rms of the slopes (measures, components); 1 where all builds have the same.
         variances: by slopes, of each contributor (measures, contributors).

@@ -69,7 +69,7 @@ def subset_simulated(
     """The probability by subset simulation.
 
     Args:
-        state: whose.
+        state: the limit state.
         draws: of each level, all repetitions together.
         generator: of all draws.
         activity: told at each level.

@@ -22,7 +22,7 @@ class Miss:
     Args:
         move: its move.
         number: of the relation in it, from 0.
-        relation: which.
+        relation: the relation.
         amount: by how much, at the end of the moving feature where that is most [mm].
         at: that end, in the world (3,) [mm].
     """

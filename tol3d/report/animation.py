@@ -123,7 +123,7 @@ def pictures(motion: Motion, display: Display) -> Iterator[Image.Image]:
     """Each frame of a motion, drawn.
 
     Args:
-        motion: whose.
+        motion: the motion.
         display: of the build that moves.
     """
     several = len(motion.shots) > 1

@@ -72,7 +72,7 @@ def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -
 
     Args:
         axes: where.
-        samples: what.
+        samples: the samples.
         per: heights are % of the trials per so many units.
     """
     alone = sum(sample.line == "filled" for sample in samples) == 1
@@ -123,7 +123,7 @@ def name_ends(axes: Axes, sample: DrawnSample, unit: str, span: tuple[float, flo
 
     Args:
         axes: where.
-        sample: whose.
+        sample: the sample.
         unit: of its values.
         span: what the axis shows.
     """

@@ -24,7 +24,7 @@ class Interval:
     Args:
         words: beside it.
         low, high: its ends in the unit of its measure, None where one is not known.
-        colour: of it.
+        colour: the colour.
     """
 
     words: str

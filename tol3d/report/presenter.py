@@ -149,7 +149,7 @@ class Mapped(Protocol):
         Args:
             simulation: of the scene.
             measure: whose sigma is shown; what the mechanism says of its poses if not given.
-            activity: told what goes on.
+            activity: progress callback.
 
         Raises:
             InputError: it has none, or no such measure.

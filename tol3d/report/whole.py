@@ -119,7 +119,7 @@ def draw_whole(
 
     Args:
         plotter: at its current renderer.
-        world: what.
+        world: the world.
         width_by_height: of the picture.
         marks: points that are named besides those of the world, (3,) [mm].
     """

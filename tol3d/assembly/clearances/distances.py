@@ -29,7 +29,7 @@ class SolidDistances:
         self._readers = {name: PairDistances(pair) for name, pair in pairs.items()}
 
     def read(self, name: str, start: Array, end: Array) -> tuple[Array, Codes]:
-        """Distances (n,) [mm], not a number where parts overlap, and codes (n,).
+        """Distances (n,) [mm], NaN where parts overlap, and codes (n,).
 
         Args:
             name: of the measure.
@@ -97,7 +97,7 @@ class Asked:
     """Triangles of two parts that can be nearest, and those that can meet.
 
     Args:
-        pair: of which.
+        pair: the pair.
         faces: that can be nearest, of the first part and of the second.
         near: that can meet, likewise.
     """

@@ -46,7 +46,7 @@ def engaged_by(
     """A move with play.
 
     Args:
-        scene: whose.
+        scene: the scene.
         name: of the move.
         spec: what it says.
         relations: its relations.

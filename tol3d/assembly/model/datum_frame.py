@@ -93,7 +93,7 @@ class DatumFrame:
 
     Args:
         name: "part|A|B|C" of its features.
-        part: whose.
+        part: the part.
         datums: primary, secondary, tertiary.
         shifted_by: how a gauge lies off its datum feature, which shifts the frame (3, components), nominally in the
             part's frame.

@@ -296,7 +296,7 @@ class Floating:
     - toward: where a point of the part goes farthest along a direction; what that leaves open is as centred as may be.
 
     Args:
-        kind: which.
+        kind: its kind.
         columns: of the draws: components of a unit disc (and of an interval -1 to 1), or a shift and a turn (6) whose
             directions are alike, and a fraction.
         by_pairs: see random.

@@ -36,7 +36,7 @@ class ActualFeature:
     """A feature in its trials, in the frame in which `base` has its nominal frame.
 
     Args:
-        feature: which.
+        feature: the feature.
         base: of its nominal frame as its datum frame carries it.
         centre: where its origin lies in that frame, (3, n) [mm].
         span: from its origin to its ends in that frame, each (3, n) [mm]: of an axis to its end, of a plane to where
@@ -126,7 +126,7 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
     """A feature in its trials.
 
     Args:
-        feature: which.
+        feature: the feature.
         base: of its nominal frame in the part's, as its datum frame carries it in the trials.
         columns: the deviations, (width, n) [mm].
     """

@@ -114,7 +114,7 @@ class Step:
             far as that goes; swing: its height is met by such a rotation, or its point comes nearest; lie: its
             direction becomes square to the target's by the least rotation, and the target's is held; lie between: also
             to that of the pivot's; hold: no rotation, its direction is held.
-        tie: whose.
+        tie: the tie.
         pivot: the tie whose point stays, or that lies; -1 where shifts decide in each trial about what it swings.
         owner: the tie for which it is, about whose centre; its own where it is -1.
     """

@@ -166,7 +166,7 @@ def by_barriers(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: A
 
 @nested
 def kept(pose: Any, found: bool, i: int, turns: Any, shifts: Any, met: Any) -> None:
-    """Keep a trial's pose, not a number where none is found."""
+    """Keep a trial's pose, NaN where none is found."""
     met[i] = found
     for r in range(3):
         for c in range(3):
@@ -217,7 +217,7 @@ def least_squares(
         basis: steps that residuals see: turn times reach, and shift (6, steps).
         start: the nominal pose (3, 4).
         reach: of the points [mm].
-        turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where they are not.
+        turns, shifts: found (3, 3, n), (3, n) [mm]; NaN where they are not.
         met: whether they are (n,).
     """
     fits, rooms, pose = (points, targets, directions, weights), new_rooms(basis.shape[1]), np.empty((3, 4))
@@ -252,7 +252,7 @@ class BestFitting:
     """A best fit, as its points are nominally; solved in the world, with the middle of the part's points at 0.
 
     Args:
-        move: which.
+        move: the move.
         weights: of the squares (fits,).
         reach: of the points about their middle [mm].
         basis: steps that residuals see, turn times reach and shift (6, steps).
@@ -285,7 +285,7 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
     """A best fit.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:

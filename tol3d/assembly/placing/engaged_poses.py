@@ -29,7 +29,7 @@ STILL: Final = 1e-9
 
 @nested
 def bolt_slack(own: Any, t: float, rooms: Any) -> Any:
-    """The largest slack of a bolt after a way t, and its change; not a number if it is not found."""
+    """The largest slack of a bolt after a way t, and its change; NaN if it is not found."""
     offsets, clearances, rows, gone, at, q = own
     _, used, y, z, found, _, inner = rooms
     fill(used, True)

@@ -38,7 +38,7 @@ class Engaging:
     """A move with play, as its features lie nominally.
 
     Args:
-        move: which.
+        move: the move.
         mating: of its relations.
         middle: of all places, nominally in the world (3,) [mm].
         reach: of them about it [mm].
@@ -182,7 +182,7 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     """A move with play.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:

@@ -94,7 +94,7 @@ class GaugedFrame:
     """The gauges of a datum frame, as they lie nominally.
 
     Args:
-        gauges: which.
+        gauges: the gauges.
         kept: of the datums before them, in order.
         count: how many ties these make.
         nominal: the datum features at their boundary, in order.

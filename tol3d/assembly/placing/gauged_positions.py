@@ -54,7 +54,7 @@ class Inspected:
         return found
 
     def least(self, offsets: Array, radii: Array, its: Array, room: Array) -> tuple[Array, Array]:
-        """The least w (n,) [mm], not a number where the room is empty, and the steps to it (freedoms, n).
+        """The least w (n,) [mm], NaN where the room is empty, and the steps to it (freedoms, n).
 
         Args:
             offsets: of the ends (ends, 2, n) [mm].

@@ -104,7 +104,7 @@ def contacts_met(
         inverse: of the contacts' rows as they are nominally: turn by reach, then shift (6, 6).
         start: the nominal pose (3, 4).
         reach: of the points about the middle [mm].
-        turns, shifts: found (3, 3, n), (3, n) [mm]; not a number where they are not met.
+        turns, shifts: found (3, 3, n), (3, n) [mm]; NaN where they are not met.
         met: whether they are (n,).
     """
     contacts = (points, normals, heights)
@@ -131,7 +131,7 @@ class Locating:
     part that is placed, where points are on the fixture.
 
     Args:
-        move: which.
+        move: the move.
         middle: of the points, in the frame of what they ride on (3, 1) [mm].
         origin: where that lies in the frame of what the planes stay with (3, 1) [mm].
         reach: of the points about it [mm].
@@ -168,7 +168,7 @@ def locating(move: Locate, nominal: World) -> Locating:
     """A move on six locators.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:

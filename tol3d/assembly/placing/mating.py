@@ -33,7 +33,7 @@ class Mating:
     """A mate with the steps of its alignment.
 
     Args:
-        move: which.
+        move: the move.
         alignment: of its relations, in order.
         signs: of each, 1 where both directions nominally point the same way, -1 where they are opposed.
     """
@@ -63,7 +63,7 @@ def mating(move: Mate, nominal: World) -> Mating:
     """A mate.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:

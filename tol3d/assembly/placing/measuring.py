@@ -94,7 +94,7 @@ def reading(measured: Measured, worlds: Sequence[World]) -> Array:
     """Values of a measure (n,) or (1,) [mm or rad].
 
     Args:
-        measured: what.
+        measured: the measure.
         worlds: before the first move, and after each.
     """
     world = worlds[-1] if measured.after < 0 else worlds[measured.after + 1]
@@ -108,7 +108,7 @@ def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_
     That is where datums take no gauge, and where the slack is asked of a move that finds no pose.
 
     Args:
-        measured: what.
+        measured: the measure.
         codes: what became of moves, by their places.
     """
     lacks = np.array([measured.room is not None or measured.over_gauges])

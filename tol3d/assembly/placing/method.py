@@ -84,7 +84,7 @@ def placed(assembly: Assembly, deviations: Array) -> dict[str, Array]:
         deviations: (trials, width) [mm].
 
     Returns:
-        By part: poses in the world (trials, 4, 4), not a number where a move that placed it failed.
+        By part: poses in the world (trials, 4, 4), NaN where a move that placed it failed.
 
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.
@@ -112,7 +112,7 @@ def features_placed(assembly: Assembly, deviations: Array, after: int = -1) -> d
         after: index of the move after which they are asked; -1 for the end.
 
     Returns:
-        By feature: frames in the world (trials, 4, 4), not a number where a move that placed its part failed.
+        By feature: frames in the world (trials, 4, 4), NaN where a move that placed its part failed.
 
     Raises:
         InputError: a move leaves a freedom or takes one twice; a part is not placed.

@@ -34,7 +34,7 @@ class Resting:
     """A rest, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
 
     Args:
-        move: which.
+        move: the move.
         middle: of the part's features that touch, in its frame (3, 1) [mm].
         origin: where that lies nominally in the world (3, 1) [mm].
         reach: of the contacts about it [mm].
@@ -143,7 +143,7 @@ def resting(move: Rest, nominal: World) -> Resting:
     """A rest.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:
@@ -266,7 +266,7 @@ def _contacts(move: Rest, world: World, middle: Array, origin: Array) -> tuple[A
     """Points, normals (contacts, 3, n) and heights (contacts, n); a gap is as `rests.gap_of` has it.
 
     Args:
-        move: which.
+        move: the move.
         world: before it.
         middle: about which they are in the part's frame (3, 1) [mm].
         origin: about which they are in the world (3, 1) [mm].

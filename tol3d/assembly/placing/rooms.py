@@ -42,7 +42,7 @@ def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
         seen: rows in the freedoms (cones, 2, size).
         tight: which cones are.
         basis: of the freedoms (all, size); changed.
-        size: how many.
+        size: their number.
         held: to work in (all, all).
     """
     count = 0

@@ -57,7 +57,7 @@ STEPS: Final = 300
 SEARCH: Final = 0.05
 """Fraction of the reach: the largest box."""
 TRIES: Final = 2
-"""With ever smaller boxes, for in a large one a part may pass over where it is held."""
+"""Boxes are made ever smaller: in a large one a part may pass over the pose that holds it."""
 NEAR: Final = 1e-5
 """Fraction of the reach: a side of this box that still carries shows that a balance is near."""
 FAR: Final = 0.5

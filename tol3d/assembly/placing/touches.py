@@ -273,7 +273,7 @@ def touching_poses(
         side: of the folds, on which the nominal pose lies: 1 or -1.
         force: direction in which the part is pressed (3, n) in the world; (3, 0) where that is not asked.
         inner: which contacts have one inside the other (contacts,).
-        turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; not a number where they are not.
+        turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; NaN where they are not.
         codes: what became of the trials (n,).
     """
     asked = (kinds, signs, length, moving, targets, sums, (nominal_moving, nominal_targets, nominal_sums))

@@ -43,7 +43,7 @@ class Touching:
     """A touch, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
 
     Args:
-        move: which.
+        move: the move.
         kinds: of the contacts (contacts,), see contact_equations.
         signs: of the distances of axes that cross (contacts,).
         inner: which contacts have one inside the other (contacts,).
@@ -94,7 +94,7 @@ def touching(move: Touch, nominal: World) -> Touching:
     """A touch.
 
     Args:
-        move: which.
+        move: the move.
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:

@@ -22,7 +22,7 @@ class SolidReader(Protocol):
         ...
 
     def read(self, name: str, start: Array, end: Array) -> tuple[Array, Codes]:
-        """Distances (n,) [mm], not a number where the code is not OK, and codes (n,).
+        """Distances (n,) [mm], NaN where the code is not OK, and codes (n,).
 
         Args:
             name: of the measure.

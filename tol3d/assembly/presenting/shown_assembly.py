@@ -42,7 +42,7 @@ class Placed:
     """An assembly in a trial.
 
     Args:
-        assembly: which.
+        assembly: the assembly.
         frames: of its features in the world (4, 4).
         poses: of its parts in the world (4, 4).
     """

@@ -22,7 +22,7 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     """The world after a move with play.
 
     Args:
-        move: which.
+        move: the move.
         world: before it.
         whither: a direction of its freedoms in which it goes as far as it can; by its float if not given.
 

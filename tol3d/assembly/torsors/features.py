@@ -24,7 +24,7 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
     """The torsor (6, columns) of a datum frame, in the part's frame.
 
     Args:
-        frame: which.
+        frame: the datum frame.
         datums: the features of each of its datums.
         columns: of the assembly; contact adds its own.
 

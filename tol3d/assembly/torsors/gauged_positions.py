@@ -32,7 +32,7 @@ class LeastOnGauges:
     Args:
         forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places).
         rows: change of all offsets by the freedoms (ends + places, 2, freedoms).
-        ends: how many.
+        ends: their number.
     """
 
     forms: Array

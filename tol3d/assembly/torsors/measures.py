@@ -33,7 +33,7 @@ def reading(measured: Measured, worlds: list[World]) -> Array:
     """A measure as a row over the columns (columns,) [mm or rad].
 
     Args:
-        measured: what.
+        measured: the measure.
         worlds: before the first move, and as each leaves it.
     """
     world = worlds[-1] if measured.after < 0 else worlds[measured.after + 1]

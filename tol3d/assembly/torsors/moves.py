@@ -211,7 +211,7 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
     """The world after a move.
 
     Args:
-        move: which.
+        move: the move.
         world: before it.
         leaning: of a rest, along its unknowns, how the part lies where it may rock; in the middle if not given. Of
             play, along its freedoms, whither the part is pushed; by its float if not given.

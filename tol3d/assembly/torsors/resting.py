@@ -23,7 +23,7 @@ class Corner:
     """Contacts that balance the force by themselves: as many as unknowns.
 
     Args:
-        contacts: which.
+        contacts: the contacts.
         solution: unknowns from their gaps, (unknowns, unknowns).
         loads: on each contact by the force, 0 or more.
         slight: on each by what decides between corners with the same loads.
@@ -113,7 +113,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     """The torsor (6, columns) of a part at rest; in the middle of what it may rock.
 
     Args:
-        move: which.
+        move: the move.
         world: before it.
         leaning: along its unknowns (unknowns,), whither it goes where it may rock; to the middle if not given.
 

@@ -13,7 +13,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 
 Ratio = float | Array
-"""Width of the orientation zone over that of the zone, in (0, 1]: one number, or one a trial."""
+"""Width of the orientation zone over that of the zone, in (0, 1]: one number, or one per trial."""
 
 
 class UnitLaw(ABC):

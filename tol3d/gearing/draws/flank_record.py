@@ -29,7 +29,7 @@ Measured = Mapping[str, Sequence[float | None]]
 
 @dataclass(frozen=True)
 class FlankRecord:
-    """A table of deviations, one a row.
+    """A table of deviations, one per row.
 
     Args:
         table: with the columns `tooth` and, where it has both sides, `flank`.

@@ -6,7 +6,7 @@ distance along the line on which FCL found them. The flanks may overlap by up to
 stays away from zero. Between flanks that line is the normal of both, and what is put back is the slack. An edge that
 touches (a tip, an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it
 by slack sin delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left
-of it is 0.0073 um a millimetre of module at delta = 0.46 rad.
+of it is 0.0073 um per millimetre of module at delta = 0.46 rad.
 
 All lengths here go with the module, so that gears that are alike in all but their size read alike.
 """

@@ -98,7 +98,7 @@ class Engine(Protocol):
         """Gaps of one flank side.
 
         Args:
-            build: virtual builds, one a row.
+            build: virtual builds, one per row.
             mesh: which gears.
             flank: the driver's flank; the driven's mating one follows from the pair.
             angles: turn of driver and driven [rad], each (trials,).
@@ -145,7 +145,7 @@ class ReadingEngine(Engine, Protocol):
         """Hold the driver, turn the driven gear onto the working flank, read the others.
 
         Args:
-            build: virtual builds, one a row.
+            build: virtual builds, one per row.
             mesh, reading: which gears, and where on them.
             driver_angle: (rows,) [rad].
             turning: names of the gears whose free turn is wanted.

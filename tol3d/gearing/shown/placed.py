@@ -76,7 +76,7 @@ class SeatedMesh:
     """A mesh of the build: its gears, where they touch, and how far their other flanks are apart.
 
     Args:
-        mesh: which.
+        mesh: the mesh.
         driver, driven: the placed gears, in the world of the mesh.
         driver_angle, driven_angle: their turns about their own axes [rad].
         contact, normal: point on the driver's working flank (3,) [mm] and the unit vector to the driven.

@@ -79,7 +79,7 @@ class _ReadTerm:
     """A term of the stack-up of one mesh, as a measure reads it.
 
     Args:
-        mesh: which.
+        mesh: the mesh.
         term: of the mesh's normal backlash.
         factor: change of the measure by that [1 or rad/mm, ...].
         phase: azimuth of largest opening where the deviation is counted [rad], the first shaft at 0 or the mesh

@@ -45,7 +45,7 @@ class ToothFlanks:
     """Deviations of the flanks of one gear, of which both sides of each tooth have SHAPES numbers.
 
     Args:
-        gear: whose.
+        gear: the gear.
         ahead: by how many teeth its tooth 0 stands ahead of the one that the mesh counts as such.
         acting: effects, each with the columns of its contributor in the deviations.
     """
