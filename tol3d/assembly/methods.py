@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing import method as placing
@@ -50,8 +50,14 @@ class PlacingMethod:
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
         """See Method."""
+        return self.answers_in_pose(trials, measures, {})
+
+    def answers_in_pose(
+        self, trials: Trials, measures: Sequence[Measure], kept: dict[int, dict[str, Any]]
+    ) -> Answers:
+        """Answers in one of many poses; `kept` goes from pose to pose, see World."""
         names = [measure.name for measure in measures]
-        found, decided = placing.planned_answers(self.plan, trials.deviations, names)
+        found, decided = placing.planned_answers(self.plan, trials.deviations, names, kept)
         return Answers(
             {name: own[:, None] for name, (own, _) in found.items()},
             details=decided,

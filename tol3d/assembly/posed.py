@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene import understood
 from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
+from tol3d.assembly.methods import PlacingMethod
 from tol3d.assembly.model import Assembly, StatedMove
 from tol3d.assembly.model.statuses import OK, WITH_LOOPS
 from tol3d.assembly.system import AssemblySystem, assembly_system
@@ -217,8 +218,13 @@ class PosedMethod:
             for k, pose in enumerate(self.at[measure.name]):
                 wanted.setdefault(pose, []).append((measure, k))
         several = {own.name for own in measures if len(self.at[own.name]) > 1}
+        kept = dict[int, dict[str, Any]]()
         for pose, its in wanted.items():
-            found = self.methods[pose].answers(trials, [measure for measure, _ in its])
+            method, there = self.methods[pose], [measure for measure, _ in its]
+            if isinstance(method, PlacingMethod):
+                found = method.answers_in_pose(trials, there, kept)
+            else:
+                found = method.answers(trials, there)
             for measure, k in its:
                 values[measure.name][:, k] = found.values[measure.name][:, 0]
                 if (codes := found.status.get(measure.name)) is not None:

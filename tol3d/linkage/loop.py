@@ -138,6 +138,11 @@ class ClosedLoop(StatedMove):
         """See StatedMove."""
         return ", ".join(own.joint.name for own in self.structure.steps)
 
+    @cached_property
+    def plays_told(self) -> tuple[object, ...]:
+        """Plays by what they make of frames, to be compared."""
+        return tuple((name, *play.told) for name, play in self.plays.items())
+
     def placing(self, nominal: PlacedWorld) -> "Closing":
         """See StatedMove."""
         return Closing(self)
@@ -171,11 +176,7 @@ class Closing:
             plays[name], fit = play.offset(world.columns)
             fits = fits & fit
 
-        def frame(feature: str) -> Pose:
-            part = feature.partition(".")[0]
-            return (world.on_body(feature, part) if part in own.body_of else world.placed(feature)).pose
-
-        base, child = (stacked(poses) for poses in joint_frames(own, frame, plays))
+        base, child = self._frames(world, plays)
         given = self._given(world.columns)
         trials = max(len(base), len(child), len(given))
         free = own.free(inputs=False)
@@ -210,6 +211,27 @@ class Closing:
             turn = np.ascontiguousarray(np.moveaxis(poses[:, b, :, :3], 0, -1))
             world = world.with_part_at(part, Pose(turn, np.ascontiguousarray(poses[:, b, :, 3].T)))
         return world, codes if (codes != OK).any() else codes[:1]
+
+    def _frames(self, world: PlacedWorld, plays: Mapping[str, Pose]) -> tuple[Array, Array]:
+        """Frames of joints as the kernel reads them; the last pose's where bodies before the loop lie as there."""
+        own = self.move.structure
+
+        def frame(feature: str) -> Pose:
+            part = feature.partition(".")[0]
+            return (world.on_body(feature, part) if part in own.body_of else world.placed(feature)).pose
+
+        parts = {part for name in own.joined for part in (name.partition(".")[0], world.part_of(name))}
+        placed = [world.poses[part] for part in sorted(parts - set(own.bodies)) if part in world.poses]
+        told = [own, *(world.own[part] for part in sorted(parts)), *self.move.plays_told]
+        told += [own.tobytes() for pose in placed for own in (pose.turn, pose.shift)]
+        key = f"frames of {own.name}"
+        if key in world.kept and world.kept[key][0] == told:
+            kept: tuple[Array, Array] = world.kept[key][1:]
+            return kept
+        base, child = (stacked(poses) for poses in joint_frames(own, frame, plays))
+        if all(pose.turn.shape[-1] == 1 and pose.shift.shape[-1] == 1 for pose in placed):
+            world.kept[key] = told, base, child
+        return base, child
 
     def _given(self, columns: Array) -> Array:
         """Coordinates of inputs with their errors (n or 1, coordinates)."""

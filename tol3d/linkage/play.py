@@ -63,6 +63,13 @@ class JointPlay:
     toward: Array | None
     length: float
 
+    @property
+    def told(self) -> tuple[object, ...]:
+        """All of it, to be compared."""
+        toward = None if self.toward is None else self.toward.tobytes()
+        drawn = None if self.drawn is None else (self.drawn.start, self.drawn.stop)
+        return self.clearance, self.clearance_by, drawn, toward, self.length
+
     def radius(self, columns: Array) -> Array:
         """Half of the clearance in trials (n,) or (1,) [mm]."""
         if self.clearance_by < 0:

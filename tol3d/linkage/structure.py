@@ -165,6 +165,12 @@ class Structure:
         return {own.joint.name: own for own in self.steps}
 
     @cached_property
+    def joined(self) -> frozenset[str]:
+        """Features of bodies and of placed parts that its joints join."""
+        found = {name for own in self.steps for name in (own.joint.on, own.joint.of, own.joint.carrier)}
+        return frozenset(name for name in found if "." in name)
+
+    @cached_property
     def slots(self) -> int:
         """Number of frames; the last one is the output's."""
         return sum(2 if own.joint.kind == ROLLING else 1 for own in self.steps) + 1

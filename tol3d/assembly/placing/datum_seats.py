@@ -195,12 +195,19 @@ class PartFeatures:
         columns: Array,
         still: dict[str, ActualFeature] | None = None,
     ) -> None:
+        self._part = part
         self._features = {feature.name: feature for feature in part.features}
         self._datum_seats = datum_seats
         self._columns = columns
         self._still = {} if still is None else still
         self._actual: dict[str, ActualFeature] = {}
         self._frames: dict[str, tuple[Pose, Codes]] = {}
+
+    def are_of(self, part: Part) -> bool:
+        """True if a part, perhaps at another pose, has these very features and datum frames."""
+        return len(part.features) == len(self._features) and all(
+            own is self._features.get(own.name) for own in part.features
+        ) and all(own is other for own, other in zip(part.datum_frames, self._part.datum_frames, strict=True))
 
     def feature(self, name: str) -> ActualFeature:
         """A feature."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,16 +59,17 @@ def answers(
 
 
 def planned_answers(
-    plan: PlacingPlan, deviations: Array, names: Sequence[str]
+    plan: PlacingPlan, deviations: Array, names: Sequence[str], kept: dict[int, dict[str, Any]] | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
-    """The same of an assembly as it is planned."""
+    """The same of an assembly as it is planned; `kept` of the same trials in other poses by their blocks, see World."""
     assembly = plan.assembly
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
     words, on_the_way = dict[str, list[NDArray[np.str_]]](), {name: plan.of_measures[name] for name in names}
     for start in range(0, len(deviations), BLOCK):
         rows = slice(start, start + BLOCK)
-        block = _placed(plan, deviations[rows])
+        own = None if kept is None else kept.setdefault(start, {})
+        block = _placed(plan, deviations[rows], kept=own)
         for name, (numbers, codes) in found.items():
             numbers[rows], codes[rows] = _over_rests(plan, block, name, deviations[rows])
         codes_here = {name: codes[rows] for name, (_, codes) in found.items()}
@@ -162,6 +164,7 @@ def _placed(
     deviations: Array,
     instead: Mapping[int, Resting | Engaging] | None = None,
     otherwise: _Block | None = None,
+    kept: dict[str, Any] | None = None,
 ) -> _Block:
     """Trials as moves place them.
 
@@ -170,6 +173,7 @@ def _placed(
         deviations: (n, width) [mm].
         instead: other moves for some, by their places.
         otherwise: the same trials without these; before the first of them nothing is placed anew.
+        kept: see World.
     """
     _refuse_lost("a deviation", ~np.isfinite(deviations.sum(axis=1)))
     if otherwise is not None and instead:
@@ -178,7 +182,7 @@ def _placed(
         codes = {index: own for index, own in otherwise.codes.items() if index < first}
     else:
         columns, codes = np.ascontiguousarray(deviations.T), dict[int, Codes]()
-        worlds = [world_before(plan.assembly, plan.datum_seats, columns, plan.still)]
+        worlds = [world_before(plan.assembly, plan.datum_seats, columns, plan.still, kept)]
     for index, move in enumerate(plan.moves[len(worlds) - 1 :], len(worlds) - 1):
         world, codes[index] = after(instead.get(index, move) if instead else move, worlds[-1])
         worlds.append(world)

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -115,13 +115,18 @@ def world_before(
     seats: Mapping[str, Mapping[str, DatumSeats]],
     columns: Array,
     still: Mapping[str, dict[str, ActualFeature]] | None = None,
+    kept: dict[str, Any] | None = None,
 ) -> World:
-    """Before the first move."""
-    own = {
-        part.name: PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
-        for part in assembly.parts
-    }
-    return World(assembly, columns, own, {}, {part.name: frozenset([part.name]) for part in assembly.parts})
+    """Before the first move; with what is `kept` of these trials in other poses, see World."""
+    kept = {} if kept is None else kept
+    own = {}
+    for part in assembly.parts:
+        known = kept.get(key := f"features of {part.name}")
+        if known is None or not known.are_of(part):
+            known = PartFeatures(part, seats[part.name], columns, still[part.name] if still is not None else None)
+        own[part.name] = kept[key] = known
+    bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
+    return World(assembly, columns, own, {}, bodies, kept=kept)
 
 
 def after(move: Placing, world: World) -> tuple[World, Codes]:

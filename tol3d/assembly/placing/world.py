@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,7 @@ class World:
         loads: by move, the part of its force that each contact carries (contacts, n).
         slacks: of moves with play, by their names (n,) [mm].
         tightest: of moves with play, by their names, the pair that decides it (n,).
+        kept: found of these trials alike in every pose in which the assembly is read, by keys of those who keep it.
     """
 
     assembly: Assembly
@@ -54,6 +55,7 @@ class World:
     loads: Mapping[str, Array] = field(default_factory=dict)
     slacks: Mapping[str, Array] = field(default_factory=dict)
     tightest: Mapping[str, NDArray[np.str_]] = field(default_factory=dict)
+    kept: dict[str, Any] = field(default_factory=dict)
 
     @property
     def trials(self) -> int:

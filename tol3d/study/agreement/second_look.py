@@ -79,10 +79,12 @@ def second_look(simulation: Simulation, method: Method, count: int, others: Sequ
     measures = scalars_of(system)
     trials = joined([drawn(simulation, 0, count), drawn_ones(simulation, others)])
     near, far = SHORT_STEPS if method.chord_error == 0.0 else LONG_STEPS
-    whole = _differences(system, method, trials, measures)
-    nominal, at_near, at_far = (
-        whole if step == 1.0 else _differences(system, method, trials.scaled(step), measures)
-        for step in (0.0, near, far)
+    steps = dict.fromkeys((1.0, 0.0, near, far))
+    rays = joined([trials.scaled(step) for step in steps])  # one call: over a path of many poses calls are dear
+    found = _differences(system, method, rays, measures)
+    pieces = {name: dict(zip(steps, np.split(own, len(steps)), strict=True)) for name, own in found.items()}
+    whole, nominal, at_near, at_far = (
+        {name: own[step] for name, own in pieces.items()} for step in (1.0, 0.0, near, far)
     )
     ratio = far / near  # D(far) - ratio D(near) has no L left
     second_order = {
