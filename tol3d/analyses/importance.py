@@ -27,12 +27,12 @@ FLAT: Final = 0.25
 """Share of the draws that positions get alike; the others by how likely they fail."""
 REFINEMENTS: Final = 3
 POOR: Final = 0.08
-"""Effective draws, as a share of all, under which draws follow the limit's curvatures."""
+"""Effective draws, as a share of all, below which draws follow the limit's curvatures."""
 APART: Final = 0.02
 """Share of the failures that plain draws may find apart from the design points."""
 MOST_APART: Final = 4
 FEW: Final = 30.0
-"""Effective draws, under which it is told."""
+"""Effective draws, below which it is told."""
 FEW_PLACES: Final = 6.0
 HEAVY: Final = 0.2
 """Share of one draw in all of them, from which on it is told."""

@@ -150,7 +150,7 @@ class Pairs:
 
 @dataclass(frozen=True, eq=False)
 class Indices:
-    """Sobol' indices of inputs (inputs, measures), nan where nothing varies, with their standard errors.
+    """Sobol' indices of inputs (inputs, measures), NaN where nothing varies, with their standard errors.
 
     Args:
         first, first_errors: shares of an input alone.
@@ -220,7 +220,7 @@ def resampled(count: int, seed: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Values (n, measures), nan where a build does not seat, and 1.0 where it fails."""
+    """Values (n, measures), NaN where a build does not seat, and 1.0 where it fails."""
 
     values: Array
     fails: Array
@@ -285,7 +285,7 @@ class _Gathered:
 
 
 def errors_of(resampled: Array) -> Array:
-    """Standard errors (k, measures) of what was resampled (k, RESAMPLES + 1, measures), nan where it is not known."""
+    """Standard errors (k, measures) of what was resampled (k, RESAMPLES + 1, measures), NaN where it is not known."""
     many = resampled[:, 1:]
     known = np.isfinite(many)
     count = np.maximum(known.sum(axis=1), 1)

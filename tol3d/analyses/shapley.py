@@ -30,7 +30,7 @@ class ShapleyEffects:
 
     Args:
         names: of the contributors.
-        values, value_errors: nan where nothing varies.
+        values, value_errors: NaN where nothing varies.
         failures, failure_errors: likewise.
     """
 

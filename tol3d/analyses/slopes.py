@@ -157,7 +157,7 @@ def _variances(slopes: Array, off: Array) -> Array:
 
 
 def _gradients(response: Response, rows: Array, positions: Mapping[str, Array]) -> Array:
-    """Gradients (n, measures, components) in batches that fit the memory; nan where a build does not seat."""
+    """Gradients (n, measures, components) in batches that fit the memory; NaN where a build does not seat."""
     many = max(1, AT_ONCE // max(2 * response.components**2, 1))
     pieces = [
         response.gradient(rows[k : k + many], {name: own[k : k + many] for name, own in positions.items()})
@@ -208,7 +208,7 @@ def _mean(values: Array) -> Array:
 
 
 def _at(response: Response, row: Array, positions: Mapping[str, Array], count: int) -> Array:
-    """Values of one build (measures,), averaged over positions; nan where it seats at none."""
+    """Values of one build (measures,), averaged over positions; NaN where it seats at none."""
     found = response.values(np.repeat(row[None], count, axis=0), positions).values
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)

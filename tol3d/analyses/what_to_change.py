@@ -271,7 +271,7 @@ class Asked:
         return self.response.measures[0]
 
     def judged(self, values: Array) -> tuple[Moments, LimitCounts, Performance]:
-        """Builds (n,) as a study judges trials; nan where one fails."""
+        """Builds (n,) as a study judges trials; NaN where one fails."""
         good = values[~np.isnan(values)]
         moments, counts = Moments.of(good), LimitCounts.of(values, *limits_of(self.measure))
         side = Side(moments, [], lambda p: float(np.quantile(good, p)) if len(good) else None)
@@ -295,7 +295,7 @@ class Asked:
         """Shift of the mean needed for each target that is not reached.
 
         Args:
-            now: builds (n,); nan where one fails.
+            now: builds (n,); NaN where one fails.
             mean, error: of the measure, and its standard error.
         """
         good = now[~np.isnan(now)]
@@ -341,7 +341,7 @@ class _Simulated(Asked):
     positions: Mapping[str, Array]
 
     def built(self, deviations: Array) -> Array:
-        """Values (n,), nan where a build fails."""
+        """Values (n,), NaN where a build fails."""
         found = self.response.values(deviations, self.positions)
         return np.asarray(np.where(found.seated[:, 0], found.values[:, 0], np.nan))
 

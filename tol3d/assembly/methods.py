@@ -1,4 +1,4 @@
-"""Both methods of assemblies, as studies ask them."""
+"""Both methods of assemblies, as used by studies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Means and covariances of what is drawn of an assembly, and deviations that are spread like them."""
+"""Means and covariances of an assembly's draws, and deviations with the same spread."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -11,7 +11,7 @@ from tol3d.system.contributor import Contributor
 from tol3d.system.draw import JointDraw
 
 MOTIONS: Final = 384
-"""Deviations at which it is asked where parts may be nearest; half of them twice as wide as trials are."""
+"""Deviations at which the nearest places of parts are sought; half of them twice as wide as trials."""
 
 
 def moments_of(contributor: Contributor) -> tuple[Array, Array]:

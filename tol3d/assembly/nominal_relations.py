@@ -1,4 +1,4 @@
-"""Relations that do not meet nominally: what earlier ones leave free does not bring both features together."""
+"""Relations that are not met nominally: the freedoms left by earlier ones do not bring both features together."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from tol3d.assembly.placing.method import features_placed
 from tol3d.numerics.arrays import Array
 
 MEETS: Final = 2e-3
-"""mm, by which features meet nominally: numbers that are rounded to a thousandth miss by as much."""
+"""mm; largest gap of features that meet nominally: numbers rounded to a thousandth miss by as much."""
 
 
 @dataclass(frozen=True)
 class Miss:
-    """A relation that does not meet.
+    """A relation that is not met.
 
     Args:
         move: its move.
@@ -47,7 +47,7 @@ class Miss:
 
 
 def misses(assembly: Assembly) -> Iterator[Miss]:
-    """Relations of all moves that do not meet within MEETS, where each move lays its part without deviations."""
+    """Relations of all moves that are not met within MEETS, with parts placed without deviations."""
     rest = np.zeros((1, assembly.width))
     for index, move in enumerate(assembly.moves):
         relations: tuple[Relation, ...] = getattr(move, "relations", ())
@@ -62,7 +62,7 @@ def misses(assembly: Assembly) -> Iterator[Miss]:
 
 
 def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: Array) -> tuple[float, Array]:
-    """The largest distance of a feature's ends from where a relation asks them, and that end (3,) [mm]."""
+    """The largest distance of a feature's ends from their places by a relation, and that end (3,) [mm]."""
     ends = _ends(moving) @ pose[:3, :3].T + pose[:3, 3]
     normal, off = its[:3, 2], ends - its[:3, 3]
     if isinstance(target.shape, Point):

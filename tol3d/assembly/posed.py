@@ -1,4 +1,4 @@
-"""An assembly that is read in several poses, or over paths: a system for each, of the same deviations."""
+"""An assembly that is read in several poses, or over paths: one system each, with the same deviations."""
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
@@ -43,7 +43,7 @@ class PosedSystem(AssemblySystem):
     Args:
         poses: by name, the assembly there with the measures that are read in it; those of paths among them.
         at: of each measure, the poses in which it is read, in order.
-        scene: that means it.
+        scene: its scene.
     """
 
     poses: Mapping[str, AssemblySystem] = field(default_factory=dict)
@@ -209,7 +209,7 @@ class PosedMethod:
         return max(each for each, _ in own), max(each for _, each in own)
 
     def answers(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """See Method: a trial whose value is lacking in one pose of a path has none."""
+        """See Method: a trial without a value in one pose of a path has none."""
         values = {own.name: np.empty((len(trials), len(self.at[own.name]))) for own in measures}
         status: dict[str, Codes] = {}
         details: dict[str, NDArray[np.generic]] = {}

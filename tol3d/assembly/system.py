@@ -1,4 +1,4 @@
-"""All that a study asks of an assembly: two methods, what acts on a measure, closed forms."""
+"""System of an assembly for studies: two methods, contributors of a measure, closed forms."""
 
 import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
@@ -46,7 +46,7 @@ T = TypeVar("T")
 Words = NDArray[np.str_]
 
 SAME: Final = 1e-6
-"""mm or rad: both methods read the same nominally to within this, or moves lay parts where they are not drawn."""
+"""mm or rad; largest nominal difference of the methods; it is larger if moves do not place parts as drawn."""
 
 WITNESS: Final = "fcl"
 MESHED_WITNESS: Final = MethodKind("solids and their meshes", threads=False, witness=True, contacts_per_minute=60_000)
@@ -57,7 +57,7 @@ FRAME: Final = "datum frame "
 """Beginning of the methods' messages on a datum frame; others begin with a place in the scene."""
 
 FLAT: Final = 1e-6
-"""Change of a measure per deviation that is none: both sides of the mean raise it alike."""
+"""Slope of a measure that counts as none: both sides of the mean raise it alike."""
 
 
 @dataclass(frozen=True)
@@ -66,9 +66,9 @@ class AssemblySystem(PlainSystem):
 
     Args:
         assembly: nominally, and by its drawings.
-        named: by measure, the features that it names, or two measures.
+        named: by measure, its features, or two measures.
         idle: sentences on tolerances that act on nothing.
-        components: by measure that is an error of place or turn, which of it is read.
+        components: by measure of an error of place or turn, the component read.
     """
 
     assembly: Assembly
@@ -92,7 +92,7 @@ class AssemblySystem(PlainSystem):
         return None
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """Its kind, what it is of, and by which laws deviations lie in the zones that act on it."""
+        """Its kind, its features, and the laws of deviations in the zones that act on it."""
         laws = laws_told(own for own in self.acting(measure) if isinstance(own.draw, ZoneDraw))
         of, component = self.named[measure.name], self.components.get(measure.name)
         return {**super().describe(measure), "of": list(of), **({"component": component} if component else {}), **laws}
@@ -119,7 +119,7 @@ class AssemblySystem(PlainSystem):
                 yield ("measures", measure.name), words
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """Those with a slope, or that a term which is not linear reads."""
+        """Contributors with a slope, or read by a nonlinear term."""
         if measure.name not in self._known_acting:
             slopes = self.slopes_of(measure.name)
             acts = slopes.coefficients != 0.0
@@ -310,7 +310,7 @@ def _kind_of(assembly: Assembly) -> type[AssemblySystem]:
 
 
 def _faced(placed: Meant) -> Assembly:
-    """The assembly, with where parts may be nearest whose clearance is asked."""
+    """The assembly, with the nearest places of parts with a measured clearance."""
     bare = replace(placed.assembly, measures={})
 
     def motions(part: str, after: int) -> Array:

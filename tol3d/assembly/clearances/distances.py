@@ -15,7 +15,7 @@ from tol3d.solids.distance import Integers, Nearest, NearestPoints, Surface, mes
 Codes = NDArray[np.int8]
 
 INSIDE = 0.5
-"""Turns that a closed mesh makes about a point in it: 1 inside, 0 outside."""
+"""Winding number of a closed mesh about a point above which the point is inside: 1 inside, 0 outside."""
 
 
 class SolidDistances:
@@ -169,7 +169,7 @@ def turns_about(corners: Array) -> float:
 
 
 def surface_of(mesh: SolidMesh, faces: NDArray[np.int64] | None = None) -> Surface:
-    """A mesh, or some of its triangles with no vertices but theirs; all where none are named, which FCL cannot hold."""
+    """A mesh, or some of its triangles with their vertices only; all if none are named, as FCL holds no empty mesh."""
     if faces is None or not len(faces):
         return mesh_surface(mesh.vertices, mesh.triangles)
     kept, numbers = np.unique(mesh.triangles[faces], return_inverse=True)

@@ -1,11 +1,10 @@
-"""Which triangles of a part can be nearest to another one, while both move little against each other.
+"""Triangles of a part that can be nearest to another one while the relative motion is small.
 
 At a pair of nearest points a, b the direction from a to b lies in the normal cone of a's surface at a: it is the normal
 of a triangle, between the normals of both triangles at an edge, or between those at a vertex. So a triangle is needed
-where something of the other part lies over it, an edge where something lies between the normals of its triangles, a
-vertex likewise; and an edge or a vertex is there as soon as one of its triangles is. Between flat faces that leaves the
-faces themselves, without the walls beside them, which would keep a hierarchy of bounding volumes from seeing that they
-are flat.
+if some of the other part lies over it, an edge if some lies between the normals of its triangles, a vertex likewise; an
+edge or a vertex is included with any of its triangles. Between flat faces that leaves the faces themselves, without the
+walls beside them, which would keep a hierarchy of bounding volumes from seeing that they are flat.
 """
 
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from tol3d.solids import BuiltShape, DisplayMesh, display_mesh
 Bools = NDArray[np.bool_]
 
 PAIRS_AT_ONCE = 2_000_000
-"""Boxes of triangles that are compared at once: some tens of megabytes."""
+"""Boxes of triangles compared at once: some tens of megabytes."""
 THIN = 1e-12
 """mm or mm^2; length of a vector without a direction."""
 OPPOSED = 1e-3
@@ -51,13 +50,13 @@ class Other:
 
 
 def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: float, slack: Array) -> Bools:
-    """Which triangles of a closed mesh are needed (n,).
+    """Flags of the needed triangles of a closed mesh (n,).
 
     Args:
         vertices, triangles: of the mesh; where an edge has not two triangles, both are needed.
         other: corners of the other part's triangles in the same frame (m, 3, 3) [mm].
-        height: how far the nearest points lie apart at most [mm].
-        slack: how far any point of the other part may move against this one at most, along x, y and z (3,) [mm].
+        height: largest distance of the nearest points [mm].
+        slack: largest motion of any point of the other part against this one, along x, y and z (3,) [mm].
     """
     corners = vertices[triangles]
     reach = height + slack
@@ -76,7 +75,7 @@ def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: 
 
 
 def nearby(own: Array, other: Array, reach: Array) -> Bools:
-    """Which triangles (n, 3, 3) have one of the other part's within a reach along x, y and z (3,) [mm], or may (n,)."""
+    """Flags of triangles (n, 3, 3) that may have another part's within a reach along x, y and z (3,) [mm] (n,)."""
     low, high = own.min(axis=1) - reach, own.max(axis=1) + reach
     near = _boxes_meet(low, high, other)
     near_other = Other(other[_boxes_meet(other.min(axis=1) - reach, other.max(axis=1) + reach, own)])
@@ -98,7 +97,7 @@ def _normals(corners: Array) -> Array:
 
 
 def _units(vectors: Array) -> Array:
-    """Vectors (n, 3) of length 1; what has none is 0, and excludes nothing."""
+    """Unit vectors (n, 3); a vector without a length stays 0 and excludes nothing."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.asarray(np.where(length > THIN, vectors / np.where(length > THIN, length, 1.0), 0.0))
 
@@ -226,11 +225,11 @@ def _add_vertices(
 
 
 COARSE: Final = 0.1
-"""mm; a mesh from which it is seen how many triangles a finer one has."""
+"""mm; deflection of a mesh from which the number of triangles of a finer one is estimated."""
 MOST_TRIANGLES: Final = 1_000_000
 """Triangles of one part at most: some 300 MB with its hierarchy of bounding volumes."""
 TRIES: Final = 8
-"""Deflections that are tried: OCC meets what it is given within a factor of two."""
+"""Deflections to try: OCC meets the given one within a factor of two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +264,7 @@ def solid_mesh(shape: BuiltShape, within: float) -> SolidMesh:
 
     Args:
         shape: what is built.
-        within: what its chord error is to be at most [mm].
+        within: largest chord error [mm].
 
     Raises:
         GeometryError: it would take too many triangles.

@@ -21,7 +21,7 @@ from tol3d.solids.distance import Nearest, NearestPoints, put
 NEARER: Final = 0.1
 """Fraction of the chord error by which a pair must be nearer than the known ones to be kept."""
 MOST_PAIRS: Final = 256
-"""That are kept; more are of parts round each other, whose polygons are as fine as that."""
+"""Largest number of pairs; more occur only for parts round each other, with polygons as fine as that."""
 SLANT: Final = 1e-6
 """Angle [rad] between the normal of a face and a direction that is the same."""
 HALVINGS: Final = 8
@@ -70,7 +70,7 @@ def nominal_distance(meshes: tuple[SolidMesh, SolidMesh], relative: Array) -> fl
 
 
 def facing(meshes: tuple[SolidMesh, SolidMesh], displaced: Displaced, distance: float, chord_error: float) -> Facing:
-    """The pairs of points of two parts, and how far they move against each other.
+    """Pairs of points of two parts, and their relative displacements.
 
     Args:
         meshes: of both.
@@ -108,13 +108,13 @@ class _Search:
         self._nearest, self._distances = NearestPoints(), PairDistances(pair)
 
     def along(self, motion: int) -> None:
-        """Ask at a motion, or at the part of it by which the parts do not overlap yet."""
+        """Query at a motion, or at the fraction of it before the parts overlap."""
         for halving in range(HALVINGS):
             if self.ask(self._displaced.posed(motion, 0.5**halving), motion):
                 return
 
     def ask(self, pose: Array, motion: int | None = None) -> bool:
-        """Keep the nearest points at a pose (4, 4), if no pair is as near; whether the parts are apart there."""
+        """Keep the nearest points at a pose (4, 4) if no pair is as near; True if the parts are apart there."""
         asked = self._distances.asked(self._pair.moved(pose[None])[0])
         found = asked.nearest(self._nearest, pose)
         if found.distance <= 0.0:
@@ -126,7 +126,7 @@ class _Search:
         return True
 
     def _kept(self, found: Nearest, pose: Array, asked: Asked) -> _Kept:
-        """A pair that was found at a pose; of a point over a face the point nominally below it."""
+        """The pair found at a pose; for a point over a face, with the point nominally below it."""
         relative, turn = self._displaced.relative, pose[:3, :3]
         start, there = found.points
         end = turn.T @ (there - pose[:3, 3])

@@ -1,4 +1,4 @@
-"""Two parts as they stand nominally, with what of them can be nearest: made once, in the parent."""
+"""Two parts at their nominal poses, with the triangles that can be nearest: made once, in the parent process."""
 
 from dataclasses import dataclass
 
@@ -45,7 +45,7 @@ class SolidPair:
         start, end: their meshes, each in the frame of its part.
         nominal: pose of the second one in the frame of the first (4, 4).
         distance: nominally, by the meshes [mm].
-        levels: the nearest first; parts that have moved farther than all are read of all their triangles.
+        levels: the nearest first; parts that have moved farther than all of them are read with all their triangles.
     """
 
     start: SolidMesh

@@ -1,4 +1,4 @@
-"""Clearances of an assembly made ready: where parts may be nearest, and what workers read distances with."""
+"""Preparation of an assembly's clearances: places where parts may be nearest, and data for workers."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -16,7 +16,7 @@ Torsors = Callable[[str, int], Array]
 """Small displacements (motions, 6) of a part after a move, seen at the world's origin [mm, rad]."""
 
 FCL = "tol3d.assembly.clearances"
-"""Whose `nearest` and `distances` load FCL: imported where there is a clearance to read."""
+"""Package whose `nearest` and `distances` load FCL: imported only if there is a clearance to read."""
 WITNESS = "tol3d.assembly.witness"
 """It loads FCL too."""
 
@@ -27,7 +27,7 @@ def clearances_of(assembly: Assembly) -> Mapping[str, Measured]:
 
 
 def with_facing(assembly: Assembly, torsors: Torsors) -> Assembly:
-    """The assembly with what is known nominally of its clearances; the same one where there are none.
+    """The assembly with the nominal data of its clearances; unchanged if there are none.
 
     Args:
         assembly: at nominal poses.

@@ -27,7 +27,7 @@ class Meant:
 
     Args:
         assembly: at nominal poses as stated in the scene.
-        contributors: in the scene's order, a contributor of a part that is like another after the other's.
+        contributors: in the scene's order, that of a part that copies another after the other's.
         measures: in the scene's order.
         named: what each measure names: features, or two measures.
     """
@@ -57,12 +57,11 @@ class Understood:
     measured: Mapping[str, Measured]
 
     def at(self, poses: Mapping[str, Array], pose: str = "") -> Meant:
-        """The assembly whose parts lie nominally at some poses in the world (4, 4).
+        """The assembly with given nominal poses of its parts in the world (4, 4).
 
         Args:
             poses: by part.
-            pose: in which moves that have poses lay their parts; those measures are meant that are read there, all
-                where no move has poses.
+            pose: of moves that have poses, with the measures read in it; all measures if no move has poses.
         """
         features, frames = dict(self.features), self.frames
         add_twins(self.scene, features, poses)
@@ -90,7 +89,7 @@ def understood(scene: Scene) -> Understood:
     """Model of a scene.
 
     Raises:
-        SceneError: tolerances, zones or directions that do not fit what they are of.
+        SceneError: tolerances, zones or directions that do not fit their features.
     """
     drawing = Drawing(scene)
     effects = effects_of(scene, drawing)

@@ -23,7 +23,7 @@ from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor
 
 ANY = 1e3
-"""mm; the room of a gauge grows with the size, beyond the drawing's limits too."""
+"""mm; a gauge's clearance grows with the size, beyond the drawing's limits too."""
 
 HALF_DIFFERENCE = 0.5 * np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
 """Matrix for (start x, start y, end x, end y)."""
@@ -45,7 +45,7 @@ class Boundary:
 
 
 def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
-    """Let the gauges of datum frames shift them: a contributor each, common to all that is toleranced to the frame."""
+    """Add the shift of datum frames by their gauges: one contributor each, common to all features of the frame."""
     for name, boundary in _boundaries(drawing, frames).items():
         if boundary.own.mmb == "random":
             frame = frames.made[name]

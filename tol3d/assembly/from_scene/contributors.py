@@ -1,4 +1,4 @@
-"""Contributors of a scene, and what each does to features and locators."""
+"""Contributors of a scene, and the effect of each on features and locators."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -32,12 +32,13 @@ Touch = tuple[str, str]
 
 @dataclass
 class Effects:
-    """Contributors in order, and what they do.
+    """Contributors in order, and their effects.
 
     Args:
-        scene: what says it.
+        scene: the scene.
         drawing: its tolerances by feature.
-        touching: the pairs at which each feature touches, by what touches it there; the same for all pairs of a couple.
+        touching: the pairs at which each feature touches, by what touches it there; the same for all pairs of two
+            features.
     """
 
     scene: Scene
@@ -110,7 +111,7 @@ class Effects:
         self.width, self.floats[name] = columns.stop, columns
 
     def add_bolts(self, name: str, spec: PlaySpec) -> None:
-        """The diameters of bolts that are of no part."""
+        """The diameters of bolts that belong to no part."""
         for k, pair in enumerate(spec.engaged):
             if isinstance(pair, PatternPairSpec) and pair.bolt is not None and pair.bolt.distribution is not None:
                 own, draw = f"bolt {k + 1} of {name}", Scalar(pair.bolt.distribution.resolve(self.scene.files))
@@ -219,10 +220,10 @@ def is_pattern(spec: PlaySpec, drawing: Drawing) -> bool:
 
 
 def effects_of(scene: Scene, drawing: Drawing) -> Effects:
-    """All contributors of a scene, and what they do.
+    """All contributors of a scene, and their effects.
 
     Raises:
-        SceneError: a zone does not fit its feature, or a file that a law reads makes no sense.
+        SceneError: a zone does not fit its feature, or the file of a law is invalid.
     """
     effects = Effects(scene, drawing, _touching(scene))
     for own in drawing.stated:

@@ -42,7 +42,7 @@ def features_of(drawing: Drawing, effects: Effects, frames: DatumFrames) -> dict
 
 @dataclass
 class TouchedPoints:
-    """Points of planes that points of other parts touch: they rise with the plane as it tilts.
+    """Points of planes touched by points of other parts: they rise with the plane as it tilts.
 
     Args:
         features: all, by their names; the points are added.
@@ -56,7 +56,7 @@ class TouchedPoints:
     """World to the frame of each plane (4, 4)."""
 
     def on(self, side: str, point: str) -> str:
-        """The name of what a point touches: the plane's point there, or the feature itself if it is no plane."""
+        """The name of the touched feature: the plane's point there, or the feature itself if it is no plane."""
         plane = self.features[side]
         if not isinstance(plane.shape, Plane | RoundPlane):
             return side

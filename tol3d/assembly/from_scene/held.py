@@ -1,4 +1,4 @@
-"""Tolerances that act by more than their own deviations: by gauges, inspections, what they leave of another zone."""
+"""Tolerances that act not only by their deviations: also by gauges, by inspections, by reducing another zone."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from tol3d.scene import Scene
 
 
 def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
-    """Say of contributors by what else their tolerances act: gauges, inspections, what is left of a zone."""
+    """Add to contributors the other effects of their tolerances: gauges, inspections, reduced zones."""
     held: dict[str, str] = {}
     inspected = {
         feature

@@ -1,4 +1,4 @@
-"""Measures of a scene: what each reads, and how it is shown."""
+"""Measures of a scene: their readings, and how they are shown."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -66,7 +66,7 @@ def _after(scene: Scene, spec: TimedSpec) -> int:
 
 
 def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Array]) -> None:
-    """Add to parts features that lie where others do, whose errors they see, where parts lie at some poses (4, 4)."""
+    """Add the nominal twins of features whose pose errors other parts see, for given poses of parts (4, 4)."""
     for spec in scene.measures.values():
         if isinstance(spec, PoseErrorSpec | DirectionErrorSpec) and (name := spec.twin) not in features:
             own, part = features[spec.of], spec.from_ or next(move.part for move in scene.of(FixSpec).values())

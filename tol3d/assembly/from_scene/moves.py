@@ -40,11 +40,11 @@ def moves_of(understood: "Understood", touched: TouchedPoints, pose: str) -> tup
 
     Args:
         understood: the scene's drawings.
-        touched: features, and where parts are nominally.
-        pose: in which moves that have poses lay their parts.
+        touched: features, and nominal poses of parts.
+        pose: of moves that have poses.
 
     Raises:
-        SceneError: directions that do not fit what they are of.
+        SceneError: directions that do not fit their features.
     """
     scene, effects = understood.scene, understood.effects
     found: list[Move] = []
@@ -91,7 +91,7 @@ def _relations(specs: Sequence[RelationSpec]) -> tuple[Relation, ...]:
 
 
 def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedPoints) -> None:
-    """Points in space that leave a turn free; with directions of its own a fit may leave what it does not name."""
+    """Refuse points in space that leave a turn free; a fit with directions may leave those that it does not name."""
     if any(own.along for own in spec.pairs):
         return
     points = np.array([touched.origin(own.from_) for own in spec.pairs])

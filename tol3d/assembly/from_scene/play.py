@@ -48,7 +48,7 @@ def engaged_by(
     Args:
         scene: the scene.
         name: of the move.
-        spec: what it says.
+        spec: its entry.
         relations: its relations.
         effects: of the scene's tolerances, the float's among them.
         features: all, by their names.

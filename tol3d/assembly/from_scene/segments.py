@@ -1,7 +1,7 @@
 """Composite tolerances: the motion of a pattern as a whole, which the lower segment leaves within the upper one.
 
-Each feature lies in the lower segment's zone about a place that shifts and turns with the pattern. Its motion takes
-what the upper zone has over the lower one, so both segments are held in every trial.
+Each feature lies in the lower segment's zone about a place that shifts and turns with the pattern. The pattern moves by
+the excess of the upper zone over the lower one, so both segments are kept in every trial.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 
 SEEN = 1e-9
-"""Part of the largest motion that features see, below which they see none: directions are stated by some digits."""
+"""Fraction of the largest motion that affects features, below which there is no effect: directions have some digits."""
 
 
 @dataclass(frozen=True, eq=False)

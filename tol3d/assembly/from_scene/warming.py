@@ -1,7 +1,7 @@
-"""Parts that are warmer: every length of them grows by their coefficient of expansion.
+"""Thermal growth of parts: every length grows by the coefficient of expansion.
 
-A part grows about the origin of its frame, so that a feature at p is displaced by growth times p. Of that the datum
-frame in which the feature lies has its share already, a shift: a part that grows evenly keeps its angles.
+A part grows about the origin of its frame, so that a feature at p is displaced by growth times p. The shift of the
+feature's datum frame is part of it: a part that grows evenly keeps its angles.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,11 @@ from tol3d.system.draw import Scalar
 from tol3d.system.plain import UNITS, PlainContributor
 
 HELD = 1e-9
-"""Length of what earlier datums leave of a direction that they hold already."""
+"""Length of the free part of a direction that earlier datums hold."""
 
 
 def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames) -> None:
-    """Add what temperatures of solid parts do to their features."""
+    """Add the effect of part temperatures on their features."""
     solids = scene.of(SolidSpec)
     for entry, spec in scene.of(TemperatureSpec).items():
         grown = {part: solids[part].expansion for part in spec.of if part in solids}
@@ -51,7 +51,7 @@ def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames
 
 
 def _shift(frame: DatumFrame, drawing: Drawing) -> Array:
-    """By what a datum frame is shifted (3,) by a growth of 1: each datum in the directions that earlier ones left."""
+    """Shift of a datum frame (3,) per growth of 1: each datum in the directions that earlier ones left."""
     shift, free = np.zeros(3), np.eye(3)
     for datum in frame.datums:
         own = drawing.kind(datum.features[0])

@@ -1,4 +1,4 @@
-"""The zone that a drawing leaves a feature, with all that refines it, and the draw that its law makes."""
+"""The zone of a feature with all its refinements, and the draw by its law."""
 
 import math
 from dataclasses import replace
@@ -91,7 +91,7 @@ def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
 
 
 def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
-    """(4, 4): what the ends of the projected part of an axis do to its own ends; of an orientation about its middle.
+    """(4, 4): effect of the ends of an axis' projected part on its own ends; for an orientation about its middle.
 
     Raises:
         SceneError: the feature is no axis, or is read at one section.
@@ -111,7 +111,7 @@ def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
 
 
 def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
-    """The size that widens a zone; None where no modifier of it, or of what refines it, says so."""
+    """The size that widens a zone; None without a modifier on it or on its refinements."""
     spec = own.spec
     of_zone = spec.modifier if isinstance(spec, Modified) else None
     refining = drawing.of(own.feature, OrientationSpec) if isinstance(spec, LocationSpec) else ()

@@ -27,7 +27,7 @@ SQUARE = 1e-6  # sine of the angle of the axis to the normal
 
 
 def unfit_boundaries(scene: Scene) -> Iterator[Problem]:
-    """Datums at their boundary that nothing orients, without a size, or where a measure is read."""
+    """Datums at their boundary without orientation or size, or in the frame of a measure."""
     drawing = Drawing(scene)
     for name, spec in scene.tolerances.items():
         if isinstance(spec, FeatureTolerance):
@@ -85,8 +85,8 @@ def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bo
 def earlier_zone(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> float | None:
     """Width of the zone of a datum feature at its precedence [mm]; None without one.
 
-    Of its location zone to just the datums before it, whatever their modifiers; where these only orient it, as a plane
-    does that it is square to, of its orientation zone to them rather.
+    It is its location zone to just the datums before it, whatever their modifiers; if these only orient it, as a plane
+    perpendicular to it does, its orientation zone to them.
     """
     names = [own.features for own in earlier]
     location: tuple[type[FeatureTolerance], ...] = (LocationSpec,)

@@ -20,7 +20,7 @@ Problem = tuple[KeyPath, str]
 
 
 def unknown_features(scene: Scene) -> Iterator[Problem]:
-    """Features that are not there, or of a kind that will not do."""
+    """Features that do not exist, or are of an unsuitable kind."""
     drawing = Drawing(scene)
     for (section, name), entry in scene.entries().items():
         if isinstance(entry, UsesFeatures):
@@ -46,7 +46,7 @@ def _unfit(use: Use, parts: Mapping[str, Mapping[str, FeatureUnion]]) -> str:
 
 
 def unplaced_bodies(scene: Scene) -> Iterator[Problem]:
-    """Bodies that are placed twice or never, moves against what is not placed yet, and measures read before that."""
+    """Bodies that are placed twice or never, moves against parts not yet placed, and measures read too early."""
     if scene.of(SolidSpec):
         bodies = Bodies(scene)
         yield from bodies.problems()
@@ -63,7 +63,7 @@ class Bodies:
 
     scene: Scene
     placed: dict[str, str] = field(default_factory=dict)
-    """Bodies, and the move that places each; none of what was welded since."""
+    """Bodies, and the move that places each; none for parts welded since."""
     body: dict[str, str] = field(default_factory=dict)
     """Body of each part."""
     by: dict[str, set[str]] = field(default_factory=dict)
@@ -176,7 +176,7 @@ def differences_of_two_poses(scene: Scene) -> Iterator[Problem]:
 
 
 def unknown_poses(scene: Scene) -> Iterator[Problem]:
-    """Poses that no move has, named by measures."""
+    """Poses named by measures that no move has."""
     known = {"at": ("poses", pose_names(scene)), "over": ("paths", tuple(paths_of(scene)))}
     for name, measure in scene.measures.items():
         for field_name, (words, names) in known.items() if isinstance(measure, TimedSpec) else ():

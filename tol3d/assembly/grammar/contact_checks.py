@@ -17,7 +17,7 @@ Problem = tuple[KeyPath, str]
 
 
 def idle_rocking(scene: Scene) -> Iterator[Problem]:
-    """Measures that say how they are read where a part rocks, of a scene in which none rests."""
+    """Measures with `rocking` in a scene in which no part rests."""
     if any(isinstance(move, RestSpec) for move in scene.moves.values()):
         return
     for name, spec in scene.measures.items():
@@ -30,7 +30,7 @@ NO_SIZE = "a size that does not vary is {kind: size, ..., distribution: {kind: c
 
 
 def idle_over_play(scene: Scene) -> Iterator[Problem]:
-    """Values over the play of parts where none has any."""
+    """Measures over the play of parts in a scene without play."""
     if not any(isinstance(move, PlaySpec) for move in scene.moves.values()):
         for name, spec in scene.measures.items():
             if isinstance(spec, OverPlaySpec) and spec.over_play is not None:
@@ -112,7 +112,7 @@ def round_contacts(scene: Scene) -> Iterator[Problem]:
 
 
 def _round(pair: ContactSpec, drawing: Drawing, *, rests: bool) -> tuple[str, str] | None:
-    """The key of a round feature that does not fit, and what is said of it."""
+    """The key of a round feature that does not fit, and the error text."""
     if not {pair.from_, pair.to} <= set(drawing.names):
         return None
     sides = {"from": (pair.from_, pair.to), "to": (pair.to, pair.from_)}

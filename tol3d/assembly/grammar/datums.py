@@ -13,7 +13,7 @@ from tol3d.units import shown
 
 
 def _joined(value: Any) -> Any:
-    """`floor` or `bore 1-bore 2` as names; of a list each is one."""
+    """Names from `floor` or `bore 1-bore 2`; each item of a list is one."""
     names = [name.strip() for name in value.split("-")] if isinstance(value, str) else value
     if isinstance(names, list) and any(isinstance(name, str) and "." in name for name in names):
         own = "-".join(str(name).rpartition(".")[2] for name in names)
@@ -23,7 +23,7 @@ def _joined(value: Any) -> Any:
 
 
 class DatumSpec(Strict):
-    """A datum: a feature of the part, or several as a common datum, and how it lies on what holds it."""
+    """A datum: a feature of the part, or several as a common datum, and its contact with the simulator."""
 
     words: ClassVar[str] = "a datum"
 

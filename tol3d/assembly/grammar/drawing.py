@@ -39,15 +39,15 @@ MOST_FEATURES: Final = 100_000  # of a scene, patterns written out: fifty a part
 
 @dataclass(frozen=True)
 class Stated:
-    """A tolerance as it holds for one feature.
+    """A tolerance as applied to one feature.
 
     Args:
         name: of the contributor.
-        entry: what the scene calls it.
-        spec: what it says.
-        feature: of which, with its part.
-        is_first: whether it is of the only one, or of the first of a pattern.
-        alike: whether it is of a part that is like that of the entry.
+        entry: its name in the scene.
+        spec: its entry.
+        feature: the feature, with its part.
+        is_first: True for the only feature, or the first of a pattern.
+        alike: True for a part that copies the entry's part.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Drawing:
 
     @cached_property
     def written(self) -> Mapping[str, Mapping[str, FeatureUnion]]:
-        """The features of each part as the scene has them, patterns as one: its own, and those of what it is like."""
+        """The features of each part as in the scene, patterns as one: its own, and those of the part that it copies."""
         solids = self.scene.of(SolidSpec)
         found: dict[str, dict[str, FeatureUnion]] = {}
         for name in solids:
@@ -120,7 +120,7 @@ class Drawing:
     def stated(self) -> tuple[Stated | str, ...]:
         """Every tolerance, for each feature and part that it holds for, in the scene's order; locators by their names.
 
-        Those of a feature of a part that is like another stand in place of the other's that say the same of it.
+        A copy's own tolerances replace those of the same group of the part that it copies.
         """
         solids = self.scene.of(SolidSpec)
         chains = {name: likes(name, solids) for name in solids}
@@ -189,7 +189,7 @@ class Drawing:
         return found
 
     def form(self, feature: str, located: FeatureTolerance | None = None) -> float:
-        """The part of a zone's width that its form takes [mm]: of a location or an axial run-out, if not given."""
+        """Part of a zone's width used by form [mm]; default that of a location or an axial run-out."""
         forms = [own.spec for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec)]
         match located:
             case CircularRunOutSpec():
@@ -201,8 +201,8 @@ class Drawing:
     def oriented(self, own: Stated) -> float:
         """Width of a zone of orientation [mm], where a location zone, or else itself, holds the feature.
 
-        That of an axial run-out is of the whole face, without its form; of a projected axis it goes with the length
-        over which either zone holds it.
+        For an axial run-out it is that of the whole face, without its form; for a projected axis it scales with the
+        lengths of both zones.
         """
         assert isinstance(own.spec, OrientationSpec)
         width = own.spec.zone.size
@@ -230,13 +230,13 @@ class Drawing:
         return shape.length if isinstance(shape, Axis) else 1.0
 
     def is_sized(self, feature: str) -> bool:
-        """True if a tolerance says how large it is: of its size, or a profile of a round surface."""
+        """True if a tolerance states its size: a size tolerance, or a profile of a round surface."""
         kind = self.kind(feature).kind
         surfaces = (own for own in self.of(feature, LocationSpec) if is_of_round_surface(own.spec, kind))
         return bool(self.of(feature, SizeSpec)) or any(surfaces)
 
     def datums(self, feature: str) -> tuple[DatumSpec, ...]:
-        """Those of the tolerance that says where it lies; of its orientation where none says that."""
+        """Datums of its location tolerance; those of its orientation if it has none."""
         for spec in (LocationSpec, PlusMinusSpec, OrientationSpec):
             for own in self.of(feature, spec):
                 return own.spec.named_datums
@@ -250,8 +250,8 @@ class Drawing:
     def positive(self, feature: str, spec: PlusMinusSpec) -> Array | None:
         """The direction (3,) in which a dimension of a feature is positive, in its part's frame, of unit length.
 
-        None where nothing but `along` could say it: of an axis, of a point without a normal that has datums, and of
-        what lies off none of its datums along its normal.
+        None if only `along` can state it: for an axis, for a point with datums but without a normal, and for a feature
+            that is off none of its datums along its normal.
         """
         own = self.kind(feature)
         if spec.along is not None:

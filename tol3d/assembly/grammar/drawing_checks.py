@@ -39,7 +39,7 @@ REFINED = "a tilt that it refines is an orientation tolerance beside the other"
 
 
 def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
-    """Tolerances of a feature that would count twice, or leave no room for each other."""
+    """Tolerances of a feature that would count twice or contradict each other."""
     drawing = Drawing(scene)
     yield from dict.fromkeys(problem for feature in drawing.names for problem in _twice(drawing, feature))
     for feature in drawing.names:
@@ -201,7 +201,7 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
 
 
 def _surface_problems(here: KeyPath, own: Stated, drawing: Drawing) -> Iterator[Problem]:
-    """Refuse tolerances beside the profile of a round surface, which holds its size and how it is turned too."""
+    """Refuse tolerances beside the profile of a round surface, which limits size and orientation too."""
     kind = drawing.kind(own.feature).kind
     for other in drawing.of(own.feature, SizeSpec):
         words = f"expected no size of {own.feature!r} beside a profile, which holds the {kind}'s diameter too"
@@ -253,7 +253,7 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
 
 
 def _unclear(spec: PlusMinusSpec, drawing: Drawing, feature: str) -> str:
-    """Words for a dimension of which no datum says which way is longer."""
+    """Error text for a dimension whose positive direction no datum defines."""
     names = ", ".join("-".join(datum.features) for datum in spec.named_datums)
     expected = "expected `along`, the direction in which the dimension is positive, got none"
     if drawing.kind(feature).kind in ("point", "sphere"):
@@ -277,7 +277,7 @@ def _names(drawing: Drawing) -> Iterator[Problem]:
 
 
 def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
-    """Features that are toleranced to what is toleranced to them."""
+    """Features whose datums depend on the features themselves."""
     after = {
         name: {f"{part_of(name)}.{own}" for datum in datums for own in datum.features}
         for name, datums in drawing.parents()

@@ -1,8 +1,8 @@
-"""The part of its zones that the form of a feature takes.
+"""Part of a feature's zones used by its form.
 
-An axis' zone holds its bend, so it loses the straightness of the axis or of the lines of its surface, or the
-cylindricity; roundness moves no axis. A run-out is read on the surface: at one section it loses the roundness, over the
-whole length the cylindricity.
+An axis' zone contains its bend, so it is reduced by the straightness of the axis or of the lines of its surface, or by
+the cylindricity; roundness moves no axis. A run-out is read on the surface: it is reduced by the roundness at one
+section, by the cylindricity over the whole length.
 """
 
 from collections.abc import Callable, Sequence
@@ -52,7 +52,7 @@ def _length(spec: StraightnessSpec, shape: Shape) -> float:
 
 
 def of_location(forms: Forms, shape: Shape) -> float:
-    """The part that form takes of a zone in which an axis, a median plane or a face lies [mm]."""
+    """Part of the zone of an axis, a median plane or a face used by form [mm]."""
     if isinstance(shape, Axis):
         return _least(forms, shape, lambda own: isinstance(own, StraightnessSpec | CylindricitySpec))
     flat = _least(forms, shape, lambda own: isinstance(own, FlatnessSpec))
@@ -60,12 +60,12 @@ def of_location(forms: Forms, shape: Shape) -> float:
 
 
 def of_section(forms: Forms, shape: Shape) -> float:
-    """The part that form takes of a run-out at one section [mm]."""
+    """Part of a run-out at one section used by form [mm]."""
     return _least(forms, shape, lambda own: isinstance(own, RoundnessSpec | CylindricitySpec))
 
 
 def of_total_run_out(forms: Forms, shape: Shape) -> float:
-    """The part that form takes of a run-out over the whole length [mm]: the cylindricity, or what makes it up."""
+    """Part of a run-out over the whole length used by form [mm]: the cylindricity, or its components."""
     whole = _least(forms, shape, lambda own: isinstance(own, CylindricitySpec))
     parts = (RoundnessSpec, StraightnessSpec)
     return whole or sum(_least(forms, shape, lambda own, kind=kind: isinstance(own, kind)) for kind in parts)

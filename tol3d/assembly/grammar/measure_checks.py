@@ -68,7 +68,7 @@ def missing_solids(scene: Scene) -> Iterator[Problem]:
 
 
 def unfit_points(scene: Scene) -> Iterator[Problem]:
-    """Points whose flatness is inspected, and that are nominally not on a plane with that normal, or on a line."""
+    """Refuse points for a flatness that are nominally not on a plane with that normal, or on a line."""
     drawing = Drawing(scene)
     for name, spec in scene.measures.items():
         if not isinstance(spec, InspectedFlatnessSpec):

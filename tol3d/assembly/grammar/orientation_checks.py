@@ -87,7 +87,7 @@ def _alike(zone: ZoneSpec, other: ZoneSpec) -> bool:
 
 
 def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:
-    """A perpendicularity of what is not square to the primary datum nominally, or a parallelism of what is."""
+    """Refuse a perpendicularity of a feature not nominally perpendicular to the primary datum; likewise parallelism."""
     spec = own.spec
     assert isinstance(spec, OrientationSpec)
     datum = spec.datums[0]
@@ -134,7 +134,7 @@ def _without_axis(drawing: Drawing, own: Stated) -> Iterator[Problem]:
 
 
 def _beside(drawing: Drawing, own: Stated) -> Iterator[Problem]:
-    """A feature that is nominally not on the axis to which it is coaxial, or about which it runs out."""
+    """Refuse a feature that is nominally off the axis of its coaxiality or run-out."""
     features, feature = drawing.features[part_of(own.feature)], drawing.kind(own.feature)
     names = [datum.features[0] for datum in own.spec.named_datums if len(datum.features) == 1]
     axes = [name for name in names if name in features and features[name].kind in ("axis", "cylinder")]

@@ -82,9 +82,9 @@ Scaled = TypeVar("Scaled", bound=Resizable)
 class LawSpec(Strict):
     """A law of deviations in a zone, and by import paths `package.module:function` how they are drawn.
 
-    `draws` makes of the law, a zone without bonus and files the draw of a feature's displacement (Confined or Process);
-    `touching` of the law, half of a form's zone [mm] and files the distribution of a point that touches, "" where forms
-    cannot have it: `lies` says why.
+    `draws` makes the draw of a feature's displacement (Confined or Process) from the law, a zone without bonus and
+    files; `touching` makes the distribution of a point that touches from the law, half of a form's zone [mm] and files;
+    "" if forms cannot have it: `lies` says why.
     """
 
     draws: ClassVar[str]
@@ -98,7 +98,7 @@ class LawSpec(Strict):
         return iter(())
 
     def scaled(self, zone: Scaled, factor: float, files: Files) -> tuple[Self, Scaled]:
-        """It and its zone, so that deviations spread so many times as far: by the zone, if not said otherwise."""
+        """The law and its zone, scaled by a factor; by default the zone is."""
         return self, zone.scaled(factor)
 
     @classmethod
@@ -179,7 +179,7 @@ Zoned = TypeVar("Zoned", bound=ToleranceEntry)
 
 
 def scaled_in_zone(spec: Zoned, factor: float, stays: Stays, files: Files) -> Zoned:
-    """A tolerance with a zone and a law, whose deviations spread so many times as far.
+    """A tolerance with a zone and a law, its deviations scaled by a factor.
 
     Raises:
         InputError: a limit is to stay, or the law cannot be scaled.

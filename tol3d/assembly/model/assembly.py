@@ -24,7 +24,7 @@ class Part:
         pose: nominal, in the world (4, 4); moves find the pose near it.
         features: in an order in which each comes after the datum frame it belongs to.
         datum_frames: in an order in which each comes after its features.
-        solid: its nominal solid, in its own frame; None where the scene says none.
+        solid: its nominal solid, in its own frame; None without one.
     """
 
     name: str

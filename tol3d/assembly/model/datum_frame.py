@@ -1,4 +1,4 @@
-"""Datum frames: made of a part's own features, in order."""
+"""Datum frames, from a part's own features, in order."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -64,13 +64,13 @@ class Datum:
 class Gauges:
     """Gauges of virtual condition, all of one piece, in (or on) the last datums of a frame.
 
-    What the datums before them leave free, and what they see of it, is their room: at both ends of a hole or pin and at
-    all corners of a slot or tab they lie within +-(size - virtual) / 2 of it.
+    They move by the freedoms that the datums before them leave: at both ends of a hole or pin and at all corners of a
+        slot or tab they lie within +-(size - virtual) / 2 of it.
 
     Args:
         rooms: one of each of these datums, in order.
-        floating: where in their common room they lie, which makes the frame; None where that is left to what is
-            measured: the frame is then that of the datums regardless of their sizes.
+        floating: their position within the common clearance, which makes the frame; None if each measure decides: the
+            frame is then that of the datums regardless of their sizes.
     """
 
     rooms: tuple[GaugeRoom, ...]
@@ -79,7 +79,7 @@ class Gauges:
 
 @dataclass(frozen=True, eq=False)
 class DatumFrame:
-    """Datums in order: each takes only the freedoms that earlier ones left; those that none takes stay the part's.
+    """Datums in order: each takes only freedoms left by earlier ones; those taken by none stay the part's.
 
     What each asks, in this order: a plane, its normal, then its height (with targets, the heights of its points one by
     one); an axis or a common datum, its centre across it, then its direction; a point, its position. What is asked but
@@ -89,13 +89,13 @@ class DatumFrame:
     Each turns the part by the least rotation that meets what it asks, about its own centre in the trial where shifts
     are still free (of a common datum the middle of all centres), and shifts it along the nominal directions that it
     holds. The frame's pose is the inverse of that: T_datum_frame(trial) T_datum_frame(nominal)^-1, in the part's frame;
-    nominally it is the part's frame itself. Where the part's origin lies makes no difference.
+    nominally it is the part's frame itself. The place of the part's origin makes no difference.
 
     Args:
         name: "part|A|B|C" of its features.
         part: the part.
         datums: primary, secondary, tertiary.
-        shifted_by: how a gauge lies off its datum feature, which shifts the frame (3, components), nominally in the
+        shifted_by: offset of a gauge from its datum feature, which shifts the frame (3, components), nominally in the
             part's frame.
         gauges: of its last datums, where several, a first, a third one or a slot is at its maximum material boundary.
     """

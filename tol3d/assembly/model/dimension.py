@@ -1,4 +1,4 @@
-"""Dimensions: from which datum a feature lies nominally off, and which way makes them longer."""
+"""Dimensions: the datum from which a feature is offset nominally, and the direction that makes them longer."""
 
 from collections.abc import Iterable, Sequence
 from typing import Final, Protocol
@@ -25,7 +25,7 @@ class Placed(Protocol):
 
 
 def longer(at: Array, along: Array, datums: Iterable[Sequence[Placed]]) -> tuple[int, int] | None:
-    """Which of some datums is the first from which a place lies off along a direction, and the sign that leads away.
+    """The first datum from which a place is offset along a direction, and the sign that leads away.
 
     Args:
         at: the place (3,), in the part's frame [mm].

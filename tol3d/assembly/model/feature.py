@@ -1,4 +1,4 @@
-"""A feature of a part: what a drawing names, where it is nominally, and what moves it."""
+"""A feature of a part: its name on the drawing, its nominal place, and the contributions that move it."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -31,12 +31,11 @@ class Contact:
 class Touch:
     """A part is laid against placed ones at its contacts, all at once, near its nominal pose.
 
-    Freedoms that no contact decides stay as nominal: the least turn, then the least shift of the middle of the part's
-    features in contact.
+    Freedoms that no contact decides stay nominal: the least turn, then the least shift of the middle of the part's
+        features in contact.
 
     Args:
-        name, part: of the move, and what it places.
-        contacts: of which none asks what the others hold.
+        name, part: of the move, and what it places. contacts: of which none asks what the others hold.
         pressed: direction (3,) of the force that presses the part on, through the mean of its moving features' origins,
             in the nominal frame of the first target's part; a contact that would have to pull is lost. None: not asked.
     """
@@ -150,7 +149,7 @@ class Fit:
 class BestFit:
     """The pose of least weighted squares of residuals, or of the least largest residual; finite, no scale.
 
-    Freedoms that no residual sees stay as nominal: least rotation, then the least shift of the middle of the points.
+    Freedoms without effect on residuals stay nominal: least rotation, then the least shift of the middle of the points.
 
     Args:
         name, part: of the move, and what it places.
@@ -199,7 +198,7 @@ class Mate:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """One-sided contacts of points on planes, without friction: the part goes as far along the force as they let it.
+    """One-sided contacts of points on planes, without friction: the part goes as far along the force as they allow.
 
     Which contacts carry follows from the lever arms of the pose; where nominally some carry nothing the part rocks,
     whatever a tilt of the trial does to their arms. Freedoms that no relation, contact or force sees stay as nominal
@@ -246,7 +245,7 @@ class Bolt:
         diameter: nominal [mm].
         size_by: contributions to it (1, components); positive is larger.
         frame: nominally in the world (4, 4): z along it, the origin in the middle of all ends of its holes.
-        reach: from there to the farthest of these ends [mm], over which a lean counts.
+        reach: distance from there to the farthest of these ends [mm], over which a tilt counts.
     """
 
     diameter: float
@@ -257,7 +256,7 @@ class Bolt:
 
 @dataclass(frozen=True, eq=False)
 class Engagement:
-    """A pin in a hole, a pin in a slot or a tab in a slot; or two holes that a bolt goes through.
+    """A pin in a hole, a pin in a slot or a tab in a slot; or two holes with a bolt through both.
 
     Its offset at a place: how far the outer one's point lies from the inner one's, across the inner one's axis (both
     components of a hole) or across its width (one of a slot). Its clearance: half of how much larger the inner one is.
@@ -333,7 +332,7 @@ Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch | StatedMove
 
 
 def pairs_of(move: Move) -> Sequence[tuple[str, str]]:
-    """The features by which a move lays its part: what is moved and its target, of play the inner and the outer one."""
+    """The features by which a move places its part: moving and target; for play inner and outer."""
     match move:
         case Fix() | Weld():
             return ()

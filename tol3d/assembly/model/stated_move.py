@@ -1,4 +1,4 @@
-"""A move of another mechanism that places bodies of an assembly: it says itself how, on both methods."""
+"""A move of another mechanism that places bodies of an assembly, with its own placing by both methods."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class StatedMove(ABC):
 
     @property
     def frames(self) -> Sequence[str]:
-        """Names of datum frames of the parts that it places by which it takes them; none if not said."""
+        """Names of the datum frames by which it takes the parts that it places; by default none."""
         return ()
 
     @property

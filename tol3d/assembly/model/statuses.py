@@ -19,7 +19,7 @@ WITH_CLEARANCES: Final = Statuses(
     {**STATUSES.words, "overlap": "overlap"},
     {**STATUSES.states, "overlap": "overlapping"},
 )
-"""The same, and parts that overlap, which no depth is known of: of assemblies with clearances of whole parts."""
+"""The same, and parts that overlap by an unknown depth: for assemblies with clearances of whole parts."""
 
 WITH_LOOPS: Final = Statuses(
     (*WITH_CLEARANCES.texts, "does not close", "other branch"),

@@ -171,7 +171,7 @@ def face_names(scene: Scene) -> dict[str, str]:
     """The faces that features are picked from, by the features' names with their parts; those by numbers are left out.
 
     Raises:
-        SceneError: what the scene's run kept is damaged.
+        SceneError: the run's kept faces are damaged.
     """
     solids = scene.of(SolidSpec)
     if not any(own.faces_picked for solid in solids.values() for own in solid.features.values()):
@@ -222,7 +222,7 @@ def built_shape(scene: Scene, part: str, *, run_builders: bool) -> BuiltShape:
 
 
 def solid_file(part: str) -> str:
-    """The name under which a run keeps what a program of the user built."""
+    """The name under which a run keeps the solid built by a user's program."""
     return f"{part}.brep"
 
 

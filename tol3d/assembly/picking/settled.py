@@ -1,4 +1,4 @@
-"""A scene with the numbers that it leaves to the solids of its parts."""
+"""A scene completed by numbers from the solids of its parts."""
 
 from collections.abc import Iterator, Mapping
 from typing import Final
@@ -26,13 +26,13 @@ from tol3d.solids.pick import Pick, PickedFace, PickError, Triple, picked
 from tol3d.units import Quantity
 
 AGREED: Final = 1e-4
-"""mm: a number that differs by more is another one; drawings are written to a thousandth of a millimetre."""
+"""mm; a number that differs by more is a different one: drawings are written to a thousandth of a millimetre."""
 AGREED_SLOPE: Final = 1e-6
 """Sine between directions that are the same."""
 
 
 def disagreements(spec: FeatureSpec, found: Mapping[str, Found]) -> Iterator[tuple[str, str]]:
-    """Fields that a scene states otherwise than the face has them, each with a sentence.
+    """Fields stated in a scene that contradict the face, each with a sentence.
 
     Args:
         spec: the feature as the scene has it.
@@ -170,7 +170,7 @@ def _triple(vector: tuple[Quantity, Quantity, Quantity]) -> Triple:
 def _with_numbers(
     spec: FeatureUnion, faces: tuple[PickedFace, ...], path: KeyPath, problems: list[Problem]
 ) -> FeatureUnion:
-    """A feature with the numbers of its faces; where it states others these are problems."""
+    """A feature with the numbers of its faces; contradicting numbers are problems."""
     try:
         found = spec.found(faces)
     except GeometryError as error:

@@ -90,7 +90,7 @@ def face_of(feature: FoundFeature) -> PickedFace:
     """A feature as runs keep it.
 
     Raises:
-        StepError: a scene can do nothing with it.
+        StepError: a scene cannot use it.
     """
     if feature.kind not in FACE_KINDS:
         raise StepError(f"expected a {', '.join(FACE_KINDS)}, got a {feature.kind} ({numbers(feature)})")
@@ -139,7 +139,7 @@ def _by_numbers(spec: SelectorSpec, face: PickedFace) -> FeatureUnion:
 
 
 def checked(part: str, spec: StepSpec, name: str, faces: Sequence[PickedFace], file: str) -> None:
-    """Refuse what a run kept where it is not what its scene selects.
+    """Refuse kept faces that are not those selected by the run's scene.
 
     Raises:
         SceneError: it is damaged.

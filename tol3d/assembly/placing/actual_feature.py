@@ -37,7 +37,7 @@ class ActualFeature:
 
     Args:
         feature: the feature.
-        base: of its nominal frame as its datum frame carries it.
+        base: pose of its nominal frame as carried by its datum frame.
         centre: where its origin lies in that frame, (3, n) [mm].
         span: from its origin to its ends in that frame, each (3, n) [mm]: of an axis to its end, of a plane to where
             its reaches along x and y end, at the heights that it has there.

@@ -1,10 +1,10 @@
 """Sequential alignment: features laid on their targets in order, each by the freedoms that those before it left.
 
-Which freedoms those are is analysed once, on the nominal geometry (`freedoms.aligned`); the steps that come of it are
-vectorised over trials (`Alignment.poses`). Rotations follow from directions first; heights are met by shifts, solved in
-order along what is free of the earlier ones, so that earlier ones stay met. What none takes stays: least rotation,
-and no shift of the centre about which a feature turns, its own in the trial. So the origin of the frame that is moved
-is no part of it.
+The freedoms are analysed once, on the nominal geometry (`freedoms.aligned`); the resulting steps are vectorised over
+trials (`Alignment.poses`). Rotations follow from directions first; heights are met by shifts, solved in order along
+directions free of earlier ones, so that earlier ones stay met. Freedoms taken by none stay nominal: least rotation, and
+no shift of the centre about which a feature turns, its own in the trial. So the origin of the moving frame does not
+matter.
 """
 
 from collections.abc import Sequence
@@ -87,7 +87,7 @@ class Seat:
 
     @property
     def its_centre(self) -> Array:
-        """About which it turns what it turns (3, n) [mm]."""
+        """Centre of its turns (3, n) [mm]."""
         return self.point if self.centre is None else self.centre
 
     @property
@@ -177,7 +177,7 @@ class Alignment:
     idle: tuple[int, ...] = ()
 
     def poses(self, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Codes]:
-        """Poses that lay features on their targets, and what became of them (n,).
+        """Poses that place features on their targets, and status codes (n,).
 
         Args:
             seats: one of each tie.
@@ -201,7 +201,7 @@ class Alignment:
     def _by_point(
         self, step: Step, seats: Sequence[Seat], directions: Sequence[ShiftDirection], start: Pose, held: Array
     ) -> tuple[Array, Array, Codes]:
-        """A rotation by a point, the direction that is held after it, and what became of it."""
+        """A rotation by a point, the direction held after it, and status codes."""
         turn, seat = start.turn, seats[step.tie]
         pose = Pose(turn, _shifted(turn, start.shift, seats, directions))
         stays = step.pivot >= 0
@@ -275,7 +275,7 @@ def _shifted(turn: Array, start: Array, seats: Sequence[Seat], directions: Seque
 
 
 def _by_direction(step: Step, seats: Sequence[Seat], turn: Array, held: Array) -> tuple[Array, Array, Codes]:
-    """A rotation by a direction, the direction that is held after it, and what became of it."""
+    """A rotation by a direction, the direction held after it, and status codes."""
     seat = seats[step.tie]
     own, toward = rotated(turn, seat.its_direction), seat.its_toward
     match step.kind:

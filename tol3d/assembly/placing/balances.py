@@ -1,7 +1,7 @@
 """Parts on fewer one-sided contacts than freedoms, trial by trial: the tilt that balances the force on them.
 
-As a ball lies in a trough: where the force acts beside some contacts it turns the part one way, beside the others the
-other way, and between it is balanced. Newton's method for the contacts and the balance at once, from a pose near by.
+Like a ball in a trough: the force turns the part one way beside some contacts, the other way beside the others, and is
+balanced in between. Newton's method for the contacts and the balance at once, from a pose near by.
 """
 
 from typing import Any, Final
@@ -17,7 +17,7 @@ from tol3d.numerics.loops import copy_matrix, fill_matrix
 
 STEPS: Final = 30
 WAY: Final = 0.02
-"""Turn [rad], and shift a mm of reach, from which a balance is another one."""
+"""Turn [rad], and shift per mm of reach, beyond which a balance is a different one."""
 NUDGE: Final = 1e-4
 """Fraction of the reach, the step of the rows' differences; the error is that squared."""
 
@@ -40,7 +40,7 @@ def lacking(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, progr
 
 @nested
 def linearised(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, programme: Any, system: Any) -> None:
-    """The equations of the contacts and the balance at a pose: what they lack, and how that changes by differences."""
+    """The equations of the contacts and the balance at a pose: residuals, and their changes by differences."""
     right, matrix, ends, motion, step, near, base = system
     rows, _, tangents, pull, _ = programme
     motions, by = pull.shape[0], NUDGE * reach

@@ -1,4 +1,4 @@
-"""Parts that are fitted to points: what their residuals ask, trial by trial."""
+"""Parts that are fitted to points, by their residuals, trial by trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
 
 STEPS: Final = 80
 MET: Final = 1e-13
-"""Step [rad, and mm a mm of reach] after which a trial is done."""
+"""Step [rad, and mm per mm of reach] at which a trial is done."""
 LEAST_SHARE: Final = 1e-11
-"""mm; times twice the number of residuals, by how much the least largest residual is exceeded."""
+"""mm; excess of the largest residual over its minimum, divided by twice the number of residuals."""
 FALL: Final = 0.2
 """Factor of the share from one barrier to the next."""
 CENTRED: Final = 1e-3
@@ -249,7 +249,7 @@ def least_largest(
 
 @dataclass(frozen=True, eq=False)
 class BestFitting:
-    """A best fit, as its points are nominally; solved in the world, with the middle of the part's points at 0.
+    """A best fit at its nominal points; solved in the world, with the middle of the part's points at 0.
 
     Args:
         move: the move.
@@ -270,7 +270,7 @@ class BestFitting:
     origin: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,)."""
+        """The world after the move, and status codes (n,)."""
         points, targets, directions = _asked(self.move, world)
         turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
         met = np.empty(world.trials, dtype=bool)
@@ -289,7 +289,7 @@ def best_fitting(move: BestFit, nominal: World) -> BestFitting:
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:
-        InputError: a weight is not positive; nothing is seen of the part.
+        InputError: a weight is not positive, or no residual depends on the part.
     """
     pose = nominal.poses[move.part]
     points, _, directions = _asked(move, nominal)

@@ -13,12 +13,12 @@ Cause = str | int
 
 @dataclass(frozen=True, eq=False)
 class Causes:
-    """Before the first move or after one: on what the poses of parts hang.
+    """State before the first move or after one: the moves on which the poses of parts depend.
 
     Args:
         assembly: the model.
         placed: of each part that is placed, what may have failed.
-        bodies: of each part, what it is welded to, itself among them.
+        bodies: parts welded to each part, itself included.
     """
 
     assembly: Assembly
@@ -81,7 +81,7 @@ class Causes:
                 yield self.of_part(part, f"moves.{move.name}")
 
     def _pairs(self, move: Move) -> Sequence[tuple[str, str]]:
-        """See pairs_of; of what engages, the feature of the body that is placed and the other one."""
+        """See pairs_of; for engagements, the feature of the placed body and the other one."""
         if not isinstance(move, Engage):
             return pairs_of(move)
         related, body = len(move.relations), self.bodies[move.part]

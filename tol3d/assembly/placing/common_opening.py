@@ -1,4 +1,4 @@
-"""The common opening of holes that are seen along one direction: the largest circle in all of their discs.
+"""The common opening of holes along one direction: the largest circle within all of their discs.
 
 With discs of centres c and radii r, the least of max(|x - c| - r) over all points x of a plane is minus its radius.
 That is a convex programme of two unknowns, decided by one, two or three discs: each step takes the disc that is
@@ -15,9 +15,9 @@ import numpy as np
 from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-13
-"""mm, by which no disc is violated any more."""
+"""mm; largest violation of a disc at the end."""
 STEPS: Final = 200
-"""Each decides by other discs than all before; in practice 2 to 6."""
+"""Steps at most, each decided by other discs than all before; in practice 2 to 6."""
 
 
 @nested

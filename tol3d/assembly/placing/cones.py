@@ -1,8 +1,9 @@
 """Convex programmes over second-order cones with a few unknowns, in kernels: interior points.
 
 Cones are y_k = (c_k - s, o_k + B_k p), inside where |o_k + B_k p| < c_k - s. Primal and dual steps go along Nesterov
-and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y. Where it
-shows which cones decide the largest s, Newton's steps end it: these cones meet exactly, and their multipliers balance.
+and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y. As soon as
+the cones that decide the largest s are known, Newton steps finish: these cones meet exactly, and their multipliers
+balance.
 """
 
 from typing import Any, Final
@@ -25,11 +26,11 @@ CAREFUL_AIM: Final = 0.8
 SHORT_OF: Final = 0.98
 """Fraction of the distance to the end of a cone."""
 OWED: Final = 1e-9
-"""Share of what the multipliers lack of balance at the start that may be left."""
+"""Fraction of the multipliers' initial imbalance that may be left."""
 ROUNDING: Final = 1e-14
 """Fraction of a pivot left by rounding."""
 SHOWN: Final = 1e-3, 1e-6, 1e-10
-"""Gaps, of the size of offsets and clearances, at which it may show which cones decide."""
+"""Gaps, over the size of offsets and clearances, at which the deciding cones may be known."""
 LAST: Final = 10
 """Newton steps at most, 2 to 4 in practice."""
 STIFF: Final = 1e5
@@ -39,7 +40,7 @@ MET: Final = 1e-13
 BALANCED: Final = 1e-9
 """Largest imbalance of multipliers that sum to 1."""
 POINTED: Final = 1e-6
-"""Length of an offset, of its clearance, below which it has no direction."""
+"""Length of an offset over its clearance, below which it has no direction."""
 
 
 @nested
@@ -71,7 +72,7 @@ def substituted(matrix: Any, right: Any, count: int) -> None:
 
 @nested
 def reach_of(a: float, b: float, c: float, u: float, v: float, w: float) -> Any:
-    """The largest share by which a point (a, b, c) of a cone can go along (u, v, w)."""
+    """The largest fraction of (u, v, w) that a point (a, b, c) of a cone can go."""
     square, slope = a * a - b * b - c * c, a * u - b * v - c * w
     bend = u * u - v * v - w * w
     # square + 2 slope t + bend t^2 = 0 and a + u t > 0
@@ -226,7 +227,7 @@ def stepped(cones: Any, size: int, rooms: Any) -> None:
 
 @nested
 def amiss(cones: Any, rooms: Any, limit: float) -> int:
-    """A cone that is beyond those that decide, or decides with a multiplier below 0; -1 where there is none."""
+    """A cone beyond those that decide, or one that decides with a negative multiplier; -1 if there is none."""
     used = cones[3]
     at, own = rooms[2], rooms[3]
     for k in range(at.shape[0]):

@@ -25,7 +25,7 @@ CROSSING: Final = 8
 """Sides of a contact, that of the part that is placed first; two lines lie along each other or cross."""
 
 TWO: Final = (LINE_PLANE, PLANE_LINE, ALONG)
-"""Contacts along a line: they ask for two things."""
+"""Contacts along a line: they have two equations."""
 
 
 @nested
@@ -51,7 +51,7 @@ def crossed(a: Any, b: Any, out: Any) -> None:
 
 @nested
 def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
-    """Add to a row what a point does along a normal, at an arm from the middle that the part turns about."""
+    """Add to a row the motion of a point along a normal, at an arm from the middle of the part's turn."""
     for k in range(3):
         row[k] += factor * normal[k]
     row[3] += factor * (arm[1] * normal[2] - arm[2] * normal[1])
@@ -61,7 +61,7 @@ def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
 
 @nested
 def tilted(row: Any, direction: Any, normal: Any, factor: float) -> None:
-    """Add to a row what a direction that turns with the part does along a normal."""
+    """Add to a row the motion along a normal of a direction that turns with the part."""
     row[3] += factor * (direction[1] * normal[2] - direction[2] * normal[1])
     row[4] += factor * (direction[2] * normal[0] - direction[0] * normal[2])
     row[5] += factor * (direction[0] * normal[1] - direction[1] * normal[0])
@@ -69,7 +69,7 @@ def tilted(row: Any, direction: Any, normal: Any, factor: float) -> None:
 
 @nested
 def aside(apart: Any, direction: Any, normal: Any) -> Any:
-    """Length of what is across a direction, which as a direction becomes `normal`."""
+    """Length of a vector's part across a direction; `normal` becomes its direction."""
     along = dot(apart, direction)
     for k in range(3):
         normal[k] = apart[k] - along * direction[k]
@@ -146,7 +146,7 @@ def at_crossing(sides: Any, normal: Any, rows: Any, e: int, sign: float) -> Any:
 
 @nested
 def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: Any) -> None:
-    """A side (6,), origin and direction: of a trial, or a share of the way there."""
+    """A side (6,), origin and direction: of a trial, or at a fraction of the path to it."""
     at = min(i, given.shape[2] - 1)
     square = 0.0
     for k in range(6):
@@ -161,7 +161,7 @@ def interpolated(nominal: Any, given: Any, c: int, i: int, share: float, out: An
 
 @nested
 def asked_of(asked: Any, i: int, share: float, rooms: Any) -> Any:
-    """Fill in what the contacts of a trial ask, a share of the way from nominal; whether it makes sense."""
+    """Fill in the contact constraints of a trial, at a fraction of the path from nominal; True if they are valid."""
     kinds, _, _, moving, targets, sums, nominal = asked
     ours, theirs, totals = rooms[:3]
     for c in range(kinds.shape[0]):

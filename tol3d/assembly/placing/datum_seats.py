@@ -15,7 +15,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 ABREAST = 1e-6
-"""Spread [mm] of points across a line, under which they lie on it."""
+"""Spread [mm] of points across a line, below which they lie on it."""
 
 Actual = Callable[[str], ActualFeature]
 Asks = tuple[Held, Turning]
@@ -48,7 +48,7 @@ class DatumSeats:
     gauged: OnGauges | None = None
 
     def pose(self, features: Actual, columns: Array) -> tuple[Pose, Codes]:
-        """The part in its frame, and what became of it (n,) or (1,)."""
+        """The part in its frame, and status codes (n,) or (1,)."""
         seats, gauges = self.of(features), self.frame.gauges
         if self.gauged is None or gauges is None or gauges.floating is None:
             return self.alignment.poses(seats, IDENTITY)
@@ -85,7 +85,7 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
 
 
 def _refuse_few_targets(frame: DatumFrame) -> None:
-    """Refuse targets of a primary plane that do not hold it; three that do are on the plane itself."""
+    """Refuse targets of a primary plane that do not hold it; three valid ones are on the plane itself."""
     primary = frame.datums[0]
     if primary.simulator != "targets" or primary.targets is None:
         return
@@ -125,7 +125,7 @@ def _nominal(feature: Feature) -> ActualFeature:
 def _asked(
     frame: DatumFrame, features: Actual, nominal: Mapping[str, ActualFeature]
 ) -> Iterator[tuple[int, Tie, Seat]]:
-    """Number of the datum, what it asks, and where."""
+    """Number of the datum, its constraint, and the seat."""
     for k, datum in enumerate(frame.datums):
         own = [features(name) for name in datum.features]
         simulators = [nominal[name] for name in datum.features]
@@ -221,11 +221,11 @@ class PartFeatures:
         return found
 
     def forget(self, name: str) -> None:
-        """Free a feature that nothing is likely to ask for again; it is found anew if something does."""
+        """Free a feature that is unlikely to be needed again; it is recomputed if it is."""
         self._actual.pop(name, None)
 
     def displacement(self, frame: str) -> Pose:
-        """From where a datum frame is nominally to where it is; none of "", the part's frame."""
+        """Transform from the nominal to the actual datum frame; identity for "", the part's frame."""
         return self._found(frame)[0] if frame else IDENTITY
 
     def seats(self, frame: str) -> DatumSeats:

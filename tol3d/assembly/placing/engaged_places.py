@@ -1,4 +1,4 @@
-"""Offsets and clearances where a part engages, and how both change with its pose, in kernels.
+"""Offsets and clearances at a part's engagements, and their changes with its pose, in kernels.
 
 Poses are about the middle of all places: R p + t with p from the middle in the part, t from where that lies nominally.
 """
@@ -38,7 +38,7 @@ def taken(pose: Any, moves: bool, vector: Any, i: int, found: Any) -> None:
 
 @nested
 def places_at(pose: Any, engaged: Any, i: int, reach: float, place: Any, all_rows: Any, nominal: bool) -> None:
-    """Offsets and clearances at a pose; where rows are not nominal, how they change with turn by reach and shift."""
+    """Offsets and clearances at a pose; if rows are not nominal, their changes with turn by reach and shift."""
     moving, fixed, axes, _, halves, inner_moves, kinds, _, _ = engaged
     offsets, clearances, _, (apart, arm, normal, _, _, _), _ = place
     for k in range(kinds.shape[0]):
@@ -113,7 +113,7 @@ def bolt_in_hole(
 
 @nested
 def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, row: Any) -> None:
-    """The clearance of what leans in a slot, and its change, which joins the row of the side that is near.
+    """The clearance of a tilted body in a slot, and its change, which is added to the row of the near side.
 
     |o + B q| <= c + C q is on the side of o the same as |o + (B - C o / |o|) q| <= c.
     """
@@ -138,7 +138,7 @@ def leaning(pose: Any, engaged: Any, k: int, i: int, reach: float, place: Any, r
 
 @nested
 def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents: Any, rooms: Any) -> None:
-    """Motions (6, freedoms) that change nothing of what is kept, to LEFT; as `one_sided_gaps.tangents_at`."""
+    """Motions (6, freedoms) that keep the constraints, to LEFT; as `one_sided_gaps.tangents_at`."""
     vectors, normals, shifts, undo, _ = kept
     _, arm, normal, _, row, change = rooms
     copy_matrix(tangents, steps)
@@ -167,7 +167,7 @@ def kept_tangents(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangen
 def rows_here(
     pose: Any, trial: Any, reach: float, place: Any, all_rows: Any, tangents: Any, nominal: bool, turned: bool
 ) -> None:
-    """Offsets, clearances and rows B of the motions that keep what is kept, at a pose.
+    """Offsets, clearances and rows B of the motions that keep the constraints, at a pose.
 
     Args:
         pose, trial, reach, place, all_rows: of what; to work in.
@@ -277,7 +277,7 @@ def engaged_arrays(
 
 
 def _filled(arrays: Sequence[Array], trials: int) -> Array:
-    """Arrays (..., n) or (..., 1) of all places, with a trial of its own each."""
+    """Arrays (..., n) or (..., 1) of all places, stacked."""
     made = np.empty((len(arrays), *arrays[0].shape[:-1], trials))
     for own, target in zip(arrays, made, strict=True):
         target[...] = own

@@ -24,12 +24,12 @@ STEPS: Final = 60
 OPEN: Final = 1e-13
 """Fraction of clearances that is no slack."""
 STILL: Final = 1e-9
-"""Change of all offsets by a way of length 1 that is none."""
+"""Change of all offsets per unit distance that counts as none."""
 
 
 @nested
 def bolt_slack(own: Any, t: float, rooms: Any) -> Any:
-    """The largest slack of a bolt after a way t, and its change; NaN if it is not found."""
+    """The largest slack of a bolt after a distance t, and its derivative; NaN if it is not found."""
     offsets, clearances, rows, gone, at, q = own
     _, used, y, z, found, _, inner = rooms
     fill(used, True)
@@ -113,9 +113,9 @@ ROUNDS: Final = 40
 MET: Final = 1e-10
 """Residual [mm] predicted from the ratio of two steps, at which a trial is done."""
 TURNED: Final = 1e-5
-"""Step, a mm of reach, after which motions that keep what relations hold are found anew."""
+"""Step, per mm of reach, after which the motions that keep the relations are found anew."""
 LOST: Final = 1e-6
-"""Step [mm] at which it is not found, if that is still left after all rounds."""
+"""Step [mm] left after all rounds at which the pose counts as not found."""
 CENTRED: Final = 0
 PUSHED: Final = 1
 STRAYED: Final = 2
@@ -128,7 +128,7 @@ NONE: Final = 1e-300
 
 @nested
 def moved_on(pose: Any, trial: Any, reach: float, q: Any, tangents: Any, step: Any) -> None:
-    """Make a step (freedoms,) as a finite motion that keeps what is kept."""
+    """Make a step (freedoms,) as a finite motion that keeps the constraints."""
     _, i, kept, _, _ = trial
     for r in range(6):
         step[r] = 0.0
@@ -293,7 +293,7 @@ def engaged_poses_found(
     reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any,
     turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
 ) -> None:  # fmt: skip
-    """Poses of parts in their rooms.
+    """Poses of parts within their clearances.
 
     Args:
         moving: points of what engages, of the part (cones, 3, n), from the middle in its frame [mm].

@@ -1,4 +1,4 @@
-"""Parts that engage with play: offsets of pins, tabs, holes and slots, and the pose in their room, trial by trial."""
+"""Parts that engage with play: offsets of pins, tabs, holes and slots, and poses in the clearance, trial by trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,13 +24,13 @@ from tol3d.numerics.arrays import Array
 ROUNDS: Final = 20
 """Corrections of a pin towards its drawn place at most; each leaves a turn's share of the correction."""
 MET: Final = 1e-9
-"""Step [mm] after which a trial is done."""
+"""Step [mm] at which a trial is done."""
 LOST: Final = 1e-6
-"""Step [mm] at which it is not found, if that is still left after all rounds."""
+"""Step [mm] left after all rounds at which the pose counts as not found."""
 NUDGE: Final = 1e-4
-"""Motion [mm] by which it is found what relations leave free."""
+"""Motion [mm] by which the free motions under relations are found."""
 SEEN: Final = 1e-6
-"""Change of all offsets by a freedom of length 1 that is none."""
+"""Change of all offsets per unit freedom that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class Engaging:
         origin: the middle in the part's frame (3,) [mm].
         freedoms: motions that relations leave and offsets see: shift of the middle, turn times reach (6, freedoms).
         rows: change of each offset by them, and by shifts and leans of each bolt (cones, 2, freedoms + 4 bolts).
-        floats: where in its room the part lies.
+        floats: position of the part within its clearance.
         relations: that are kept.
         undo: steps, turn times reach and shift, that undo a change of what they keep (6, kept).
         nudge: a step (freedoms,) [mm] from where relations lay it that is all that the part does; None for its float.
@@ -64,11 +64,11 @@ class Engaging:
     nudge: Array | None = None
 
     def pushed(self, push: Array) -> "Engaging":
-        """It with the part as far along a direction of its freedoms (freedoms,) as its room goes; centred along 0."""
+        """The move with the part pushed to the limit along a direction of its freedoms (freedoms,); centred along 0."""
         return replace(self, floats=self.floats.pushed(push))
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,)."""
+        """The world after the move, and status codes (n,)."""
         start, seats = Pose.of(world.assembly.part[self.move.part].pose), self.mating.seats(world)
         pose, codes = self.mating.poses(world, seats, start)
         pose, count = _full(pose, world.trials), world.trials
@@ -88,7 +88,7 @@ class Engaging:
     def _found(
         self, world: World, seats: Sequence[Seat], start: Pose
     ) -> tuple[Pose, Array, NDArray[np.int64], NDArray[np.bool_]]:
-        """Poses in the room, slacks (n,), cones that have them (n,), and whether they are found (n,)."""
+        """Poses within the clearance, slacks (n,), cones that have them (n,), and flags of those found (n,)."""
         count, origin = world.trials, column(self.origin)
         begin = np.empty((3, 4, count))
         begin[:, :3], begin[:, 3] = start.turn, start.point(origin) - column(self.middle)
@@ -106,7 +106,7 @@ class Engaging:
     def _by_pairs(
         self, world: World, seats: Sequence[Seat], pose: Pose, asked: NDArray[np.bool_]
     ) -> tuple[Pose, NDArray[np.bool_]]:
-        """Poses where what is drawn of a float by pairs lays each pin, and whether they are found (n,)."""
+        """Poses at which each pin is where a float by pairs draws it, and flags of those found (n,)."""
         assert self.floats.by_pairs is not None
         drawn, lacking = world.columns[self.move.floating.columns], np.zeros(world.trials)
         targets = [world.placed(own) for own in self._targets(world)]
@@ -250,7 +250,7 @@ def _bolt_rows(move: Engage, world: World, at: Array) -> Array:
 
 
 def _free(mate: Mating, world: World, start: Pose, middle: Array, reach: float) -> Array:
-    """Orthonormal motions (6, free) that relations leave as they are: shift of the middle, turn times reach."""
+    """Orthonormal motions (6, free) that keep the relations: shift of the middle, turn times reach."""
     ends, seats = [], mate.seats(world)
     for sign in (1.0, -1.0):
         motion = sign * NUDGE * np.eye(6)

@@ -14,9 +14,9 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 NEWTONS: Final = 12
-"""Steps to the angle of a segment, from that of its third root: 5 reach rounding, more where it is small."""
+"""Steps to the angle of a segment, from the cube root's: 5 reach rounding, more if it is small."""
 PART: Final = 1e-6
-"""Change of an offset by a freedom of length 1 that is none."""
+"""Change of an offset per unit freedom that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,7 @@ class Floats:
     by_pairs: "Discs | None" = None
 
     def pushed(self, push: Array) -> "Floats":
-        """As far along a direction of the freedoms (freedoms,) as the room goes; centred along 0."""
+        """The float pushed to the limit along a direction of the freedoms (freedoms,); centred along 0."""
         return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push))
 
     def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array]:
@@ -71,7 +71,7 @@ class Floats:
 
 
 def _pushed_point(move: Engage, world: World) -> ActualFeature:
-    """The feature that goes along a direction, in the part's frame; as it lies nominally if it is of no such part."""
+    """The feature pushed along a direction, in the part's frame; nominal if it belongs to no such part."""
     at, part = move.floating.at, move.part
     if world.part_of(at) in world.bodies[part]:
         return world.on_body(at, part)
@@ -105,7 +105,7 @@ def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: 
 
 @dataclass(frozen=True, eq=False)
 class Discs:
-    """A pin anywhere in its hole, then a second one anywhere in what is left of its slot.
+    """A pin anywhere in its hole, then a second one anywhere in the rest of its slot.
 
     Args:
         inverse: of what the hole sees: the middle of both ends, or one end after the other (freedoms, 2 or 4).

@@ -1,4 +1,4 @@
-"""Which freedoms each feature takes of those that earlier ones left: the nominal analysis of a sequential alignment."""
+"""Freedoms that each feature takes of those left by earlier ones: the nominal analysis of a sequential alignment."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,11 +11,11 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 HELD = 1e-6
-"""Sine of an angle, or lever [mm], under which a freedom counts as held."""
+"""Sine of an angle, or lever [mm], below which a freedom counts as held."""
 
 
 def aligned(ties: Sequence[Tie], seats: Sequence[Seat], start: Pose) -> Alignment:
-    """The steps by which features are laid on their targets.
+    """The steps by which features are placed on their targets.
 
     Args:
         ties: in order.
@@ -66,7 +66,7 @@ class _Freedoms:
         return (len(self.turns), len(self.shifts), self.lying) != before
 
     def lay_down(self) -> None:
-        """Lay what still is to lie, for nothing else turns."""
+        """Lay the tie that still has to lie, as nothing else turns."""
         if self.lying >= 0 and isinstance(self.turning, str):
             self._turn(Step("lie", self.lying))
 
@@ -143,7 +143,7 @@ class _Freedoms:
         self.turns += [(step, len(self.shifts)) for step in steps]
 
     def _shift(self, index: int) -> bool:
-        """Shifts that a tie takes, as free of earlier ones as can be; whether there are any."""
+        """Shifts that a tie takes, as free of earlier ones as possible; True if there are any."""
         tie, seat = self.ties[index], self.seats[index]
         if tie.held == "all":
             asked = np.eye(3)
@@ -160,7 +160,7 @@ class _Freedoms:
         return bool(directions)
 
     def _turn_by_point(self, index: int, taken_before: bool) -> None:
-        """A turn about a pivot that brings a point where its tie asks."""
+        """A turn about a pivot that brings a point to its tie's target."""
         tie, seat = self.ties[index], self.seats[index]
         if isinstance(self.turning, str) and self.turning == "none":
             return
@@ -205,7 +205,7 @@ class _Freedoms:
         return bool(lever > HELD and lever > ends - HELD)
 
     def _aim_at(self, index: int) -> None:
-        """The line from a point that is held to another point takes two of three turns."""
+        """The line from a held point to another point takes two of three turns."""
         tie, seat = self.ties[index], self.seats[index]
         if self.pivot < 0 or self.lying >= 0:
             raise InputError(
@@ -232,7 +232,7 @@ def _unit(vector: Array) -> Array:
 
 
 FREE = 1e-9
-"""Largest change of a contact, as a share of how far a motion moves what the contacts are about, that is none."""
+"""Largest change of a contact, over the motion of the contacts' middle, that counts as none."""
 
 
 def free_motions(rows: Array, middle: Array, reach: float) -> Array:

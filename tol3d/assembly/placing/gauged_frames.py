@@ -1,8 +1,8 @@
-"""Datum frames on gauges of virtual condition: where these lie in the room that they share, trial by trial.
+"""Datum frames on gauges of virtual condition: position of the gauges in their common clearance, trial by trial.
 
-The datums regardless of size are met first and kept. In what they leave free the gauges, all of one piece, lie as a
-part with play does (`engaging`): the programme of `rooms` with the offsets at a pose, its steps as finite motions,
-until nothing moves.
+The datums regardless of size are met first and kept. In the freedoms left the gauges, all of one piece, lie like a part
+with play (`engaging`): the programme of `rooms` with the offsets at a pose, its steps as finite motions, until nothing
+moves.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,9 +25,9 @@ from tol3d.numerics.arrays import Array
 ROUNDS: Final = 12
 """Corrections of a pose at most; each leaves a turn's share, 1e-3 or less, of the correction."""
 MET: Final = 3e-8
-"""Step [mm] after which a trial is done."""
+"""Step [mm] at which a trial is done."""
 LOST: Final = 1e-6
-"""Step [mm] at which it is not found, if that is still left after all rounds."""
+"""Step [mm] left after all rounds at which the pose counts as not found."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ class GaugeFloats:
 
 
 HELD: Final = 1e-6
-"""Part of a motion that earlier datums see, under which they do not hold it."""
+"""Part of a motion that affects earlier datums, below which they do not hold it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ class GaugedFrame:
             orthonormal.
         motions: by these, with the least turn and the least shift of the middle that gauges do not see (6, freedoms).
         rows: change of each offset by them (cones, 2, freedoms).
-        floats: where in the room the part lies.
+        floats: position of the part within the clearance.
     """
 
     gauges: Gauges
@@ -119,7 +119,7 @@ class GaugedFrame:
     floats: GaugeFloats
 
     def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
-        """The part in the frame of its gauges, and what became of it (n,).
+        """The part in the frame of its gauges, and status codes (n,).
 
         Args:
             seats: of all ties of the frame.
@@ -148,7 +148,7 @@ class GaugedFrame:
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
 
     def as_kept(self, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Codes]:
-        """A pose as the datums before the gauges keep it."""
+        """A pose corrected to keep the datums before the gauges."""
         pose, codes = self.kept.poses(seats[: self.count], start)
         return full(pose, start.shift.shape[1]), codes
 

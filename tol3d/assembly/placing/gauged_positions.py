@@ -1,4 +1,4 @@
-"""Positions in a datum frame on gauges, which lie where they make it least: over all places in their common room.
+"""Positions in a datum frame on gauges, which take the best place in their common clearance.
 
 A value w is reached where the room and cones |p_e + P_e q| <= w + r_e of the ends have a common q. Their largest common
 slack is concave in w and grows with it: Newton's steps from below, by the share of the ends in its multipliers, never
@@ -24,9 +24,9 @@ STEPS: Final = 60
 SHORT: Final = 1e-12
 """Step [mm] at which they are done."""
 FREE: Final = 1e-9
-"""Share of the ends under which the room alone decides: it is empty."""
+"""Share of the ends below which the clearance alone decides: it is empty."""
 UNSEEN: Final = 1e-6
-"""Change of an end's offset by the freedoms that is none."""
+"""Change of an end's offset per unit freedom that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,7 @@ def inspected(measured: Measured, world: World) -> Inspected:
 def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Array:
     """Twice the least by which any end lies off, over places of the gauges, less what its feature has (n,) [mm].
 
-    Not a number where the datums take no gauges.
+    NaN where the datums do not fit their gauges.
 
     Args:
         measured: features, in a frame of gauges.

@@ -1,8 +1,8 @@
-"""A pattern over a gauge that may shift and turn: how far its worst hole is off, at the best pose, trial by trial.
+"""A pattern over a gauge that may shift and turn: offset of its worst hole at the best pose, trial by trial.
 
-For each turn the shift is that of a common opening. What is left is a function of the turn alone, the least of convex
-ones, whose slope follows from the discs that decide: turns are bracketed by the signs of slopes, and the next one is
-where the tangents at both ends meet, or the middle where they gain less than half.
+For each turn the shift is that of a common opening. The remaining function of the turn alone is the minimum of convex
+ones, with a slope from the discs that decide: turns are bracketed by the signs of slopes, and the next one is where the
+tangents at both ends meet, or the middle if they gain less than half.
 """
 
 from math import cos, sin, sqrt
@@ -19,11 +19,11 @@ from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-12
-"""mm, under the tangents of both ends of the bracket."""
+"""mm; largest gap below the tangents of both ends of the bracket at the end."""
 LEAST: Final = 1e-16
-"""rad; a bracket that is no wider is done."""
+"""rad; width of a bracket at the end."""
 WIDEST: Final = 0.5
-"""rad, where the search for a bracket ends."""
+"""rad; limit of the search for a bracket."""
 TURNS: Final = 200
 """In practice 5 to 15."""
 
@@ -72,7 +72,7 @@ def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> A
         deciding: which decide (3,).
         found: the point (2,).
         rises: how the centres move with the turn (discs, 2).
-        pulls: room for directions and weights (3, 3).
+        pulls: work array for directions and weights (3, 3).
     """
     if weights_of(discs, deciding, found, pulls) < 2:
         return 0.0
@@ -168,17 +168,17 @@ def gauged_patterns(x: Any, y: Any, radii: Any, nominal: Any, worst: Any) -> Non
 STEPS: Final = 100
 """In practice 1 to 6."""
 FREE: Final = 1e-12
-"""Weight of places under which the room alone decides: it is empty."""
+"""Weight of places below which the clearance alone decides: it is empty."""
 
 
 @kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], int64, float64[::1]")
 def least_in_rooms(x: Any, y: Any, radii: Any, places: Any, least: Any) -> None:
-    """The least by which circles about places grow until all circles have a point in common; nan where none do.
+    """The least growth of circles about places at which all circles have a common point; NaN if there is none.
 
     Args:
-        x, y: centres, of the places, then of the room (circles, n) [mm].
-        radii: of the places without growth, less than 0 or not, then of the room (circles, n) [mm].
-        places: how many of them are places.
+        x, y: centres, of the places, then of the clearances (circles, n) [mm].
+        radii: of the places without growth, of either sign, then of the clearances (circles, n) [mm].
+        places: number of places among them.
         least: found (n,) [mm].
     """
     size = x.shape[0]
@@ -218,12 +218,12 @@ def _ends(axis: ActualFeature) -> Array:
 
 
 def position_in_room(measured: Measured, world: World, actual: ActualFeature, into: Pose, bonus: Array) -> Array:
-    """Twice the least distance of the worse end, less the bonus (n,) or (1,) [mm]; nan where no gauge fits.
+    """Twice the least distance of the worse end, less the bonus (n,) or (1,) [mm]; NaN if no gauge fits.
 
     Args:
         measured: what, with a room.
         world: as it is read.
-        actual: the feature as its datum frame sees it.
+        actual: the feature in its datum frame.
         into: of that frame, from the part's.
         bonus: of its size.
     """

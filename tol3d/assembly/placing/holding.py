@@ -33,7 +33,7 @@ from tol3d.assembly.placing.touching import Touching
 from tol3d.numerics.arrays import Array
 
 HELD: Final = 1e-6
-"""Part of what is asked that must act on the motions left, else earlier ones hold it: directions have some digits."""
+"""Part of a constraint that must act on the motions left, else earlier ones hold it: directions have some digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +53,13 @@ class Asked:
 
 @dataclass(frozen=True, eq=False)
 class Taken:
-    """Freedoms that something takes.
+    """Freedoms taken by a constraint.
 
     Args:
-        words: what takes them.
+        words: the constraint.
         shifts: orthonormal directions (shifts, 3).
         turns: orthonormal directions of their axes (turns, 3).
-        is_room: whether they are not taken, but limited by a clearance.
+        is_room: True if they are not taken, but limited by a clearance.
     """
 
     words: str
@@ -94,7 +94,7 @@ def taken(asked: Sequence[Asked], middle: Array, reach: float) -> Freedoms:
     Args:
         asked: constraints in order.
         middle: the point (3,) about which their rows are [mm].
-        reach: of what they are about from there [mm].
+        reach: largest distance from there [mm].
     """
     scale = np.array([1.0, 1.0, 1.0, 1 / reach, 1 / reach, 1 / reach])
     left, found = np.eye(6), []
@@ -113,7 +113,7 @@ def taken(asked: Sequence[Asked], middle: Array, reach: float) -> Freedoms:
 
 
 def _place(motion: Array, middle: Array) -> str:
-    """Through which point the axis of a motion (6,) passes, the nearest to the origin; "" for a shift."""
+    """The point nearest to the origin on the axis of a motion (6,), in words; "" for a shift."""
     shift, turn = np.split(motion, 2)
     size = float(turn @ turn)
     if size * max(1.0, float(middle @ middle)) < HELD**2:
@@ -298,7 +298,7 @@ def _touched(assembly: Assembly, name: str) -> str:
 
 
 def _listed(names: Sequence[str]) -> str:
-    """Names of features; their part once, where it is one: "cover.A1, A2"."""
+    """Names of features; a common part is named once: "cover.A1, A2"."""
     part = names[0].partition(".")[0]
     if any(name.partition(".")[0] != part for name in names):
         return ", ".join(names)
@@ -326,7 +326,7 @@ def _across(direction: Array) -> Array:
 
 
 def _about(rows: Array, off: Array) -> Array:
-    """Rows (n, 6) about another point, from which that of the given ones lies off (3,)."""
+    """Rows (n, 6) about another point, from which that of the given rows is offset by (3,)."""
     return np.hstack([rows[:, :3], rows[:, 3:] + np.cross(off, rows[:, :3])])
 
 

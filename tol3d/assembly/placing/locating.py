@@ -1,4 +1,4 @@
-"""Parts on six locators, 3-2-1 or six planes: what their contacts ask, trial by trial."""
+"""Parts on six locators, 3-2-1 or six planes: poses by their contacts, trial by trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ CHORDS: Final = 14
 """Steps with the nominal inverse before Newton's method; a turn of 1e-2 takes seven."""
 NEWTONS: Final = 60
 MET: Final = 1e-13
-"""Step [rad, and mm a mm of the points' reach] after which a trial is done: the next one were shorter yet."""
+"""Step [rad, and mm per mm of the points' reach] at which a trial is done: the next one would be even shorter."""
 
 
 @nested
@@ -125,17 +125,17 @@ def contacts_met(
 
 @dataclass(frozen=True, eq=False)
 class Locating:
-    """A move on six locators, as its contacts are nominally.
+    """A move on six locators, with its nominal contacts.
 
-    What the points ride on is found in the frame of what the planes stay with: of the first target's part, or of the
-    part that is placed, where points are on the fixture.
+    The part with the points is placed in the frame of the part with the planes: of the first target's part, or of the
+        placed part if points are on the fixture.
 
     Args:
         move: the move.
-        middle: of the points, in the frame of what they ride on (3, 1) [mm].
-        origin: where that lies in the frame of what the planes stay with (3, 1) [mm].
+        middle: of the points, in the frame of their part (3, 1) [mm].
+        origin: its place in the frame of the planes' part (3, 1) [mm].
         reach: of the points about it [mm].
-        inverse: turn times reach, and shift, of what the contacts lack (6, 6).
+        inverse: turn times reach, and shift, per contact residual (6, 6).
         start: the pose about both, nominally (3, 4).
     """
 
@@ -147,7 +147,7 @@ class Locating:
     start: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,)."""
+        """The world after the move, and status codes (n,)."""
         move, reference = self.move, world.part_of(self.move.pairs[0].target)
         contacts = [_contact(move, pair, world, reference) for pair in move.pairs]
         points = _stacked([point for point, _, _, _ in contacts])
@@ -197,7 +197,7 @@ def locating(move: Locate, nominal: World) -> Locating:
 
 
 def _refuse_free(move: Locate, nominal: World, reference: str, normals: Array, middle: Array, arms: Array) -> None:
-    """Refuse contacts that leave a freedom, said in the world."""
+    """Refuse contacts that leave a freedom, named in the world."""
     reach = max(float(np.linalg.norm(arms, axis=1).max()), 1.0)
     frame = nominal.poses[reference if move.points_on == "part" else move.part]
     turn, shift = frame.turn[:, :, 0], frame.shift[:, 0]

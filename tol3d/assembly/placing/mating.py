@@ -1,4 +1,4 @@
-"""Mated parts: what relations ask of their two features, trial by trial."""
+"""Mated parts: constraints by relations of two features, trial by trial."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -43,7 +43,7 @@ class Mating:
     signs: tuple[float, ...]
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,) or (1,)."""
+        """The world after the move, and status codes (n,) or (1,)."""
         pose, codes = self.poses(world, self.seats(world))
         return world.with_part_at(self.move.part, pose), codes
 
@@ -124,7 +124,7 @@ def _is_point(actual: ActualFeature) -> bool:
 
 
 INDEPENDENT = 1e-6
-"""Least part of what is kept that acts on the freedoms left, else earlier relations keep it."""
+"""Least part of a constraint that acts on the freedoms left, else earlier relations keep it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +143,7 @@ class Kept:
     groups: tuple[int, ...]
 
     def about(self, middle: Array) -> "Kept":
-        """The same of poses that say where a middle of the part (3, 1) [mm] is, not its origin."""
+        """The same for poses that state the place of a middle of the part (3, 1) [mm], not of its origin."""
         return replace(self, vectors=np.ascontiguousarray(self.vectors - self.shifts[:, None, None] * middle))
 
 
@@ -156,8 +156,8 @@ class KeptRelations:
 
     Args:
         mating: that meets them.
-        length: by which directions count [mm].
-        toward: the nominal directions of their targets (3,), of unit length; 0 of points.
+        length: by which directions count [mm]. toward: the nominal directions of their targets (3,), of unit length; 0
+            of points.
     """
 
     mating: Mating
@@ -165,7 +165,7 @@ class KeptRelations:
     toward: tuple[Array, ...]
 
     def met(self, world: World) -> tuple[Pose, Codes, Kept]:
-        """Poses that meet them, what became of it, and what they keep."""
+        """Poses that meet them, status codes, and the quantities that they keep."""
         seats = self.mating.seats(world)
         pose, codes = self.mating.poses(world, seats)
         return pose, codes, self.kept_by(seats)
@@ -209,7 +209,7 @@ def kept_relations(move: Rest, nominal: World, length: float) -> KeptRelations |
 
 
 def kept_of(found: Mating, nominal: World, length: float) -> KeptRelations:
-    """Relations that are met, as what they keep.
+    """Quantities kept by relations that are met.
 
     Args:
         found: that meets them.
@@ -221,7 +221,7 @@ def kept_of(found: Mating, nominal: World, length: float) -> KeptRelations:
 
 
 def _across(middle: Array, direction: Array) -> list[Array]:
-    """Two directions square to others (3, n) near one (3,), nearly of unit length."""
+    """Two directions perpendicular to others (3, n) near one (3,), nearly of unit length."""
     first = np.cross(middle, np.eye(3)[int(np.argmin(np.abs(middle)))])
     first /= np.linalg.norm(first)
     found = []
@@ -241,7 +241,7 @@ def kept_rows(kept: Kept, turn: Array, reach: float) -> Array:
 
 
 def kept_motions(kept: Kept, turn: Array, reach: float, steps: Array) -> tuple[Array, Array]:
-    """Which of some steps change nothing that is kept nominally, and which undo a change of each.
+    """Steps that keep the constraints nominally, and steps that undo a change of each.
 
     Args:
         kept: nominally.

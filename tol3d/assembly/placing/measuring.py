@@ -25,7 +25,7 @@ from tol3d.numerics.arrays import Array
 def widths(points: Sequence[Array]) -> Array:
     """Widths of points, each (3, n) or (3, 1), in their trials (n,) [mm].
 
-    At the least width one plane touches three points, or each of them two: all such directions are tried.
+    At the least width one plane touches three points, or each plane two: all such directions are tried.
     """
     least = np.full(1, np.inf)
     for normal in _normals(points):
@@ -85,7 +85,7 @@ def pattern(measured: Measured, world: World) -> Array:
 
 TURN: Final = 2 * math.pi
 LEANS: Final = 1e-6
-"""Sine of an angle by which an axis leans nominally; less has no azimuth."""
+"""Sine of an axis' nominal tilt; a smaller tilt has no azimuth."""
 FLAT: Final = 1e-12
 """Sine of an angle that is nominally 0 or half a turn: half a turn is pi, not -pi."""
 
@@ -105,11 +105,11 @@ def reading(measured: Measured, worlds: Sequence[World]) -> Array:
 def may_lack(measured: Measured, codes: Mapping[int, Codes]) -> NDArray[np.bool_]:
     """Trials in which a measure may have no value although nothing before it fails (n,) or (1,).
 
-    That is where datums take no gauge, and where the slack is asked of a move that finds no pose.
+    Such as if datums do not fit their gauges, or for the slack of a move that finds no pose.
 
     Args:
         measured: the measure.
-        codes: what became of moves, by their places.
+        codes: status codes of moves, by index.
     """
     lacks = np.array([measured.room is not None or measured.over_gauges])
     if measured.of_move >= 0:
@@ -122,7 +122,7 @@ def _length(vector: Array) -> Array:
 
 
 def _direction(measured: Measured, world: World) -> Array:
-    """The measure's direction in the world (3, n), as its part or its datum frame carries it."""
+    """The measure's direction in the world (3, n), carried by its part or datum frame."""
     part = world.part_of(measured.features[0])
     return rotated(world.poses[part].turn, _on_part(measured, world))
 
@@ -191,18 +191,18 @@ def size(measured: Measured, world: World) -> Array:
 
 
 def _inspected(measured: Measured, world: World) -> tuple[ActualFeature, Array]:
-    """A feature as its datum frame sees it, and its nominal frame (4, 4)."""
+    """A feature in its datum frame, and its nominal frame (4, 4)."""
     (name,) = measured.features
     displacement = world.own[world.part_of(name)].displacement(measured.frame)
     return world.on_part(name).moved(displacement.inverse), world.assembly.features[name].frame
 
 
 def position(measured: Measured, world: World) -> Array:
-    """Twice the largest distance of the feature's ends from where `frame` has them nominally.
+    """Twice the largest distance of the feature's ends from their nominal places in `frame`.
 
     Of an axis across the nominal axis, of a plane along the nominal normal, of a point in space; across the direction
-    if there is one, which is fixed in that frame. With a bonus less that of the feature's size: what is judged against
-    the zone at its material condition, for 2 distance <= t0 + bonus.
+    if there is one, which is fixed in that frame. With a modifier it is reduced by the bonus of the feature's size, for
+    comparison with the zone at its material condition: 2 distance <= t0 + bonus.
     """
     actual, frame = _inspected(measured, world)
     if measured.room is not None:
@@ -360,7 +360,7 @@ def virtual_clearance(measured: Measured, world: World) -> Array:
     """Diameters (n,) [mm]; below 0 where the holes have no line in common.
 
     The bolt stands along the nominal axis of the first hole, as its part or a datum frame carries it. Each hole leaves
-    the circles of its diameter about both its ends; that they are ellipses where it leans is of second order.
+    the circles of its diameter about both its ends; their ellipticity by a tilt is of second order.
     """
     first = measured.features[0]
     part = world.part_of(first)

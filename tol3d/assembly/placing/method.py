@@ -1,4 +1,4 @@
-"""The exact method: where parts are and what measures read, by finite poses, block by block of trials."""
+"""The exact method: poses of parts and values of measures, by finite poses, in blocks of trials."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,9 +24,9 @@ BLOCK = 8192
 """Trials at a time: their arrays stay in a core's cache."""
 
 NUDGE = 1e-3
-"""Step [mm] from which it follows how a measure changes with a part's play."""
+"""Step [mm] for the slope of a measure with a part's play."""
 FLAT = 1e-9
-"""Change of a measure with it that is none."""
+"""Change of a measure by it that counts as none."""
 
 
 def values(
@@ -61,7 +61,7 @@ def answers(
 def planned_answers(
     plan: PlacingPlan, deviations: Array, names: Sequence[str], kept: dict[int, dict[str, Any]] | None = None
 ) -> tuple[dict[str, tuple[Array, Codes]], dict[str, NDArray[np.str_]]]:
-    """The same of an assembly as it is planned; `kept` of the same trials in other poses by their blocks, see World."""
+    """The same for a planned assembly; `kept`: by block, of the same trials in other poses, see World."""
     assembly = plan.assembly
     deviations = np.asarray(deviations, dtype=np.float64)
     found = {name: (np.empty(len(deviations)), np.empty(len(deviations), dtype=np.int8)) for name in names}
@@ -111,7 +111,7 @@ def features_placed(assembly: Assembly, deviations: Array, after: int = -1) -> d
     Args:
         assembly: the model.
         deviations: (trials, width) [mm].
-        after: index of the move after which they are asked; -1 for the end.
+        after: index of the move after which they are evaluated; -1 for the end.
 
     Returns:
         By feature: frames in the world (trials, 4, 4), NaN where a move that placed its part failed.
@@ -132,7 +132,7 @@ def features_placed(assembly: Assembly, deviations: Array, after: int = -1) -> d
 
 @dataclass(frozen=True, eq=False)
 class _Block:
-    """Trials that are placed: the worlds before the first move and after each, and what became of causes (n,)."""
+    """Placed trials: the worlds before the first move and after each, and codes of causes (n,)."""
 
     worlds: tuple[World, ...]
     codes: dict[int, Codes]
@@ -166,10 +166,10 @@ def _placed(
     otherwise: _Block | None = None,
     kept: dict[str, Any] | None = None,
 ) -> _Block:
-    """Trials as moves place them.
+    """Trials placed by moves.
 
     Args:
-        plan: how.
+        plan: the plan.
         deviations: (n, width) [mm].
         instead: other moves for some, by their places.
         otherwise: the same trials without these; before the first of them nothing is placed anew.
@@ -195,7 +195,7 @@ def _placed(
 
 
 def _refuse_lost(what: str, lost: NDArray[np.bool_]) -> None:
-    """Raise a fault, no status, where a number is lost in a trial (n,) that nothing fails."""
+    """Raise an error, no status, if a value is NaN in a trial (n,) without a failure."""
     if lost.any():
         raise FloatingPointError(f"{what} is not a number in {np.count_nonzero(lost)} trials that nothing fails")
 
@@ -214,7 +214,7 @@ def _read(plan: PlacingPlan, block: _Block, name: str, causes: Sequence[Cause]) 
 
 
 def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[Array, Codes]:
-    """Values and codes (n,) of a clearance, from codes of what placed its parts."""
+    """Values and codes (n,) of a clearance, from the codes of its parts' moves."""
     if plan.solids is None:
         raise ValueError(f"{name}: nothing reads the distances of solids")
     measured = plan.assembly.measures[name]
@@ -256,7 +256,7 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
 
 @lru_cache(maxsize=256)
 def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, Engaging]:
-    """Moves with play as they take a measure to its least or largest value, by its change with each nominally."""
+    """Moves with play, pushed to the least or largest value of a measure, by its nominal slopes."""
     sign = 1.0 if plan.assembly.measures[name].over_play == "largest" else -1.0
     found, rest = dict[int, Engaging](), np.zeros((1, plan.assembly.width))
     for index, move in enumerate(plan.moves):

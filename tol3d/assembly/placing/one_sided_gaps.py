@@ -1,4 +1,4 @@
-"""Gaps of one-sided contacts of a part, what its relations keep, and how both change with its pose, in kernels."""
+"""Gaps of a part's one-sided contacts, constraints by its relations, and their changes with its pose, in kernels."""
 
 from typing import Any, Final
 
@@ -9,9 +9,9 @@ from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import copy_matrix, fill
 
 MET: Final = 1e-13
-"""Step [rad, and mm a mm of reach] after which a trial is done."""
+"""Step [rad, and mm per mm of reach] at which a trial is done."""
 TIMES: Final = 40
-"""Corrections of what is kept; a turn of 0.1 takes 13."""
+"""Corrections of the constraints; a turn of 0.1 takes 13."""
 
 
 @nested
@@ -88,9 +88,9 @@ def pull_at(pose: Any, force: Any, reach: float, pull: Any) -> float:
 
 @nested
 def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents: Any) -> None:
-    """Steps (6, motions), turn by reach and shift, that change at a pose nothing of what is kept.
+    """Steps (6, motions), turn by reach and shift, that keep the constraints at a pose.
 
-    The nominal ones do nearly; what they change is undone by nominal steps, which leaves less by the turn each time.
+    The nominal ones nearly do; their error is undone by nominal steps, each reducing it by the turn.
     """
     vectors, normals, shifts, undo, _ = kept
     copy_matrix(tangents, steps)
@@ -118,7 +118,7 @@ def tangents_at(pose: Any, kept: Any, i: int, steps: Any, reach: float, tangents
 
 @nested
 def undoing(pose: Any, kept: Any, i: int, step: Any) -> None:
-    """The step (6,), turn by reach and shift, that undoes a change of what is kept."""
+    """The step (6,), turn by reach and shift, that undoes a change of the constraints."""
     vectors, normals, shifts, undo, first = kept
     fill(step, 0.0)
     for e in range(first.shape[0]):

@@ -26,7 +26,7 @@ from tol3d.numerics.arrays import Array
 
 
 class Placer(Protocol):
-    """A move as its nominal geometry decides it, of another mechanism; frozen, and it has no equals."""
+    """A move of another mechanism, planned by its nominal geometry; frozen, compared by identity."""
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after it, and what became of it: codes (n,) or (1,) of tol3d.assembly.model.statuses."""
@@ -40,15 +40,15 @@ _MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
 @dataclass(frozen=True, eq=False)
 class PlacingPlan:
-    """An assembly as it is placed, and what its nominal geometry decides once for all trials.
+    """An assembly with its plan of placing, made from nominal geometry once for all trials.
 
     Args:
         assembly: the model.
         datum_seats: of each part its datum frames.
         moves: in order.
-        causes: before the first move and after each, what may have failed.
+        causes: possible failures before the first move and after each.
         solids: reads clearances.
-        still: of each part its features that never deviate, as far as they were asked for.
+        still: of each part its features that never deviate, as far as they were needed.
     """
 
     assembly: Assembly
@@ -130,7 +130,7 @@ def world_before(
 
 
 def after(move: Placing, world: World) -> tuple[World, Codes]:
-    """The world after a move, and what became of it (n,) or (1,)."""
+    """The world after a move, and status codes (n,) or (1,)."""
     match move:
         case Fix():
             return world.with_part_at(move.part, Pose.of(world.assembly.part[move.part].pose)), _MOVED

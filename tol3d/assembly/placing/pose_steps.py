@@ -7,7 +7,7 @@ import numpy as np
 from tol3d.numerics.compiled import nested
 
 NO_PIVOT: Final = 1e-12
-"""Pivot of equations whose coefficients are about 1, under which they have lost their rank."""
+"""Pivot of equations with coefficients of about 1, below which they are singular."""
 
 
 @nested
@@ -25,7 +25,7 @@ def turned_by(pose: Any, a: float, b: float, c: float) -> None:
 
 @nested
 def stepped(pose: Any, step: Any, reach: float) -> Any:
-    """Move a pose by a step (6,): turn times reach, and shift; its length, a turn [rad] or a shift a reach."""
+    """Move a pose by a step (6,), turn times reach and shift; returns its length, a turn [rad] or a shift per reach."""
     turned_by(pose, step[0] / reach, step[1] / reach, step[2] / reach)
     length = 0.0
     for r in range(3):
@@ -36,7 +36,7 @@ def stepped(pose: Any, step: Any, reach: float) -> Any:
 
 @nested
 def solved(matrix: Any, right: Any, count: int) -> bool:
-    """Solve count equations in place by elimination with pivots; whether they have their rank."""
+    """Solve count equations in place by elimination with pivots; False if they are singular."""
     for k in range(count):
         best = k
         for i in range(k + 1, count):

@@ -1,8 +1,8 @@
-"""Poses of many trials, component by component: what is one and the same in all trials is computed once.
+"""Poses of many trials, component by component: values common to all trials are computed once.
 
-Arrays have the trial on the LAST axis: vectors (3, n), rotations (3, 3, n), with n = 1 for what does not vary, so that
-each product is a few long loops; `numerics.frames` has the trial first. No BLAS and no function of angles: a trial has
-the same bits alone and among thousands.
+Arrays have the trial on the LAST axis: vectors (3, n), rotations (3, 3, n), with n = 1 if nothing varies, so that each
+product is a few long loops; `numerics.frames` has the trial first. No BLAS and no function of angles: a trial has the
+same bits alone and among thousands.
 """
 
 from dataclasses import dataclass

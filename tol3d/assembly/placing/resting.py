@@ -1,4 +1,4 @@
-"""Parts at rest on one-sided contacts: what these are nominally, and the pose that each trial takes."""
+"""Parts at rest on one-sided contacts: nominal contacts, and the pose of each trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,13 +25,13 @@ from tol3d.numerics.arrays import Array
 SLIGHT = 1e-5
 """Fraction of the force added to it to see which contacts would carry if it pointed slightly aside."""
 MISSED = 1e-9
-"""Part of a force that contacts leave over, of which none is left."""
+"""Fraction of a force left over by contacts that counts as none."""
 OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=np.int8)
 
 
 @dataclass(frozen=True, eq=False)
 class Resting:
-    """A rest, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
+    """A rest with its nominal contacts; solved in the world, with the middle of the part's features at 0.
 
     Args:
         move: the move.
@@ -41,8 +41,8 @@ class Resting:
         start: the nominal pose there (3, 4, 1).
         relations: that are kept, if there are any.
         undo: steps that undo a change of what they keep (6, kept).
-        all_rows: how nominal gaps change with turn times reach and shift (contacts, 6).
-        steps: motions that contacts see and relations leave, turn times reach and shift (6, motions).
+        all_rows: how nominal gaps change with turn times reach and shift (contacts, 6). steps: motions that contacts
+            see and relations leave, turn times reach and shift (6, motions).
         rows: how nominal gaps change with the motions (contacts, motions).
         pull: of the force, along the motions (motions,).
         basis: contacts that would carry if all were touched, one for each motion.
@@ -68,7 +68,7 @@ class Resting:
     nudge: Array | None = None
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,)."""
+        """The world after the move, and status codes (n,)."""
         trials = world.trials
         turn, shift = np.empty((3, 3, trials)), np.empty((3, trials))
         carried, outcomes = np.empty((len(self.rows), trials)), np.empty(trials, dtype=np.int8)
@@ -85,10 +85,10 @@ class Resting:
         return placed, np.where(before == OK, OUTCOMES[outcomes], before).astype(np.int8)
 
     def _found(self, given: Sequence[Array], kept_shifts: Array, results: Sequence[Array | Codes]) -> None:
-        """Fill in poses (3, 3, n) and (3, n), what contacts carry (contacts, n), and what became of it (n,).
+        """Fill in poses (3, 3, n) and (3, n), loads of contacts (contacts, n), and outcomes (n,).
 
         Args:
-            given: points, normals and heights of contacts, what relations keep, and where the part begins; (..., n) or
+            given: points, normals and heights of contacts, constraints by relations, and the first pose; (..., n) or
                 (..., 1).
             kept_shifts: see Kept.
             results: filled in.
@@ -130,7 +130,7 @@ class Resting:
         return np.array(ends[0]), -np.array(ends[1])
 
     def leaning(self, along: Array) -> "Resting":
-        """The same, that goes as far along some motion (motions,) as it can where it may rock."""
+        """The same, pushed to the limit along a motion (motions,) where it may rock."""
         basis, inverse, loads = first_basis(self.rows, self.pull, along)
         return replace(self, basis=basis, inverse=inverse, loads=loads)
 
@@ -194,12 +194,12 @@ def _seen(rows: Array, kept: Array, reach: float) -> Array:
 
 
 def generic(motions: int) -> Array:
-    """A motion that is along nothing in particular (motions,)."""
+    """A motion parallel to nothing in particular (motions,)."""
     return np.asarray(np.sqrt(2.0 + np.arange(motions)) % 1.0 + 0.1)
 
 
 def first_basis(rows: Array, pull: Array, along: Array) -> tuple[NDArray[np.int64], Array, Array]:
-    """Contacts that carry a force and, where several sets do, also what leans along another motion.
+    """Contacts that carry a force and, if several sets do, a force tilted along another motion too.
 
     Returns:
         Contacts (motions,), the inverse of their rows (motions, motions), loads on them of both (2, motions).
@@ -225,7 +225,7 @@ def _completed(rows: Array, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _refuse_unheld(move: Rest, rows: Array, pull: Array, free: Array, reach: float, origin: Array) -> None:
-    """Refuse contacts of which no forces balance the one on the part, with the motion that it then takes.
+    """Refuse contacts whose forces cannot balance the one on the part, with its resulting motion.
 
     Args:
         free: steps that relations leave (6, steps).
@@ -240,7 +240,7 @@ def _refuse_unheld(move: Rest, rows: Array, pull: Array, free: Array, reach: flo
 
 
 def _refuse_loose(move: Rest, rows: Array, pull: Array, steps: Array, reach: float, origin: Array) -> None:
-    """Refuse contacts that nothing presses the part against, with the motion by which it may leave them."""
+    """Refuse contacts against which no force presses the part, with the motion by which it may leave them."""
     own_rows, own_pull = rows @ steps, pull @ steps
     for step in np.eye(len(own_pull)):
         for aside in (step, -step):

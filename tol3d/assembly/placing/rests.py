@@ -17,13 +17,13 @@ from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy, copy_matrix
 
 OPEN: Final = -1e-11
-"""Gap [mm] under which a contact is pierced."""
+"""Overlap [mm] above which a contact interferes."""
 PIVOTS: Final = 400
 """Exchanges of contacts in one trial; in practice as many as contacts."""
 ACTS: Final = 1e-9
 """Closing of a gap per opening of another one that counts as none."""
 TIED: Final = 1e-9
-"""Part of the force under which a contact carries nothing."""
+"""Fraction of the force below which a contact carries nothing."""
 
 
 @nested
@@ -46,7 +46,7 @@ def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
 
 @nested
 def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
-    """Let a new contact take the place of one: the inverse of the basis, and the loads on it."""
+    """Replace a contact of the basis by a new one: the inverse of the basis, and the loads on it."""
     count = loads.shape[1]
     pivot = closes[out]
     for j in range(count):
@@ -103,7 +103,7 @@ def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: 
 STEPS: Final = 60
 RESTS: Final = 0
 CLASHES: Final = 1
-"""No motion opens all gaps: the part finds no room."""
+"""No motion opens all gaps: the part does not fit."""
 LOST: Final = 2
 TIPS: Final = 3
 """Nothing stops the part: it tips off its contacts, or slides."""
@@ -170,7 +170,7 @@ def pressed(
 
 @nested
 def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
-    """Put the pose as it begins, and note what is kept there."""
+    """Set the first pose, and store its constraints."""
     vectors, normals, shifts, _, _ = kept
     at = min(i, start.shape[2] - 1)
     for r in range(3):
@@ -182,7 +182,7 @@ def begin(pose: Any, first: Any, start: Any, i: int, kept: Any) -> None:
 
 @nested
 def note(outcome: int, pose: Any, basis: Any, loads: Any, i: int, found: Any) -> None:
-    """Write down where a part is, and what its contacts carry if it rests."""
+    """Store the pose of a part, and the loads of its contacts if it rests."""
     turns, shifts, carried = found
     rests = outcome in (RESTS, BETWEEN)
     for k in range(carried.shape[0]):

@@ -1,7 +1,7 @@
-"""Measures of parts that may rock: a force that fewer contacts than freedoms carry leaves a part more poses than one.
+"""Measures of parts that may rock: a force carried by fewer contacts than freedoms leaves a part several poses.
 
-The poses that go as far along the force as each other are a flat piece of all poses. What varies over it, to first
-order, is read at the two ends that lie farthest apart for the measure.
+The poses equally far along the force form a flat set. A measure that varies over it, to first order, is read at its two
+ends that are farthest apart for the measure.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,11 +22,11 @@ from tol3d.numerics.arrays import Array
 from tol3d.system.outcome import reason_column
 
 NUDGE: Final = 1e-3
-"""mm; by which parts are moved for the slopes of measures."""
+"""mm; displacement of parts for the slopes of measures."""
 DEPENDS: Final = 1e-6
-"""Slope [mm/mm] of a measure under which it does not see a motion."""
+"""Slope [mm/mm] of a measure below which a motion has no effect."""
 KINK: Final = 1e-2
-"""Change of a slope over a nudge from which a measure is not smooth: a distance that is nominally 0."""
+"""Change of a slope over a small step from which a measure is not smooth: a distance that is nominally 0."""
 NARROW: Final = 1e-9
 """mm or rad; what varies by less over all poses is unique."""
 
@@ -51,9 +51,9 @@ def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: i
 
 
 def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
-    """In which trials a measure changes with a motion that no contact which carries the force prevents (n,).
+    """Flags of trials in which a measure changes with a motion that no load-carrying contact prevents (n,).
 
-    Contacts that do not carry the force in the nominal pose do so by the tilt that balances it: that is one pose.
+    Contacts without load in the nominal pose may carry it by the tilt that balances the force: that is one pose.
 
     Args:
         slope: of the measure along the motions (motions,).
@@ -71,7 +71,7 @@ def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
 
 
 def carrying(carried: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """The sets of contacts that carry (sets, contacts), and which one does in each trial (n,)."""
+    """The sets of contacts that carry load (sets, contacts), and the set of each trial (n,)."""
     keys = np.packbits(carried > 0.0, axis=0).T
     _, first, which = np.unique(
         np.ascontiguousarray(keys).view(np.dtype((np.void, keys.shape[1])))[:, 0],
@@ -88,7 +88,7 @@ def over_poses(low: Array, high: Array, alone: Array, codes: Codes, rocking: Roc
         low, high: its values there (n,).
         alone: at some pose between (n,).
         codes: so far (n,).
-        rocking: which one is asked.
+        rocking: the value to take.
     """
     wide = (codes == OK) & ~(np.abs(high - low) <= NARROW)
     if rocking is None:
@@ -106,14 +106,15 @@ def decided(
 ) -> Iterator[tuple[str, Words]]:
     """Columns (n,) by their names.
 
-    Of a rest which contacts carry, such as "1 3 4"; of a move with play the pair that has the least slack; of a measure
-    that hangs on rooms, where it is not built, the pair or the datums of the first of them that is too small, else "".
+    For a rest its load-carrying contacts, such as "1 3 4"; for a move with play the pair with the least slack; for a
+    measure that could not be read for lack of clearance, the pair or the datums of the first clearance that is too
+    small, else "".
 
     Args:
         assembly: the model.
         world: after the last move.
-        on_the_way: of each measure that is read, what may fail on the way to it, in order.
-        codes: what became of it (n,).
+        on_the_way: possible failures before each measure, in order.
+        codes: its status codes (n,).
     """
     for name, loads in world.loads.items():
         sets, which = carrying(loads)
@@ -130,7 +131,7 @@ def decided(
 
 
 def _inspecting(measured: Measured, assembly: Assembly) -> tuple[GaugeRoom, ...]:
-    """The gauges over whose places a measure is read."""
+    """The gauges whose positions a measure minimises over."""
     if measured.room is not None:
         return (measured.room,)
     frame = assembly.datum_frames[measured.frame] if measured.over_gauges else None

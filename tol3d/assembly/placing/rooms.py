@@ -1,9 +1,9 @@
 """Position of a part with play within its clearance: convex programmes for each trial, in a kernel.
 
 Offsets o_k + B_k q of the places where it engages (two numbers each; of a slot the second is 0) have to stay within
-clearances c_k. The centred q makes the least slack s = min(c_k - |o_k + B_k q|) as large as can be, then the least of
-those that this leaves open, and so on. A cone with a multiplier has the same offset in every solution of its round, so
-that further rounds keep it.
+clearances c_k. The centred q maximises the least slack s = min(c_k - |o_k + B_k q|), then the least of those still
+open, and so on. A cone with a multiplier has the same offset in every solution of its round, so that further rounds
+keep it.
 """
 
 from typing import Any, Final
@@ -15,11 +15,11 @@ from tol3d.numerics.compiled import FULL, kernel, nested
 from tol3d.numerics.loops import fill
 
 HELD: Final = 1e-6
-"""Multiplier (they sum to 1) over which a cone is tight."""
+"""Multiplier (they sum to 1) above which a cone is tight."""
 STARTS: Final = 1.0, 0.1, 0.01, 1.0
-"""Multipliers from which a programme starts, of those that balance its goal, until it ends."""
+"""Factors for a programme's first multipliers over those that balance its goal, until it ends."""
 UNSEEN: Final = 1e-6
-"""Change of an offset by a freedom, as a share of how far that moves what is farthest, that is none."""
+"""Change of an offset by a freedom, over the largest displacement by it, that counts as none."""
 
 
 @nested
@@ -36,7 +36,7 @@ def reduced(rows: Any, basis: Any, size: int, seen: Any) -> None:
 
 @nested
 def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
-    """Take from the freedoms those that tight cones hold; how many are left.
+    """Remove the freedoms held by tight cones; returns the number left.
 
     Args:
         seen: rows in the freedoms (cones, 2, size).
@@ -74,7 +74,7 @@ def narrowed(seen: Any, tight: Any, basis: Any, size: int, held: Any) -> int:
 
 @nested
 def independent(held: Any, count: int, size: int) -> int:
-    """Make row `count` square to those before it and of length 1; 0 where nothing is left of it."""
+    """Make row `count` orthogonal to those before it and of length 1; 0 if nothing is left of it."""
     for _ in range(2):
         for k in range(count):
             share = 0.0
@@ -95,7 +95,7 @@ def independent(held: Any, count: int, size: int) -> int:
 
 @nested
 def seeing(seen: Any, used: Any, done: Any, size: int) -> int:
-    """Find the cones that the freedoms left change, and that are not done; how many."""
+    """Find the cones that the remaining freedoms change and that are not done; returns their number."""
     count = 0
     for k in range(seen.shape[0]):
         largest = 0.0
@@ -119,7 +119,7 @@ def at_step(offsets: Any, rows: Any, q: Any, k: int) -> Any:
 
 @nested
 def started(place: Any, q: Any, used: Any, y: Any, z: Any, count: int, lifts: int, strength: float) -> None:
-    """Cones and multipliers inside, from which a programme starts: with less slack than there is, or with none."""
+    """Interior cones and multipliers from which a programme starts: with less slack than available, or with none."""
     offsets, clearances, rows = place
     least, widest = 1e30, 0.0
     for k in range(rows.shape[0]):
@@ -148,7 +148,7 @@ def least_slack(place: Any, q: Any) -> Any:
 
 @nested
 def opened(basis: Any, done: Any) -> int:
-    """Make all freedoms free, and no cone held; how many freedoms there are."""
+    """Make all freedoms free, and no cone held; returns the number of freedoms."""
     fill(done, False)
     for j in range(basis.shape[0]):
         for s in range(basis.shape[0]):
@@ -213,7 +213,7 @@ def lain(
 ) -> Any:
     """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
 
-    Last of what it returns is how many freedoms the first round (of a push, that one) leaves open.
+    The last returned value is the number of freedoms left open by the first round (or by the push).
 
     Args:
         place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
@@ -223,7 +223,7 @@ def lain(
         strength: largest amount of it; 0 for the centred pose.
         before: of the cones that decided at the pose before, multipliers and in which programme, 0 for none (cones,);
             changed to those of this pose.
-        basis, done, rooms: to work in: freedoms (freedoms, freedoms), cones that are held (cones,), see `new_rooms`.
+        basis, done, rooms: work arrays: freedoms (freedoms, freedoms), cones that are held (cones,), see `new_rooms`.
         q: (freedoms,); changed.
     """
     seen, used, y, z, found, held, inner = rooms
@@ -293,13 +293,13 @@ def room_found(
     offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any,
     multipliers: Any, programmes: Any,
 ) -> None:  # fmt: skip
-    """Steps to where a part lies in its room.
+    """Steps to a part's position within its clearance.
 
     Args:
         offsets: o_k (cones, 2, n) [mm].
         clearances: c_k (cones, n) [mm].
         rows: B_k (cones, 2, freedoms).
-        push: the direction of the freedoms in which it goes as far as it can; 0 for the centred pose (freedoms,).
+        push: direction of the freedoms in which it is pushed to the limit; 0 for the centred pose (freedoms,).
         asked: for which trials (n,); the others are left.
         steps: q (freedoms, n).
         slacks: the least slack of the centred q (n,) [mm].

@@ -1,4 +1,4 @@
-"""Surfaces of two features, one of them round at least: common normal, distance, and at what distance they touch."""
+"""Surfaces of two features, at least one of them round: common normal, distance, and distance at contact."""
 
 from typing import Final, Literal
 
@@ -43,10 +43,10 @@ def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel
 
 
 def common_normal(start: ActualFeature, end: ActualFeature, *, parallel: bool) -> tuple[Array, Array]:
-    """The direction from one to the other (3, n), and how far they are apart along it (n,) [mm].
+    """The direction from one to the other (3, n), and their distance along it (n,) [mm].
 
     Args:
-        start, end: where they are in one frame.
+        start, end: the features in one frame.
         parallel: whether two axes lie along each other; the middle of `end` counts then.
     """
     apart = end.origin - start.origin

@@ -1,10 +1,10 @@
 """Parts on one-sided contacts under a force, trial by trial: the finite pose by the lever arms of the pose itself.
 
 The least potential of the force subject to gaps of 0 or more, by successive linear programmes about the pose reached:
-each motion stays in a box, as far as linear rows are true, and a gap below 0 costs more than any contact carries
-(an exact penalty, Fletcher and Sainz de la Maza 1989), so that the potential and the deepest gap together fall from
-step to step. Where contacts alone decide, the last steps are Newton's; the others, where a tilt balances the force on
-fewer contacts than freedoms, are left to `balances`.
+each motion stays in a box where linear rows hold, and a gap below 0 costs more than any contact carries (an exact
+penalty, Fletcher and Sainz de la Maza 1989), so that the potential and the deepest gap together fall from step to step.
+Where contacts alone decide, the last steps are Newton's; the others, where a tilt balances the force on fewer contacts
+than freedoms, are left to `balances`.
 """
 
 from typing import Any, Final
@@ -42,7 +42,7 @@ def motion_rows(pose: Any, trial: Any, reach: float, pull: Any, found: Any) -> N
 
 @nested
 def shifted(pose: Any, trial: Any, reach: float, motion: Any, tangents: Any, step: Any) -> Any:
-    """Move a pose along its motions (motions,); the length of the step."""
+    """Move a pose along its motions (motions,); returns the length of the step."""
     _, i, _, kept, _, _ = trial
     for r in range(6):
         step[r] = 0.0
@@ -61,12 +61,12 @@ TRIES: Final = 2
 NEAR: Final = 1e-5
 """Fraction of the reach: a side of this box that still carries shows that a balance is near."""
 FAR: Final = 0.5
-"""Turn [rad], and shift a mm of reach, from which a part is not held."""
+"""Turn [rad], and shift per mm of reach, beyond which a part is not held."""
 DEAR: Final = 10.0
 """First cost of a gap of -1 mm, in forces times 1 mm."""
 DEAREST: Final = 1e5
 ROUNDING: Final = 1e-13
-"""Change of a cost, a mm of reach, under which it is none."""
+"""Change of a cost, per mm of reach, that counts as none."""
 PIERCED: Final = 1e-10
 """mm; a gap below minus that is one."""
 

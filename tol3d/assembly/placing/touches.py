@@ -1,9 +1,9 @@
 """Round features in contact: the finite pose, trial by trial.
 
 Unknowns are amounts of nominal steps, of which the pose is made by one turn (Cayley's formula) and one shift. Newton's
-method from the nominal pose; where its steps do not fall, or where it ends on the other side of a fold, contacts are
-followed from nominal to the trial instead: what they lack at the nominal pose and what deviates there by shares that
-Newton's method keeps up with (Newton's homotopy). A path that ends on the way has come to a fold: no contact beyond.
+method from the nominal pose; if its steps do not fall, or it ends on the other side of a fold, contacts are followed
+from nominal to the trial instead, by fractions of the nominal residuals and deviations small enough for Newton's method
+(Newton's homotopy). A path that ends before has come to a fold: no contact beyond.
 """
 
 from typing import Any, Final
@@ -18,20 +18,20 @@ from tol3d.numerics.loops import copy, copy_matrix, fill
 
 STEPS: Final = 60
 MET: Final = 1e-13
-"""Step [rad, and mm a mm of reach] after which a trial is done."""
+"""Step [rad, and mm per mm of reach] at which a trial is done."""
 LAST: Final = 1e-15
-"""The same of the next one, as far as it can be told: a hundredth, for it is told roughly."""
+"""The same for the predicted next step: a hundredth, for the prediction is rough."""
 ROUNDING: Final = 1e-13
-"""Error [mm a mm of reach] that is rounding where steps do not get shorter, near a fold."""
+"""Error [mm per mm of reach] that is rounding if steps do not get shorter, near a fold."""
 FALLING: Final = 0.75
-"""Largest part of a step that the next one may be; on the way to a double root it is 0.5."""
+"""Largest ratio of a step to the one before; towards a double root it is 0.5."""
 FOLLOWING: Final = 0.25
-"""The same on the way from nominal, where steps are to stay near the path."""
+"""The same for steps from nominal, which are to stay near the path."""
 FIRST_SHARE: Final = 0.25
 LEAST_SHARE: Final = 1e-6
 """Fraction of the path from nominal; shorter steps are not tried."""
 NOWHERE: Final = 2.0
-"""The side of the folds of what is not found; else 1, -1, or 0 on a fold."""
+"""Side of the folds for a pose that is not found; else 1, -1, or 0 on a fold."""
 
 
 @nested
@@ -101,7 +101,7 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
 
 @nested
 def side_of(matrix: Any, count: int) -> Any:
-    """The sign of a determinant by elimination with pivots; 0 where it has lost its rank. The matrix is used up."""
+    """The sign of a determinant by elimination with pivots; 0 if it is singular. The matrix is used up."""
     sign = 1.0
     for k in range(count):
         best = k
@@ -127,7 +127,7 @@ def side_of(matrix: Any, count: int) -> Any:
 def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any, rooms: Any) -> Any:
     """The side of the folds on which the pose of a trial is found, with its rows and moves left in the rooms.
 
-    All the way at once, else in shares from nominal, each from where the one before has led.
+    In one step, else by fractions from nominal, each from the pose before.
     """
     start, basis, reach, _ = about
     pose, moves, _, rows, matrix, _, _ = rooms
@@ -274,7 +274,7 @@ def touching_poses(
         force: direction in which the part is pressed (3, n) in the world; (3, 0) where that is not asked.
         inner: which contacts have one inside the other (contacts,).
         turns, shifts: found (3, 3, n), (3, n) [mm], the middle's shift; NaN where they are not.
-        codes: what became of the trials (n,).
+        codes: status codes (n,).
     """
     asked = (kinds, signs, length, moving, targets, sums, (nominal_moving, nominal_targets, nominal_sums))
     about, rooms = (start, basis, reach, lacking), new_rooms(basis.shape[1], kinds.shape[0])

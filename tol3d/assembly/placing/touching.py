@@ -1,4 +1,4 @@
-"""Parts laid against others by contacts of round features: what the contacts ask, trial by trial."""
+"""Parts placed against others by contacts of round features: poses by the contacts, trial by trial."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 INDEPENDENT: Final = 1e-8
-"""Least part of what a contact asks that no other contact asks too; less is rounding of directions."""
+"""Least independent part of a contact's constraint; less is rounding of directions."""
 
 NO_DISTANCE: Final = 1e-9
 """Centres or axes nearer than that [mm] have no direction from one to the other."""
@@ -40,7 +40,7 @@ KINDS: Final = {
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """A touch, as its contacts are nominally; solved in the world, with the middle of the part's features at 0.
+    """A touch with its nominal contacts; solved in the world, with the middle of the part's features at 0.
 
     Args:
         move: the move.
@@ -73,7 +73,7 @@ class Touching:
     rows: Array
 
     def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after the move, and what became of it (n,)."""
+        """The world after the move, and status codes (n,)."""
         moving, targets, sums = _asked(self.move, world, self.middle, self.origin)
         turn, shift = np.empty((3, 3, world.trials)), np.empty((3, world.trials))
         codes = np.empty(world.trials, dtype=np.int8)
@@ -98,7 +98,7 @@ def touching(move: Touch, nominal: World) -> Touching:
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:
-        InputError: a contact asks what the others hold; something lies where its contact has no direction.
+        InputError: a contact constrains what the others hold; or a feature lies where its contact has no direction.
     """
     pose = nominal.poses[move.part]
     own = [nominal.on_body(contact.moving, move.part).origin for contact in move.contacts]
@@ -142,7 +142,7 @@ def touching(move: Touch, nominal: World) -> Touching:
 
 
 def _contact(move: Touch, contact: Contact, nominal: World, middle: Array) -> tuple[int, float, float]:
-    """Its kind, the sign of the distance of axes that cross, and how far it reaches [mm]."""
+    """Its kind, the sign of the distance of crossing axes, and its reach [mm]."""
     own = nominal.on_body(contact.moving, move.part)
     moving, target = own.moved(nominal.poses[move.part]), nominal.placed(contact.target)
     name = f"moves.{move.name}: contact of {contact.moving} and {contact.target}"
@@ -169,7 +169,7 @@ def _contact(move: Touch, contact: Contact, nominal: World, middle: Array) -> tu
 
 
 def _refuse_redundant(move: Touch, rows: Array, ends: Sequence[int], origin: Array, reach: float) -> None:
-    """Refuse the first contact that asks what earlier ones hold, and say which freedom is still left."""
+    """Refuse the first contact that constrains what earlier ones hold, and name the freedom still left."""
     before = 0
     for contact, end in zip(move.contacts, ends, strict=True):
         sizes = np.linalg.svd(rows[:end], compute_uv=False)

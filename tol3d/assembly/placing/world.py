@@ -1,4 +1,4 @@
-"""Parts of consecutive trials in the world, as moves leave them."""
+"""Parts of consecutive trials in the world, after moves."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ from tol3d.numerics.arrays import Array
 
 
 class SolidReader(Protocol):
-    """Reads how far the solids of parts are apart; made where trials are, for it may not pickle."""
+    """Reader of distances of solids; made where trials are computed, for it may not pickle."""
 
     def __hash__(self) -> int:
         """Each is one of its own."""
@@ -71,7 +71,7 @@ class World:
         return self.own[self.part_of(feature)].feature(feature)
 
     def forget(self, feature: str) -> None:
-        """Free a feature that nothing is likely to ask for again; it is found anew if something does."""
+        """Free a feature that is unlikely to be needed again; it is recomputed if it is."""
         self.own[self.part_of(feature)].forget(feature)
 
     def on_body(self, feature: str, part: str) -> ActualFeature:
@@ -85,7 +85,7 @@ class World:
         return self.on_part(feature).moved(self.poses[self.part_of(feature)])
 
     def with_part_at(self, part: str, pose: Pose) -> "World":
-        """The world in which a part has a pose; what is welded to it goes along."""
+        """The world in which a part has a pose; parts welded to it move along."""
         moved = {part: pose}
         for other in self.bodies[part] - {part}:
             moved[other] = pose @ (self.poses[part].inverse @ self.poses[other])
@@ -100,6 +100,6 @@ class World:
         return replace(self, slacks={**self.slacks, move: slack}, tightest={**self.tightest, move: tightest})
 
     def with_welded(self, parts: tuple[str, ...]) -> "World":
-        """The world in which parts, and what is welded to them, are one body."""
+        """The world in which parts, and parts welded to them, are one body."""
         body = frozenset[str]().union(*(self.bodies[part] for part in parts))
         return replace(self, bodies={**self.bodies, **dict.fromkeys(body, body)})

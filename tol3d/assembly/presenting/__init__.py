@@ -31,7 +31,7 @@ class AssemblyPresenter:
         return {}
 
     def sections(self, summary: RunSummary) -> "Sequence[PageItem]":
-        """By which laws deviations lie in their zones."""
+        """Laws of deviations in their zones."""
         laws: dict[str, str] = {}
         sigmas: dict[str, float] = {}
         for own in summary.measures.values():
@@ -48,7 +48,7 @@ class AssemblyPresenter:
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]
 
     def parts(self, simulation: "Simulation") -> "Sequence[PageItem]":
-        """Each part below the one that its move lays it on."""
+        """Tree of parts, each below the one on which its move places it."""
         return _lazily("tables").parts_blocks(simulation)  # type: ignore[no-any-return]
 
     def workspace(self, simulation: "Simulation", measure: str | None, activity: "Callable[[str], None]") -> "Map":

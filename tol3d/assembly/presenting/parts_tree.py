@@ -1,7 +1,7 @@
-"""The tree of who locates whom: each part below the one that its move lays it on, for any number of parts.
+"""The tree of located parts: each below the part on which its move places it, for any number of parts.
 
-Below a part stand those that lie on it, set in. A tree of more than DEEPEST levels is not set in along its longest
-branch: what lies on a part goes on below it at the same place. Many parts that are laid alike share a line.
+Parts that lie on a part are indented below it. A tree of more than DEEPEST levels is not indented along its longest
+branch. Many parts that are placed alike share a line.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -62,8 +62,8 @@ def parts_tree(assembly: Assembly, further: Sequence[Laid] = ()) -> tuple[Branch
     """Parts as trees, each with the parts that lie on it.
 
     Args:
-        assembly: whose parts are laid by its moves.
-        further: what lies on them by other means, such as shafts in bores.
+        assembly: with parts placed by its moves.
+        further: parts that lie on them by other means, such as shafts in bores.
     """
     laid = {part.name: Laid(part.name, "where it is drawn, by no move", "") for part in assembly.parts}
     laid |= {own.part: own for own in (*_laid(assembly), *further)}
@@ -81,7 +81,7 @@ def _laid(assembly: Assembly) -> Iterator[Laid]:
 
 
 def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str, ...]]]:
-    """Parts with the kind and name of the move that lays them, and on what."""
+    """Parts with the kind and name of the move that places them, and the parts below."""
     welded: dict[str, tuple[str, str]] = {}
     for move in assembly.moves:
         if isinstance(move, Weld):
@@ -104,7 +104,7 @@ class _Tree:
     """Parts below the first of those that they lie on.
 
     Args:
-        laid: how each part comes to its place.
+        laid: placement of each part.
         below: the parts below each, in the order of the moves.
         height: levels below each.
         roots: parts that lie on no other one.
@@ -172,7 +172,7 @@ class _Tree:
                 yield Branch(self.laid[path[k]].text, self._branches(beside))
 
     def _links(self, part: str, above: str) -> str:
-        """By what a part hangs on the one above alone, where nothing but one part is below it; else nothing."""
+        """Words for a part's single link to the one above, if it has one part at most below it; else nothing."""
         own = self.laid[part]
         alone = own.on == (above,) and own.before is None and len(self.below[part]) <= 1
         return own.words if alone else ""

@@ -1,4 +1,4 @@
-"""Builds of assemblies as they are shown: each part's features where they lie in the trial."""
+"""Builds of assemblies as shown: each part's features at their places in the trial."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +27,7 @@ THIN: Final = 1 / 120
 """Fraction of the assembly's size: thickness of symbols; a sixth of it is the radius of the rods that join those of a
 part."""
 DEFLECTION: Final = 0.05
-"""mm; how far triangles may lie off the faces of solids: the same in all trials, whose meshes are built once."""
+"""mm; deflection of triangles from the faces of solids: the same in all trials, as meshes are built once."""
 OPACITY: Final = 0.3
 """Opacity of solids, so that their features and their inside are visible."""
 FRAMES: Final = 25
@@ -52,7 +52,7 @@ class Placed:
     poses: Mapping[str, Array]
 
     def seen_from(self, into: Array) -> "Placed":
-        """It in another world, into which a pose (4, 4) takes it."""
+        """The same in another world, by a pose (4, 4)."""
         frames = {name: into @ frame for name, frame in self.frames.items()}
         return Placed(self.assembly, frames, {name: into @ pose for name, pose in self.poses.items()})
 
@@ -73,8 +73,8 @@ class ShownAssembly:
 
     Args:
         label: what it is.
-        placed: what is shown.
-        notes: what the user should know.
+        placed: the assembly in the trial.
+        notes: notes for the user.
     """
 
     label: str
@@ -181,7 +181,7 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
 
 
 def _as_large(seen: Replay, wanted: float) -> tuple[Replay, float]:
-    """A build with its deviations magnified as far as it still goes together, up to a factor, and that factor."""
+    """A build with its deviations magnified as far as it can still be assembled, up to a factor, and that factor."""
 
     def times(factor: float) -> Replay:
         return replayed(seen.simulation, magnified(seen.simulation.system, seen.trials, factor))

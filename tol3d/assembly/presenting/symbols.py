@@ -1,4 +1,4 @@
-"""Closed surfaces that stand for features which are stated by numbers: slabs, rods, rings, octahedra."""
+"""Closed surfaces that represent features stated by numbers: slabs, rods, rings, octahedra."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
@@ -58,8 +58,8 @@ def mark(shape: Shape, thickness: float) -> Surface:
     """Mark of a feature on the solid of its part, in its frame: thin, astride of the surface.
 
     Args:
-        shape: a plane is a frame along its edges or a ring, a slot or a tab such frames on both walls, a hole a
-            tube, a pin a little thicker than it is, a ball its equator; others are as `symbol` has them.
+        shape: a plane is a frame along its edges or a ring, a slot or a tab such frames on both walls, a hole a tube, a
+            pin a little thicker than it is, a ball its equator; others as by `symbol`.
         thickness: of a symbol [mm].
     """
     half = WALL * thickness / 2

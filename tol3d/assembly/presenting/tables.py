@@ -60,7 +60,7 @@ def datum_blocks(assembly: Assembly) -> Sequence[PageItem]:
 
 
 def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
-    """Which freedoms moves hold, and which they leave."""
+    """Freedoms held by moves, and those left."""
     rows: list[Row] = []
     for move, plan in zip(assembly.moves, planned(assembly).moves, strict=True):
         match move:
@@ -91,7 +91,7 @@ def _left(freedoms: Freedoms) -> str:
 
 PLACE: Final = "at [mm]"
 MANY_ALIKE: Final = 3
-"""Zones of one law that are told in one row."""
+"""Largest number of zones of one law that share a row."""
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
@@ -102,13 +102,13 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
 
 
 def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
-    """Each part below the one that its move lays it on."""
+    """Tree of parts, each below the one on which its move places it."""
     assert isinstance(simulation.system, AssemblySystem)
     return parts_tree(simulation.system.assembly)
 
 
 def workspace(simulation: Simulation, measure: str | None, activity: Callable[[str], None]) -> Map:
-    """That of the first move that has one.
+    """The workspace of the first move that has one.
 
     Raises:
         InputError: none has.
@@ -151,7 +151,7 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
 
 
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
-    """Dimensions, and what a positive deviation does to each."""
+    """Dimensions, and the effect of a positive deviation on each."""
     named = {own.name for own in system.contributors if own.kind == "plus_minus"}
     rows = [
         Row(by.contributor, (own.name, _positive(system, own, by.matrix[:, 0])))
@@ -190,7 +190,7 @@ def _builder_words(shape: BuiltShape) -> str:
 
 
 def _solids(system: AssemblySystem) -> Sequence[PageItem]:
-    """Solids of parts, by what builds them, and how large they are."""
+    """Solids of parts, by builder, with their sizes."""
     rows = []
     for part in system.assembly.parts:
         if part.solid is not None:
@@ -256,7 +256,7 @@ def _place(system: AssemblySystem, feature: Feature) -> str:
 
 
 def _facing(system: AssemblySystem, feature: Feature) -> str:
-    """The normal or the axis of a feature in the world, in words; of a point nothing."""
+    """The normal or the axis of a feature in the world, in words; "" for a point."""
     if isinstance(feature.shape, Point):
         return ""
     direction = _direction(system.assembly.part[feature.part].pose[:3, :3] @ feature.frame[:3, 2])
@@ -266,7 +266,7 @@ def _facing(system: AssemblySystem, feature: Feature) -> str:
 
 
 def _direction(direction: NDArray[np.float64]) -> str:
-    """A direction of unit length by the axis that it is along, or its coordinates."""
+    """A direction of unit length: its axis, or its coordinates."""
     z = direction.round(6) + 0.0
     named = f"{'-' if z.sum() < 0 else ''}{'xyz'[int(np.abs(z).argmax())]}"
     return named if np.abs(z).max() == 1 else "(" + ", ".join(f"{value:.4g}" for value in z) + ")"

@@ -1,6 +1,6 @@
 """The analytic method: small displacements, propagated by linear algebra from the nominal geometry.
 
-What trials do is linear in their deviations, but for a few terms: the corner by which a plane touches, the largest of
+Trials are linear in their deviations, except for a few terms: the corner by which a plane touches, the largest of
 several amounts that a measure takes, a pose of least largest residual. Those are evaluated trial by trial.
 """
 

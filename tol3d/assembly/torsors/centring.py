@@ -1,8 +1,8 @@
 """Position of a part with play within its clearance: freedoms of many trials at once, by second-order cone programmes.
 
 A place k asks |b_k + B_k q| <= c_k - s. The largest s is found by primal and dual interior points along scaled
-directions; then the places whose multipliers say that they decide it keep their offsets, the freedoms that those leave
-are searched for the largest s of the others, and so on.
+directions; then the places that decide it, by their multipliers, keep their offsets, and the remaining freedoms are
+searched for the largest s of the others, and so on.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ Mask = NDArray[np.bool_]
 DECIDES: Final = 1e-6
 """Least multiplier, of 1 in all, of a place that decides."""
 LOST: Final = 1e-6
-"""Length of a row under which it sees no freedom."""
+"""Length of a row below which it depends on no freedom."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,11 +12,11 @@ NOWHERE = 1e-9
 
 
 class Columns:
-    """The columns of an assembly as they are found: deviations, 1, and one or more for each term.
+    """The growing columns of an assembly: deviations, 1, and one or more for each term.
 
     Args:
         width: of the deviations.
-        room: how many columns terms may make at most.
+        room: largest number of columns of terms.
     """
 
     def __init__(self, width: int, room: int) -> None:

@@ -1,4 +1,4 @@
-"""The largest circle in several discs, as terms: what each three of them leave, and of these the least."""
+"""The largest circle in several discs, as terms: the smallest of those in any three of them."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -19,15 +19,15 @@ SECTIONS: Final = 44
 HALVINGS: Final = 48
 """Halvings of tenths of a millimetre: down to rounding."""
 TINY: Final = 1e-300
-"""Under any length; where a divisor is nil, the quotient is not used."""
+"""Smaller than any length; if a divisor is zero, the quotient is not used."""
 
 
 @dataclass(frozen=True, eq=False)
 class CommonOpening:
     """The diameter of the largest circle that lies in all discs.
 
-    How far a point lies outside a disc is convex in it, so that the least largest of them in the plane is that of some
-    three discs (Helly's theorem).
+    The distance of a point outside a disc is convex in it, so that the minimum of the largest distance in the plane is
+    that of some three discs (Helly's theorem).
 
     Args:
         forms: (discs * 3, columns): x, y and radius of each disc.
@@ -76,7 +76,7 @@ def _outside(disc: Disc, x: Array, y: Array) -> Array:
 
 
 def _alike(first: Disc, second: Disc, third: Disc, least: Array) -> Array:
-    """The least amount, from `least` on, by which one point lies outside of three discs alike; nan where none does.
+    """The least amount, from `least` on, by which one point lies outside of three discs alike; NaN where none does.
 
     By Cramer's rule from the differences of |c_k - p|^2 = (amount + r_k)^2, in which the amount over minus the first
     radius is a root of a quadratic equation.
@@ -97,13 +97,13 @@ def _alike(first: Disc, second: Disc, third: Disc, least: Array) -> Array:
 
 
 def _divisor(read: Array) -> Array:
-    """It, nan where it is nil: what is divided by it is no solution."""
+    """The divisor, NaN if it is zero: the quotient is no solution."""
     return np.where(read == 0.0, np.nan, read)
 
 
 @dataclass(frozen=True, eq=False)
 class TurnedOpening:
-    """The diameter of the largest circle in all discs, whose centres turn together as is best for it.
+    """The diameter of the largest circle in all discs, with the best common turn of their centres.
 
     It is concave in the turn: golden sections of a bracket that holds the best.
 

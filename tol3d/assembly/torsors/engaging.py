@@ -1,4 +1,4 @@
-"""Moves with play: what relations leave, limited by the clearances of pins, tabs, holes and slots."""
+"""Moves with play: freedoms left by relations, limited by the clearances of pins, tabs, holes and slots."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 SEEN = 1e-6
-"""Change of all offsets by a freedom of length 1 [mm] that is none."""
+"""Change of all offsets [mm] per unit freedom that counts as none."""
 
 
 def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
@@ -24,7 +24,7 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
     Args:
         move: the move.
         world: before it.
-        whither: a direction of its freedoms in which it goes as far as it can; by its float if not given.
+        whither: direction of its freedoms in which it is pushed to the limit; default by its float.
 
     Raises:
         InputError: as `mated`; nothing is free where its pins engage.

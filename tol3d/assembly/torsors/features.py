@@ -14,7 +14,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 NEARER = 1e-6
-"""Lever [mm] that is none: a slot whose end lies on the axis of the turn is held by its place."""
+"""Lever [mm] that counts as none: a slot whose end lies on the axis of the turn is held by its place."""
 
 Displaced = tuple[Feature, Array]
 """A feature and its torsor (6, columns), in the part's frame."""
@@ -176,7 +176,7 @@ class PartTorsors:
     def feature(self, name: str) -> Array:
         """The torsor (6, columns) of a feature: of the datum frame to which it is toleranced, and its own.
 
-        It is not kept: most are asked for once, and those of thousands of features would fill the memory.
+        It is not cached: most are needed once, and those of thousands of features would fill the memory.
         """
         feature = self._features[name]
         own = from_components(feature.shape) @ summed(feature.moved_by, len(feature.shape.components), self._columns)
@@ -197,7 +197,7 @@ class PartTorsors:
         return self._displacements[name]
 
     def gauges(self, name: str) -> GaugesRoom:
-        """The room of the gauges of a datum frame."""
+        """The play of the gauges of a datum frame."""
         if name not in self._rooms:
             frame = self._frames[name]
             assert frame.gauges is not None

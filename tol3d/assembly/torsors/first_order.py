@@ -1,4 +1,4 @@
-"""An assembly to first order: each measure a row over deviations, a constant, and terms that are not linear."""
+"""An assembly to first order: each measure is a row over deviations, a constant, and nonlinear terms."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 STEP: Final = 1e-6
-"""Step [mm] for slopes of what does not vary."""
+"""Step [mm] for slopes of deviations that do not vary."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bend:
-    """A term of a measure that is not linear in the deviations.
+    """A term of a measure, nonlinear in the deviations.
 
     Args:
         form: how it depends on what it reads.
@@ -44,8 +44,8 @@ class Bend:
 class Slopes:
     """A measure to first order at the means of the deviations.
 
-    What it leaves out: of the columns in `bends` all but the mean slope from one sigma below to one above the mean, the
-    others at their means. So of a largest amount that is 0 at the means nothing is left.
+    Neglected: for columns in `bends`, all but the mean slope from one sigma below to one above the mean, the others at
+        their means. So nothing is left of a largest amount that is 0 at the means.
 
     Args:
         nominal, at_means: of the measure, without deviations and with all at their means [mm or rad].
@@ -65,9 +65,9 @@ class Slopes:
 
 
 UNSEEN = 1e-9
-"""Change of a measure by what a part may rock [mm or rad a mm] that is rounding."""
+"""Change of a measure by rocking [mm or rad per mm] that is rounding."""
 TOGETHER = 4096
-"""Trials that are evaluated at once: their columns stay in the cache."""
+"""Trials evaluated at once: their columns stay in the cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +146,7 @@ def first_order(assembly: Assembly) -> FirstOrder:
     """An assembly to first order, from its nominal geometry.
 
     Raises:
-        InputError: a move leaves a freedom that it should hold or asks twice for the same; a measure that has no sense.
+        InputError: a move leaves a freedom that it should hold, or holds one twice; or a measure makes no sense.
     """
     columns = Columns(assembly.width, _room(assembly))
     first = World(assembly, columns)
@@ -175,7 +175,7 @@ def displaced(assembly: Assembly, part: str, after: int) -> FirstOrder:
 
 
 def _played(name: str, measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
-    """A measure's row (columns,) at its least or largest over the rooms of parts with play."""
+    """A measure's row (columns,) at its least or largest over the play of parts."""
     sign = 1.0 if measured.over_play == "largest" else -1.0
     plays = {index: own for index, own in unknowns.items() if isinstance(first.assembly.moves[index], Engage)}
     whither = {index: sign * row[own.start : own.stop - 1] for index, own in plays.items()}
@@ -183,7 +183,7 @@ def _played(name: str, measured: Measured, row: Array, first: World, unknowns: M
 
 
 def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dict[int, slice]]:
-    """Before the first move and after each, with whither some rests lean; and the columns that rests make."""
+    """Worlds before the first move and after each, with the leaning of some rests; and the columns made by rests."""
     worlds, unknowns = [first], dict[int, slice]()
     for index, move in enumerate(first.assembly.moves):
         worlds.append(after(move, worlds[-1], leaning.get(index)))
@@ -194,7 +194,7 @@ def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dic
 
 
 def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
-    """A measure's row (columns,) at one end of what parts may rock, or in the middle of both."""
+    """A measure's row (columns,) at one end of the rocking range, or in the middle of both."""
     through = _through(row, first.columns.terms)
     moves = first.assembly.moves
     weights = {index: through[own] for index, own in unknowns.items() if isinstance(moves[index], Rest)}
@@ -212,7 +212,7 @@ def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int,
 
 
 def _through(row: Array, terms: Sequence[tuple[int, Term]]) -> Array:
-    """A row (columns,) whose parts on rests are taken on to the rests beneath: a part goes along with those.
+    """A row (columns,) with dependence on rests transferred to the rests beneath: a part moves along with those.
 
     A part on one-sided contacts A z + g goes along with what displaces all of them by A q: z falls by q.
     """
@@ -231,7 +231,7 @@ def _row(name: str, measured: Measured, worlds: list[World]) -> Array:
 
 
 def _reads(rows: Array) -> NDArray[np.bool_]:
-    """Which columns some of the rows read (columns,)."""
+    """Flags of the columns that some of the rows read (columns,)."""
     return np.asarray(rows.any(axis=0))
 
 

@@ -1,4 +1,4 @@
-"""The freedoms of a rigid body, as groups of equations take them one after the other."""
+"""The freedoms of a rigid body, taken by groups of equations one after the other."""
 
 from collections.abc import Iterable
 from copy import copy
@@ -17,12 +17,12 @@ class Freedoms:
     """A torsor that is found by equations in groups, the first leading.
 
     A group is met as nearly as the freedoms left allow: least squares over its equations, which are all lengths or all
-    turns. What earlier groups hold stays. What no equation asks for: no turn, and no shift of the centres about which
-    what is asked turns (`settle`).
+    turns. What earlier groups hold stays. Freedoms without an equation: no turn, and no shift of the centres of the
+    turns (`settle`).
 
     Args:
         origin: at which shifts are counted inside (3,) [mm]; what is found does not depend on it.
-        points: what the equations are about (points, 3) [mm]: their distance from there weighs a turn.
+        points: of the equations (points, 3) [mm]: their distance from there weighs a turn.
         columns: of the torsor.
     """
 
@@ -57,14 +57,14 @@ class Freedoms:
         return self.scale @ self._left
 
     def take(self, equations: Array, values: Array) -> int:
-        """Find what a group decides.
+        """Solve a group of equations.
 
         Args:
             equations: (equations, 6), applied to the torsor.
-            values: what they shall give (equations, columns).
+            values: right-hand sides (equations, columns).
 
         Returns:
-            How many freedoms it takes.
+            Number of freedoms that it takes.
         """
         asked = equations @ self.scale
         left, strengths, right = np.linalg.svd(asked @ self._left, full_matrices=True)
@@ -81,9 +81,9 @@ class Freedoms:
         return bool(np.abs(asked @ self._left).max(initial=0.0) <= INDEPENDENT * np.linalg.norm(asked))
 
     def settle(self, centre: Array) -> None:
-        """Let what groups since the last call turn have a centre (3,) [mm], which stays as far as shifts are free.
+        """Set a centre (3,) [mm] for the turns by groups since the last call; it stays as far as shifts are free.
 
-        The turn that groups ask for is the least that meets them all; what earlier ones have asked for is settled.
+        The turn is the least that meets all groups; that of earlier ones is settled.
         """
         least = copy(self)
         least.take(turn_about(np.eye(3)), np.zeros_like(self._found[3:]))
@@ -91,7 +91,7 @@ class Freedoms:
         self._settled = self._settled + torsor_of(centre, np.zeros_like(turn), turn)
 
     def rest(self) -> Array:
-        """The torsor: of what no equation asks for the least turn, and shifts as they are settled."""
+        """The torsor, with the least turn where no equation decides, and shifts as settled."""
         self.take(turn_about(np.eye(3)), np.zeros_like(self._found[3:]))
         at_origin = shift_at(self._origin)
         self.take(at_origin, at_origin @ self._settled)

@@ -1,4 +1,4 @@
-"""Positions in a frame of gauges, to first order: the least over all places of the gauges in their room."""
+"""Positions in a frame of gauges, to first order: the least over all positions of the gauges within their clearance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,15 +19,15 @@ STEPS: Final = 40
 SHORT: Final = 1e-12
 """Step [mm] at which they are done."""
 FREE: Final = 1e-9
-"""Share of the ends in the multipliers, under which the room alone decides."""
+"""Share of the ends in the multipliers, below which the clearance alone decides."""
 
 
 @dataclass(frozen=True, eq=False)
 class LeastOnGauges:
-    """Twice the least by which cones about ends grow until all cones have a place in common.
+    """Twice the least growth of cones about ends at which all cones have a common point.
 
-    From below, for the largest common slack is concave in the growth. Where the room is empty: twice what the ends need
-    where it is least so.
+    From below, for the largest common slack is concave in the growth. If the clearance is empty: twice the growth
+    needed where the lack of clearance is least.
 
     Args:
         forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places).

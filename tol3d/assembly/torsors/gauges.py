@@ -1,4 +1,4 @@
-"""Gauges of virtual condition in the datum features of a frame, to first order: the room that they share."""
+"""Gauges of virtual condition in the datum features of a frame, to first order: their common clearance."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -54,12 +54,12 @@ def gauges_room(
     size: Callable[[str], Array],
     columns: Columns,
 ) -> GaugesRoom:
-    """The room of some gauges.
+    """The play of some gauges.
 
     Args:
         rooms: of each datum.
         datums: the features at their boundary with their torsors (6, columns).
-        kept: what the datums before them hold.
+        kept: freedoms held by the datums before them.
         size: how much larger a feature is than nominally (columns,) [mm].
         columns: of the assembly.
     """
@@ -92,7 +92,7 @@ def gauges_room(
 
 
 def _least(seen: Array, unseen: Array, reach: float) -> Array:
-    """Freedoms that are seen (6, freedoms), with so much of the others that the part turns, then shifts least.
+    """Effective freedoms (6, freedoms), with as much of the others as makes the part turn, then shift least.
 
     By one system of least squares in which turns [rad] count for so much more than shifts [mm] that these only decide
     what turns leave open.

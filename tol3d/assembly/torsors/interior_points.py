@@ -15,7 +15,7 @@ from tol3d.numerics.loops import fill
 GAP: Final = 1e-12
 """Final gap over the largest clearance: the slack may be better by so much."""
 OWED: Final = 1e-9
-"""Share of what the multipliers lack of the goal at first that may be left."""
+"""Fraction of the multipliers' initial imbalance with the goal that may be left."""
 MOST_STEPS: Final = 80
 TARGET: Final = 0.1
 """Factor of the gap from one step to the next."""
@@ -160,7 +160,7 @@ def climb(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any
 def climbed(
     primal: Any, dual: Any, rows: Any, counts: Any, closed: Any, goal: Any, lifts: Any, steps: Any, multipliers: Any
 ) -> None:
-    """Steps of the freedoms to the largest slack, or as far along a goal as the cones let them.
+    """Steps of the freedoms to the largest slack, or as far along a goal as the cones allow.
 
     Args:
         primal, dual: cones at the start and multipliers, inside (places, 3, trials).

@@ -1,4 +1,4 @@
-"""Mates: relations of two features, in order, each taking what earlier ones left."""
+"""Mates: relations of two features, in order, each taking freedoms left by earlier ones."""
 
 import numpy as np
 
@@ -104,7 +104,7 @@ class _Pairing:
         return self._freedoms.take(equations, values)
 
     def parallel(self) -> int:
-        """Both z in one line, whichever way each points."""
+        """Both z in one line, of either sense."""
         nominal = self._axis * np.sign(self._axis @ self.target_axis)
         across = perpendicular(self.target_axis)
         return self._take(turn_about(across), across @ np.cross(nominal, self.target_axis))

@@ -1,4 +1,4 @@
-"""Measures to first order: one row each over the columns; what clips is a term of its own."""
+"""Measures to first order: one row each over the columns; a clipped amount is a term of its own."""
 
 import math
 from dataclasses import replace
@@ -22,7 +22,7 @@ from tol3d.numerics.arrays import Array
 NEAR = 1.0
 """Points nominally nearer than this [mm]: their distance is the length of its first-order vector, else linear."""
 LEANS = 1e-6
-"""Sine of an angle by which an axis leans nominally; less has no azimuth."""
+"""Sine of an axis' nominal tilt; a smaller tilt has no azimuth."""
 FLAT = 1e-12
 """Sine of an angle about a direction that is 0 or half a turn: half a turn is pi, not -pi."""
 SLANT = 1e-3
@@ -75,7 +75,7 @@ def _length(nominal: Array, varying: Array, world: World) -> Array:
 
 
 def distance(measured: Measured, world: World) -> Array:
-    """Linear, but of points that nominally coincide the length of a short vector."""
+    """Linear; for nominally coincident points the length of a short vector."""
     nominal, varying = _apart(measured, world)
     if measured.direction is not None:
         return gap(measured, world)
@@ -102,7 +102,7 @@ def point_plane(measured: Measured, world: World) -> Array:
 
 
 def angle(measured: Measured, world: World) -> Array:
-    """Linear, but of directions nominally in line the length of a short vector."""
+    """Linear; for nominally parallel directions the length of a short vector."""
     axes = [world.axis(name) for name in measured.features]
     turning = [_turned(axis, world.placed(name)) for axis, name in zip(axes, measured.features, strict=True)]
     (start, end), (start_varies, end_varies) = axes, turning
@@ -180,7 +180,7 @@ def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
 
 
 def position(measured: Measured, world: World) -> Array:
-    """The largest over ends, less what a size adds; over the room of gauges where datums leave one."""
+    """The largest over ends, less the bonus; the least over the play of gauges if datums leave some."""
     if measured.room is not None:
         return _in_room(measured, measured.room, world)
     if measured.over_gauges:
@@ -206,7 +206,7 @@ def position(measured: Measured, world: World) -> Array:
 
 
 def together(measured: Measured, world: World) -> Array:
-    """The largest of several, each less its zone; over the room of gauges where datums leave one."""
+    """The largest of several, each less its zone; the least over the play of gauges if datums leave some."""
     bonuses = [_clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
     has = [_constant(world, zone) for zone in measured.zones]
     has = [zone + own for zone, own in zip(has, bonuses, strict=True)] if bonuses else has

@@ -41,7 +41,7 @@ def displacements(assembly: Assembly, part: str, after: int, deviations: Array) 
     Args:
         assembly: the model.
         part: its name.
-        after: index of the move after which it is asked; -1 for the end.
+        after: index of the move after which it is evaluated; -1 for the end.
         deviations: (trials, columns) [mm, rad].
     """
     found = displaced(assembly, part, after)

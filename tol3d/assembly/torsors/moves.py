@@ -29,7 +29,7 @@ def touched(move: Touch, world: World) -> Array:
     """The torsor (6, columns) of a part by its contacts; freedoms that none decides stay as nominal.
 
     Raises:
-        InputError: a contact asks what earlier ones hold, or two surfaces have no common normal.
+        InputError: a contact constrains what earlier ones hold, or two surfaces have no common normal.
     """
     points = [world.origin(name) for contact in move.contacts for name in (contact.moving, contact.target)]
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
@@ -73,10 +73,10 @@ MOST_STEPS = 300
 
 @dataclass(frozen=True, eq=False)
 class Minimax:
-    """The unknowns z that make the longest of the residuals B z - b as short as can be.
+    """The unknowns z that minimise the longest of the residuals B z - b.
 
-    Minimise tau subject to |B_k z - b_k|^2 <= tau: primal-dual interior points, from least squares. Where the longest
-    residuals leave something open, it is what keeps the others far from them (the analytic centre).
+    Minimise tau subject to |B_k z - b_k|^2 <= tau: primal-dual interior points, from least squares. If the longest
+    residuals leave z open, it is the one that keeps the others far from them (the analytic centre).
 
     Args:
         forms: b, (residuals * 3, columns).
@@ -174,7 +174,7 @@ def _until_nil(values: Array, slopes: Array, falls: Array) -> Array:
 
 
 def fitted(move: BestFit, world: World) -> Array:
-    """The torsor (6, columns) of a part by best fit; the middle of its points stays where no residual sees it."""
+    """The torsor (6, columns) of a part by best fit; unaffected by residuals, the middle of its points stays."""
     residuals = [_residual(fit, move, world) for fit in move.fits]
     points = [world.origin(fit.moving) for fit in move.fits]
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
@@ -213,11 +213,11 @@ def after(move: Move, world: World, leaning: Array | None = None) -> World:
     Args:
         move: the move.
         world: before it.
-        leaning: of a rest, along its unknowns, how the part lies where it may rock; in the middle if not given. Of
-            play, along its freedoms, whither the part is pushed; by its float if not given.
+        leaning: for a rest, direction along its unknowns in which the part rocks; default in the middle. For play,
+            direction along its freedoms in which the part is pushed; default by its float.
 
     Raises:
-        InputError: it leaves a freedom that it should hold, or asks twice for the same.
+        InputError: it leaves a freedom that it should hold, or holds one twice.
     """
     match move:
         case Fix():

@@ -1,8 +1,8 @@
 """The largest common slack of a part with play, trial by trial in a kernel, where its optimum is smooth.
 
 Newton's steps on the conditions of `meeting`, with z_k w_k = mu in place of w_k = 0 and mu that falls faster the nearer
-it is (Nocedal, Wright: Numerical Optimization, 19.3), show which places decide. Where a place ends in the middle of its
-clearance u_k has no direction: such trials, and the few that no start leads to, are left to `interior_points`.
+it is (Nocedal, Wright: Numerical Optimization, 19.3), show the places that decide. If a place ends in the middle of its
+clearance, u_k has no direction: such trials, and the few for which no start succeeds, are left to `interior_points`.
 """
 
 from typing import Any, Final
@@ -13,7 +13,7 @@ from tol3d.numerics.compiled import FULL, kernel, nested
 from tol3d.numerics.loops import fill
 
 MIDDLE: Final = 1e-6
-"""Share of its clearance, under which a place is in the middle of it."""
+"""Fraction of its clearance, below which a place is in the middle of it."""
 STIFF: Final = 1e5
 """Stiffness of the deciding places over the scale: each of the last steps leaves about 1e-5 of their residual."""
 LAST: Final = 12
@@ -99,7 +99,7 @@ def balance(trial: Any, goal: Any, lifts: int, state: Any) -> Any:
 
 @nested
 def lengths_of(place: Any, trial: Any, q: Any, s: float, state: Any) -> bool:
-    """Offsets and what is left of the clearances after a step; whether all have a direction."""
+    """Offsets and remaining clearances after a step; True if all have a direction."""
     offsets, clearances = place
     rows, counts, _ = trial
     y, w = state[0], state[2]
@@ -168,9 +168,9 @@ UNDER: Final = 0.5, 0.2
 FALLS: Final = 0.1
 """Most of mu that is left by a step."""
 INSIDE: Final = 0.98
-"""Least share of the way to the end of the room that a step may go."""
+"""Least fraction of the distance to the limit of the clearance that a step may go."""
 NEAR: Final = 1e-3
-"""Gap and balance, under which it shows which places decide."""
+"""Gap and imbalance, below which the deciding places are known."""
 
 
 @nested
@@ -287,8 +287,8 @@ def quickly_centred(
         lifts: 1 for the slack, 0 for the goal.
         steps: (freedoms, trials) [mm].
         multipliers: of the places, 1 in all (places, trials).
-        found: in which trials they are (trials,); before, in which they are near it, to be improved. What is not found
-            is left as it was.
+        found: flags of trials in which they are found (trials,); on input, of those near the optimum, to be improved.
+            Trials not found are left unchanged.
     """
     places, size = rows.shape[0], rows.shape[2]
     own, clear, turned = np.empty((places, 2)), np.empty(places), np.empty((places, 2, size))

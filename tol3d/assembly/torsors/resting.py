@@ -1,4 +1,4 @@
-"""Rest: the torsor that goes farthest along a force, contacts kept from piercing each other."""
+"""Rest: the torsor that goes farthest along a force without interference at contacts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Corner:
         contacts: the contacts.
         solution: unknowns from their gaps, (unknowns, unknowns).
         loads: on each contact by the force, 0 or more.
-        slight: on each by what decides between corners with the same loads.
+        slight: on each by the perturbation that decides between corners with the same loads.
     """
 
     contacts: tuple[int, ...]
@@ -39,8 +39,8 @@ class Corner:
 class OneSided:
     """The unknowns z that go farthest along a force while no gap A z + g is below 0.
 
-    How far the force moves is at most loads . g of every corner of the dual, and as much as the least of them. Corners
-    with the same loads leave z open; among them the slight loads decide in the same way.
+    The path of the force is the least of loads . g over all corners of the dual. Corners with the same loads leave z
+    open; among them the slight loads decide in the same way.
 
     Args:
         forms: g, (contacts, columns).
@@ -98,11 +98,11 @@ class OneSided:
 
 
 MOST_SETS = 500_000
-"""Sets of contacts that are tried, once: 36 contacts of three freedoms, or 20 of six, are far fewer."""
+"""Largest number of sets of contacts to try, once: 36 contacts of three freedoms, or 20 of six, have far fewer."""
 TOGETHER = 10_000
 """Sets at once."""
 NONE = 1e-9
-"""Part of the force under which a contact carries nothing."""
+"""Fraction of the force below which a contact carries nothing."""
 SLIGHTER = 1e-4
 """Perturbation of an objective, so that it is parallel to nothing in particular."""
 ALIKE = 1e-6
@@ -110,12 +110,12 @@ ALIKE = 1e-6
 
 
 def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
-    """The torsor (6, columns) of a part at rest; in the middle of what it may rock.
+    """The torsor (6, columns) of a part at rest; in the middle of its rocking range.
 
     Args:
         move: the move.
         world: before it.
-        leaning: along its unknowns (unknowns,), whither it goes where it may rock; to the middle if not given.
+        leaning: direction along its unknowns (unknowns,) in which it rocks; default to the middle.
 
     Raises:
         InputError: no contacts balance the force, or too many of them to try.
@@ -155,7 +155,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
 
 
 def along_nothing(count: int) -> Array:
-    """Unknowns (count,) that are along nothing in particular."""
+    """Unknowns (count,) parallel to nothing in particular."""
     return np.asarray(np.sqrt(2.0 + np.arange(count)) % 1.0 + 0.1)
 
 

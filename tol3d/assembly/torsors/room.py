@@ -17,15 +17,15 @@ HALVINGS: Final = 55
 """Halvings of the height of a segment, 1 at first: rounding is reached."""
 DOUBLINGS: Final = 40
 NEWTONS: Final = 30
-"""Steps to where a bolt has no place, 3 to 6 in practice."""
+"""Steps to the limit of a bolt's fit, 3 to 6 in practice."""
 BEYOND: Final = 1e-13
 """Slack [mm] of a bolt that is none."""
 NONE: Final = 1e-9
-"""Change of an offset by a freedom of length 1 that is none."""
+"""Change of an offset per unit freedom that counts as none."""
 
 
 def pushed(cones: Cones, q: Array, push: Array) -> Array:
-    """As far along a direction of the freedoms (freedoms,) as the room goes; what that leaves open is centred."""
+    """Pushed to the limit along a direction of the freedoms (freedoms,); the remaining freedoms are centred."""
     trials = q.shape[1]
     rows = cones.rows[..., None] * np.ones(trials)
     counts = np.repeat((np.abs(cones.rows).max(axis=(1, 2)) > NONE)[:, None], trials, axis=1)
@@ -44,7 +44,7 @@ def pushed(cones: Cones, q: Array, push: Array) -> Array:
 
 
 def along_rays(cones: Cones, q: Array, directions: Array, share: Array) -> Array:
-    """From centred poses along directions (freedoms, trials), share^(1 / freedoms) of the way that the room has."""
+    """From centred poses along directions (freedoms, trials), share^(1 / freedoms) of the distance to the limit."""
     length = np.sqrt(ordered_sum(directions**2))
     moves = length > 0.0
     ray = directions / np.where(moves, length, 1.0)
@@ -173,9 +173,9 @@ class Room:
     Args:
         forms: offsets (places * 2), clearances (places), then what is drawn of the float.
         rows: change of the offsets by the freedoms (places, 2, freedoms).
-        floating: where in its room it lies.
+        floating: its position within the clearance.
         directions: of what is drawn as a shift and a turn, the freedoms (freedoms, 6).
-        push: the direction in which it goes as far as it can (freedoms,); 0 where it does not.
+        push: direction in which it is pushed to the limit (freedoms,); 0 for none.
         bolt_of: see Cones; the freedoms of bolts come after the part's.
     """
 

@@ -1,4 +1,4 @@
-"""Surfaces of two features, one of them round at least: the nominal common normal, and what they change along it."""
+"""Surfaces of two features, at least one of them round: the nominal common normal, and changes along it."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 PARALLEL = 1e-6
-"""Sine of the angle of axes that nominally lie along each other, not across."""
+"""Sine of the angle of axes that count as nominally parallel."""
 NEAR = 1.0
 """Nominally nearer than this [mm]: a distance is the length of its first-order vector, else linear."""
 NO_DISTANCE = 1e-9
@@ -82,7 +82,7 @@ class Surfaces:
         return np.asarray((end - start) / np.linalg.norm(end - start))
 
     def checked(self) -> tuple[Array, float, Array]:
-        """The normal (3,), how far centres, axes and planes are apart along it [mm], and where it is (3,).
+        """The normal (3,), the distance of centres, axes and planes along it [mm], and its place (3,).
 
         Raises:
             InputError: there is none.
@@ -151,7 +151,7 @@ class Surfaces:
         return np.eye(3)
 
     def hinge(self) -> tuple[Array, float] | None:
-        """The axis about which what lies along a line tilts off it, as a turn (1, 6), and its sine nominally."""
+        """The axis of the tilt of a body that lies along a line, as a turn (1, 6), and its nominal sine."""
         words = tuple(map(_word, self.shapes))
         if words == ("plane", "axis") or words == ("axis", "plane") or self.parallel:
             normal, _, _ = self.checked()
@@ -200,8 +200,8 @@ def _word(shape: Shape) -> str:
 def clearance(measured: Measured, world: World) -> Array:
     """A row (columns,) [mm]: the least of lengths that change as the points of each pair move along its normal.
 
-    Which pairs there are is known of the nominal geometry. That faces roll on each other, and that points slide past
-    ends, is of second order.
+    The pairs follow from nominal geometry. Rolling of faces on each other, and points that slide past ends, are of
+    second order.
     """
     if measured.facing is None:
         raise ValueError(f"clearance of {', '.join(measured.parts)}: it is not known where they are nearest")

@@ -27,7 +27,7 @@ one-sided contacts and a clipped amount are neither, but piecewise linear; a pla
 
 
 class Term(Protocol):
-    """Something that is evaluated trial by trial, for it is not linear in the columns before it."""
+    """A term evaluated trial by trial, as it is not linear in the columns before it."""
 
     @property
     def form(self) -> Form:
@@ -115,7 +115,7 @@ class Width:
 
 @dataclass(frozen=True, eq=False)
 class Clipped:
-    """An amount that is held between 0 and a most.
+    """An amount clipped between 0 and a maximum.
 
     Args:
         forms: (1, columns).
@@ -135,16 +135,16 @@ class Clipped:
 MOST_POINTS = 20
 """4845 sets of four."""
 IN_LINE = 1e-6
-"""Points that are so near to a line, over their extent, are in line."""
+"""Distance from a line over the points' extent, below which points are in line."""
 IDLE = 1e-8
-"""Points with less weight are none of the set; less than of a fourth point beside three that are not in line."""
+"""Weight below which a point is not in the set; smaller than a fourth point's beside three not in line."""
 
 
 def balances(points: Array) -> Array:
     """Weights (sets, points) whose products with the heights of points have the flatness as their largest amount.
 
-    By duality it is the largest of sum(w h) over weights with sum(w) = 0, sum(w p) = 0 and sum |w| = 2; the largest is
-    at one of the weights that are not nil at as few points as can be: four, three in a line, or two at one place.
+    By duality it is the largest of sum(w h) over weights with sum(w) = 0, sum(w p) = 0 and sum |w| = 2; the maximum is
+    at one of the weights that are nonzero at as few points as possible: four, three in a line, or two at one place.
 
     Args:
         points: in the nominal plane (points, 2) [mm].

@@ -1,7 +1,7 @@
 """Torsors: small displacements of a rigid body, six numbers (shift at the origin of a frame [mm], turn [rad]).
 
-A point p of the body is displaced by shift + turn x p. In this room a torsor is a matrix (6, columns): linear in what
-varies from trial to trial (see columns.py). Torsors in one frame add up.
+A point p of the body is displaced by shift + turn x p. In this folder a torsor is a matrix (6, columns): linear in the
+columns of a trial (see columns.py). Torsors in one frame add up.
 """
 
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ def shift_at(point: Array) -> Array:
 
 
 def height_at(point: Array, normal: Array) -> Array:
-    """(1, 6): applied to a torsor, how far a point is displaced along a direction [mm]; (n, p x n)."""
+    """(1, 6): applied to a torsor, the displacement of a point along a direction [mm]; (n, p x n)."""
     (x, y, z), (u, v, w) = point.tolist(), normal.tolist()
     return np.array([[u, v, w, y * w - z * v, z * u - x * w, x * v - y * u]])
 
@@ -58,7 +58,7 @@ def perpendicular(direction: Array) -> Array:
 
 
 MANY = 64
-"""Numbers of a matrix that is not 0, from which its sparse form, which adds in the same order, is quicker."""
+"""Size of a nonzero matrix from which its sparse form, which adds in the same order, is quicker."""
 UNDECIDED = 1e-13
 """Part of a pivot of positive definite equations that is left of it, below which it is rounding."""
 

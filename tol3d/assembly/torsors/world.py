@@ -1,4 +1,4 @@
-"""Parts in the world as moves leave them: a torsor each, seen at the world's origin."""
+"""Parts in the world after moves: a torsor each, seen at the world's origin."""
 
 from collections.abc import Mapping
 from copy import copy

@@ -25,7 +25,7 @@ class Gaps:
 
     Args:
         value: (trials, pairs) [mm], shortest distance, negative where the flanks overlap;
-            nan where the pair was not asked for or overlaps deeper than the engine can measure.
+            NaN where the pair was not asked for or overlaps deeper than the engine can measure.
         deep: (trials, pairs), True in that last case.
         at_end: (trials, pairs), whether either flank ends at its nearest point: at its tip edge, or where it begins.
         driver_point, driven_point: (trials, pairs, 3) [mm], the nearest points on the flanks, world.
@@ -66,7 +66,7 @@ class Gaps:
         return -rate if of_driver else rate
 
     def smallest(self) -> Array:
-        """Smallest gap of each trial [mm], (trials,); nan where any pair is too deep to measure."""
+        """Smallest gap of each trial [mm], (trials,); NaN where any pair is too deep to measure."""
         least = np.min(np.where(np.isnan(self.value), np.inf, self.value), axis=1)
         return np.where(self.deep.any(axis=1) | np.isinf(least), np.nan, least)
 
@@ -116,7 +116,7 @@ class MeshReading:
         driver_angle, driven_angle: turns of the gears at rest [rad], (rows,).
         gap: smallest gap of the non-working flanks [mm], (rows,).
         driven_turn, driver_turn: free turn of one gear, the other held at rest [rad], (rows,); below 0 where the
-            non-working flanks overlap; nan where not wanted.
+            non-working flanks overlap; NaN where not wanted.
         contact: point on the driver [mm], (rows, 3), world.
         tooth: the driver's tooth that touches, (rows,).
         status: (rows,), as the mesh move has it.

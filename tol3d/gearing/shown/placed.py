@@ -81,7 +81,7 @@ class SeatedMesh:
         driver_angle, driven_angle: their turns about their own axes [rad].
         contact, normal: point on the driver's working flank (3,) [mm] and the unit vector to the driven.
         gap: the nearest points of the non-working flanks, driver's and driven's, (2, 3) [mm].
-        gap_value: their distance [mm], the normal backlash; nan where the flanks overlap too deep to measure.
+        gap_value: their distance [mm], the normal backlash; NaN where the flanks overlap too deep to measure.
         status: OK, INTERFERES or NO_CONTACT.
     """
 

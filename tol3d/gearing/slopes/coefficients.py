@@ -96,7 +96,7 @@ KINK = 0.01  # of the larger slope; two sides that differ by less are one
 
 @dataclass(frozen=True)
 class Slopes:
-    """Change of a measure per unit of a contributor, below and above its mean; nan where neither seats."""
+    """Change of a measure per unit of a contributor, below and above its mean; NaN where neither seats."""
 
     below: float
     above: float

@@ -100,7 +100,7 @@ Size = Annotated[Quantity, Of("length", "angle")]
 
 
 class OwnFileSpec(Strict):
-    """A program that makes the solid; it runs only where the user says so, and never from a run that was kept."""
+    """A program that makes the solid; it runs only with the user's permission, and never from a kept run."""
 
     words: ClassVar[str] = "a Python file"
 

@@ -52,7 +52,7 @@ class FeatureSpec(Strict):
     face_kinds: ClassVar[tuple[FaceKind, ...]]
     """Kinds of face that it may have; any kind if empty."""
     numbers: ClassVar[tuple[str, ...]] = ("at",)
-    """Fields that it must have where it is by numbers."""
+    """Fields required for a feature stated by numbers."""
 
     kind: str
     at: Vector | None = Field(default=None, description="the middle of it; that of its face if not given")
@@ -77,23 +77,23 @@ class FeatureSpec(Strict):
 
     @property
     def faces_picked(self) -> Mapping[str, FaceSpec]:
-        """The faces that it is picked from, by their fields below it; none of one by numbers."""
+        """The faces from which it is picked, by their fields; none for a feature stated by numbers."""
         return {}
 
     @property
     def x_picked(self) -> Direction | None:
-        """Which way x points on a flat face, where it says so."""
+        """Direction of x on a flat face, if stated."""
         return None
 
     @abstractmethod
     def found(self, faces: "Sequence[PickedFace]") -> Mapping[str, Found]:
-        """Its fields as the faces have them.
+        """Its fields from the faces.
 
         Args:
             faces: those of `faces_picked`.
 
         Raises:
-            GeometryError: they are no such feature.
+            GeometryError: they form no such feature.
         """
 
     def members(self, name: str) -> "Mapping[str, Self]":
@@ -146,7 +146,7 @@ class OneFaceSpec(FeatureSpec):
 
 
 def known(value: Known | None, field: str) -> Known:
-    """A field of a feature whose numbers are known: stated, or found on its face.
+    """A field of a feature with known numbers: stated, or found on its face.
 
     Raises:
         ValueError: it is not.

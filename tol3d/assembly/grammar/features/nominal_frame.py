@@ -1,4 +1,4 @@
-"""Nominal frames from what a scene says of them: a place, an axis or normal, which way x points."""
+"""Nominal frames from a scene's entries: a place, an axis or normal, the direction of x."""
 
 from functools import lru_cache
 from struct import pack, unpack

@@ -35,7 +35,7 @@ Pitches = Annotated[
 
 
 class PatternSpec(Strict):
-    """Features in rows and columns, alike but for their places; the entry's own is the first of the first row."""
+    """Features in rows and columns, equal except for their places; the entry's own is the first of the first row."""
 
     rows: Count = Field(default=1, description="how many rows there are")
     columns: Count = Field(default=1, description="how many features a row has")
@@ -98,7 +98,7 @@ class Scattered:
 
 
 def _moved(at: Quantity, steps: list[tuple[int, Quantity, float]]) -> Quantity:
-    """A coordinate some pitches on: by decimals along an axis of the part, so that it is what one would write."""
+    """A coordinate some pitches on; along an axis of the part in decimals, as one would write it."""
     steps = [(times, pitch, way) for times, pitch, way in steps if times and way]
     if all(abs(way) == 1.0 for _, _, way in steps):
         return summed([(1, at), *((times * int(way), pitch) for times, pitch, way in steps)])

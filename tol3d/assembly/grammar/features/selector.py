@@ -1,4 +1,4 @@
-"""Features of a part from a STEP file: which ones are meant, in place of their numbers."""
+"""Selectors of features of a part from a STEP file, in place of their numbers."""
 
 import re
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ FaceName = Annotated[Name, BeforeValidator(_hashed, json_schema_input_type=str |
 
 
 class SelectorSpec(Strict):
-    """A feature of a part from a STEP file, by its face, or by what and where it is; `tol3d features` lists them."""
+    """A feature of a part from a STEP file, by its face, or by kind and place; `tol3d features` lists them."""
 
     words: ClassVar[str] = "a feature of a STEP file"
 

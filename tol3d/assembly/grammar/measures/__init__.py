@@ -1,1 +1,1 @@
-"""Kinds of measure: every class with a word is one, in whatever file of this folder it is."""
+"""Kinds of measure: every class with a word in any file of this folder is one."""

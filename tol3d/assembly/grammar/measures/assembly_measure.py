@@ -28,7 +28,7 @@ from tol3d.units import Dimension
 class AssemblyMeasureSpec(MeasureEntry):
     """A measure of an assembly: one number a trial, of features as they lie in it.
 
-    A kind declares here all that is its own: its fields, `reads`, how both methods read it, and by `measured` what.
+    A kind declares all of its own here: its fields, `reads` (how both methods read it) and `measured` (its model).
     """
 
     words: ClassVar[str] = "a measure of an assembly"
@@ -62,7 +62,7 @@ class AssemblyMeasureSpec(MeasureEntry):
     @property
     @abstractmethod
     def of_what(self) -> Sequence[str]:
-        """Names of what it is of, as summary.json has them."""
+        """Names of its features or parts, as in summary.json."""
 
     @abstractmethod
     def measured(self, moves: Sequence[str]) -> Measured:
@@ -179,7 +179,7 @@ class BetweenSpec(FeatureMeasureSpec):
 
 
 class OverPlaySpec(BetweenSpec):
-    """A measure from one feature to another that may be read over all poses that play leaves."""
+    """A measure from one feature to another that may be read over all poses allowed by play."""
 
     over_play: OverPlay | None = Field(
         default=None,

@@ -20,7 +20,7 @@ from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 
 CHORD_ERROR: Final = 2e-3
-"""mm; of a clearance that states none: small against tolerances, and of the size of what parts' meshes cost little."""
+"""mm; default chord error of a clearance: small against tolerances, and cheap to mesh."""
 
 
 class ClearanceSpec(TimedSpec):

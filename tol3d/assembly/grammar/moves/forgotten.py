@@ -1,4 +1,4 @@
-"""Parts that no move places, and what to write for them."""
+"""Parts that no move places, and moves to add for them."""
 
 from collections.abc import Mapping
 from typing import Any

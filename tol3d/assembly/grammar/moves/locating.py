@@ -45,7 +45,7 @@ class LocatingSpec(PlacingSpec):
 
 
 class ThreeTwoOneSpec(LocatingSpec):
-    """Three contacts, two, one, each along its own normal: what slants is touched as it slants."""
+    """Three contacts, two, one, each along its own normal: tilted faces are touched as tilted."""
 
     words: ClassVar[str] = "a 3-2-1 move"
 

@@ -57,7 +57,7 @@ class FitSpec(PairSpec):
 
 
 class BestFitSpec(PlacingSpec):
-    """Points are brought together as well as may be: least squares, or least largest distance; no scale."""
+    """Points are fitted as well as possible: least squares, or least largest distance; no scale."""
 
     words: ClassVar[str] = "a best fit"
 

@@ -16,7 +16,7 @@ from tol3d.strict import Strict
 
 
 class PairSpec(Strict):
-    """A feature of the part that is placed, and the one of placed parts that it goes to."""
+    """A feature of the part to be placed, and its target on placed parts."""
 
     from_: FeatureName = Field(alias="from", description="of the part that is placed")
     to: FeatureName = Field(description="of a part that is placed already")

@@ -1,4 +1,4 @@
-"""Parts that pins or tabs hold with play in holes or slots: what engages, and where in its room the part lies."""
+"""Parts held with play by pins or tabs in holes or slots: engagements, and the position within the clearance."""
 
 from abc import abstractmethod
 from collections.abc import Iterator

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class StatedMoveSpec(MoveSpec):
-    """A move that places one body or several, of whatever mechanism, and says itself how; see StatedMove."""
+    """A move of any mechanism that places one or several bodies and defines how; see StatedMove."""
 
     words: ClassVar[str] = "a move that places a part"
 

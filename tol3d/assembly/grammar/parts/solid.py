@@ -63,7 +63,7 @@ class SolidSpec(GrowingSpec):
         return () if self.like is None else (Reference(("like",), self.like, (SolidSpec,)),)
 
     def contradictions(self, parts: Mapping[str, Any], moves: Mapping[str, Any]) -> Iterator[Contradiction]:
-        """Parts that are like each other in a ring, told at the first of them, and too many in sequence."""
+        """Refuse parts that copy each other in a ring, reported at the first of them, and too many in sequence."""
         chain: list[str] = []
         like = self.like
         while like is not None and like not in chain:
@@ -108,7 +108,7 @@ class SolidSpec(GrowingSpec):
 
 
 def likes(name: str, solids: Mapping[str, SolidSpec]) -> tuple[str, ...]:
-    """A part and those that it is like, the nearest first; the last one has the solid, if any has.
+    """A part and those that it copies, the nearest first; the last one has the solid, if any has.
 
     Args:
         name: of the part.

@@ -1,4 +1,4 @@
-"""A part from a STEP file of somebody else's."""
+"""A part from a STEP file."""
 
 from collections.abc import Iterator, Mapping
 from typing import ClassVar, Literal, Self

@@ -1,1 +1,1 @@
-"""Kinds of tolerance by their names on drawings: every class with a word is one, in whatever file it is."""
+"""Kinds of tolerance by their names on drawings: every class with a word in any file of this folder is one."""

@@ -1,4 +1,4 @@
-"""Zones that say where a feature lies, how it is turned, of what form it is; run-outs are of an axis."""
+"""Zones for location, orientation and form of a feature; run-outs are about an axis."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
@@ -19,7 +19,8 @@ from tol3d.strict import Strict, refused
 class SegmentSpec(Strict):
     """The lower segment of a composite tolerance: how the features of a pattern lie to each other.
 
-    It holds their places to each other, and turns them by its datums alone: where the pattern lies is of the upper one.
+    It limits their places relative to each other, and their orientation by its datums; the upper one locates the
+    pattern.
     """
 
     zone: ZoneSpec = Field(description="of the shape of the upper one, and narrower")

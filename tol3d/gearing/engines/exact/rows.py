@@ -122,7 +122,7 @@ def looks_of(pair: PairNumbers, which: Integers) -> Looks:
 
 @part
 def free_turn(build: MeshBuild, at: Turn, other: Side, angle: float, looks: Looks) -> float:
-    """Turn of the driven gear [rad] until the non-working flanks touch; nan where it cannot be known."""
+    """Turn of the driven gear [rad] until the non-working flanks touch; NaN where it cannot be known."""
     sense, near_at, near = looks.working.sigma * opening(build.driven), at, other
     if not looks.gap_closes:  # the smallest gap nearly gives the turn
         near_at = driven_on(at, sense * other.turn)
@@ -317,7 +317,7 @@ def gap_rows(
         pinion ... scale: as in `read_rows`, but for `which`: driver, driven, flank, whether of the section.
         driver_angles, driven_angles: (rows,) [rad].
         driver_teeth, wanted: (rows, pairs).
-        value: (rows, pairs) [mm], written; nan where not wanted, inf where the faces do not overlap.
+        value: (rows, pairs) [mm], written; NaN where not wanted, inf where the faces do not overlap.
         vectors: (rows, pairs, 3, 3), written: points on driver and driven, normal from driver to driven; world.
         at_end: (rows, pairs), written: whether either flank ends there.
     """

@@ -331,7 +331,7 @@ def closed(side: Side, build: MeshBuild, at: Turn, look: Look) -> tuple[Turn, Si
 
 @part
 def driver_turn(build: MeshBuild, at: Turn, look: Look) -> float:
-    """The turn of the driver [rad], the driven gear held, until a side touches; nan where it is unknown."""
+    """The turn of the driver [rad], the driven gear held, until a side touches; NaN where it is unknown."""
     angle, p = at.driver, build.pose
     for _ in range(LOOKS):
         now = standing(build, angle, at.driven)
