@@ -1,10 +1,9 @@
-"""Tolerances at least cost for a share out of limits: by gradients of the first order, corrected until trials confirm.
+"""Tolerances at least cost for a fraction out of limits: by first-order gradients, corrected until trials confirm.
 
-How often limits are left is told by design points (FORM), with its change with each factor, and the least cost under
-that is found by sequential quadratic programming in the logarithms of the factors, with tangents in place of the
-mechanism. At what was found design points and tangents are taken again. First order may be off by a factor: importance
-sampling says by how much, the target is moved by that, and so on until it confirms the result. What it says last, with
-another seed, is the result.
+Fractions out of limits and their slopes by each factor come from design points (FORM), and the least cost from
+sequential quadratic programming in the logarithms of the factors, with tangents in place of the mechanism. At the
+solution design points and tangents are found again. First order may be off by a factor: importance sampling finds it,
+the target is corrected, and so on until the result is confirmed. The last sampling, with another seed, is reported.
 """
 
 import math
@@ -34,11 +33,11 @@ NARROW: Final = 1e-3
 BETWEEN: Final = (0.15, 0.85)
 """Shares of a bracket between which the next trim lies."""
 MIDDLE: Final = 0.993
-"""The share of the target that trims aim at."""
+"""Fraction of the target that trims aim at."""
 LONGEST: Final = 0.3
 """A trim, in logarithms of factors."""
 LESS: Final = 2e-3
-"""Share of the cost by which another round has to be cheaper."""
+"""Fraction of the cost by which another round has to be cheaper."""
 AIM: Final = 0.995
 """Fraction of the target to aim at, so that the result is rather below."""
 NEAR: Final = 0.97
@@ -53,7 +52,7 @@ CURVE: Final = (0.1, 0.3, 3.0, 10.0)
 PASSES: Final = 2
 """Over tangents, for each point of the curve."""
 LOOKS: Final = 3
-"""Last looks; after each that is not content the search goes on below."""
+"""Final checks; after each that fails the search goes on below the target."""
 SURE: Final = 1.03
 """Largest result of the last check, over the target."""
 FAR: Final = 0.02
@@ -75,9 +74,9 @@ def allocation(
     Args:
         response: with the tolerances of the scene.
         targets: one per measure.
-        question: costs, bounds, what stays.
+        question: costs, bounds, limits that stay.
         draws: of importance sampling, each time.
-        seed: of it; the last look has another one.
+        seed: of it; the final check has another one.
         activity: callback that gets what goes on, in words.
 
     Raises:
@@ -163,7 +162,7 @@ def _sampled(search: Search, x: Array, draws: int, seed: int) -> Array:
 
 
 def _looked(search: Search, x: Array, draws: int, seed: int) -> list[_Seen]:
-    """The same of each target by itself, whatever is known of it; of both limits the sum."""
+    """The same for each target by itself; for both limits the sum."""
     other = search.scaled(x)
     found = []
     for target in search.targets:
@@ -200,7 +199,7 @@ class _Rounds:
     """Solutions by first order whose target is moved until sampling confirms them.
 
     Args:
-        search: what is looked for.
+        search: the search.
         draws, seed: of importance sampling.
         tell: callback that gets what goes on, in words.
         shift: by how much first order is off (targets,), in logarithms.
@@ -215,9 +214,9 @@ class _Rounds:
     count: int = 0
 
     def solved(self, solve: Solve, x: Array, wanted: Array, most: int = ROUNDS) -> Array:
-        """Factors of which sampling says that they reach what is wanted (targets,), in logarithms.
+        """Factors that reach the wanted logarithms of fractions (targets,) by sampling.
 
-        It ends where another look from what was found costs no less.
+        It ends when another round costs no less.
         """
         best: tuple[float, Array] | None = None
         for _ in range(most):
@@ -233,10 +232,10 @@ class _Rounds:
         return x if best is None else best[1]
 
     def _trimmed(self, x: Array, wanted: Array) -> tuple[Array, Array]:
-        """Factors a little tighter or looser, all alike that are at no bound, and what sampling says of them.
+        """Factors a little tighter or looser, alike for all at no bound, and their results by sampling.
 
-        By secants, between a share that is too large and one that is not as soon as both are known: where laws have
-        limits the share falls off as from a cliff.
+        By secants, between a fraction that is too large and one that is not as soon as both are known: where laws have
+            limits the fraction drops abruptly.
         """
         begun, at, free = x, 0.0, np.zeros(0, dtype=bool)
         sides: dict[bool, tuple[float, float, Array, Array]] = {}
@@ -275,7 +274,7 @@ class _Rounds:
         return between if between.any() else above if off < 0.0 else below
 
     def _rate(self, x: Array, off: Array, free: NDArray[np.bool_]) -> float:
-        """By first order, how the logarithm of the share that is most off changes with all factors that are free."""
+        """First-order slope of the logarithm of the fraction that is most off, with all free factors."""
         slopes = self.search.probabilities(x)[1][int(np.argmax(off))]
         return float(slopes[free].sum())
 

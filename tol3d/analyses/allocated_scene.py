@@ -1,4 +1,4 @@
-"""Tolerances of a scene and the contributors that they are: what one factor scales, and how it is written back."""
+"""Tolerances of a scene and their contributors: the scope of one factor, and writing it back."""
 
 from collections.abc import Mapping
 

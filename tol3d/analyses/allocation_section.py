@@ -6,7 +6,7 @@ from tol3d.runs.summary.values import Count, Known, Label, NotNegative, Number, 
 
 
 class Allocated(Section):
-    """A tolerance: its factor, what it costs, and why it is not another one."""
+    """A tolerance: its factor, its cost, and the reason for it."""
 
     factor: NotNegative
     cost: Number
@@ -35,7 +35,7 @@ class CostAt(Section):
 
 
 class Allocation(Section):
-    """Factors of least cost, and what simulation says of them."""
+    """Factors of least cost, and their results by simulation."""
 
     targets: list[TargetFound]
     tolerances: dict[Label, Allocated]

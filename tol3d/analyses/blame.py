@@ -1,10 +1,10 @@
-"""Which contributors are to blame for failures: the share of each in a measure's ppm.
+"""Causes of failures: the share of each contributor in a measure's ppm.
 
 Where failures are frequent among the builds of a simulation these are Sobol' indices of failing itself, a number that
-is 1 where a build is beyond a limit or does not seat, and 0 elsewhere. Where they are rare a simulation says nothing:
-then they are the squared direction cosines of the design points, the most likely builds that fail, averaged over
-positions and limits by how likely each of them is. To first order these are the shares in the reliability index. Where
-contributors are correlated both are Shapley effects: of failing, or of the limit made linear at the design point.
+is 1 where a build is beyond a limit or does not seat, and 0 elsewhere. If failures are rare a simulation does not find
+them: then the shares are the squared direction cosines of the design points, the most likely builds that fail, averaged
+over positions and limits by how likely each of them is. To first order these are the shares in the reliability index.
+Where contributors are correlated both are Shapley effects: of failing, or of the limit made linear at the design point.
 
 Sources: Perrin and Defaux, Efficient evaluation of reliability-oriented sensitivity indices, J. Sci. Comput. 79
 (2019); Madsen, Krenk, Lind, Methods of Structural Safety (1986), on direction cosines.
@@ -33,7 +33,7 @@ Valued = tuple[float, float]
 
 FREQUENT: Final = 1000
 FREQUENT_SHARE: Final = 1 / 8
-"""Builds that fail, of those of all pairs, from which on a simulation says who is to blame; of few such a share."""
+"""Failing builds of all pairs from which a simulation is used; of few builds such a fraction."""
 PLACES: Final = 8
 FEWEST_PLACES: Final = 2
 MOST_MINUTES: Final = 0.02
@@ -47,8 +47,8 @@ class Blame:
     """Shares in the failures of a measure.
 
     Args:
-        by: how they were found; None where there is nothing to blame for.
-        words: why, or what was left out.
+        by: their method; None if there are no failures.
+        words: reason, or parts left out.
         first: by contributor, alone.
         total: likewise, with what it does together with others; of a simulation.
     """
@@ -60,11 +60,11 @@ class Blame:
 
 
 def blame_of(response: Response, sampled: PickFreeze, shapley: ShapleyEffects | None, k: int, seed: int) -> Blame:
-    """The blame for failures of a measure.
+    """The causes of a measure's failures.
 
     Args:
         response: of that measure alone.
-        sampled: what pairs of builds said.
+        sampled: result of pairs of builds.
         shapley: likewise, where it was asked for.
         k: of the measure there.
         seed: of starts towards design points.

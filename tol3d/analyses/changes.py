@@ -115,7 +115,7 @@ def known(response: Response, option: str, name: str) -> str:
     """The name of a contributor.
 
     Raises:
-        InputError: nobody is called so.
+        InputError: there is none of that name.
     """
     names = {own.name: own for own in response.contributors}
     if name not in names:

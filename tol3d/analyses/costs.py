@@ -1,4 +1,4 @@
-"""Costs of tolerances by how many times as wide they are as in the scene."""
+"""Costs of tolerances by their width over that in the scene."""
 
 import math
 from collections.abc import Iterable, Mapping

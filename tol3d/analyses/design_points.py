@@ -1,4 +1,4 @@
-"""Design points: the most likely builds that fail, sought by gradients, by probes and, where there is none, without.
+"""Design points: the most likely builds that fail, found by gradients, by probes and, if there is no gradient, without.
 
 Sources: Hasofer and Lind 1974; Rackwitz and Fiessler 1978; Zhang and Der Kiureghian 1995 (the step's length).
 """
@@ -20,7 +20,7 @@ WALK_MINUTES: Final = 0.4
 MET: Final = 1e-4
 """Remaining distance from the limit, as a share of that of the mean build, and of the way across it."""
 FURTHEST: Final = 9.0
-"""From the origin, where nothing is looked for."""
+"""Distance from the origin beyond which nothing is sought."""
 HALVINGS: Final = 30
 SHRINKS: Final = 6
 """Halvings of a step that leads nowhere."""
@@ -205,7 +205,7 @@ class _Walk:
         return np.asarray(np.linalg.norm(self.normals, axis=1))
 
     def step(self) -> bool:
-        """One step of all that are on their way; whether any is left."""
+        """One step of all unfinished rows; True if any is left."""
         rows = np.flatnonzero(~self.ended)
         if not rows.size:
             return False
@@ -249,7 +249,7 @@ class _Walk:
         self.met[rows[near]] = True
 
     def _go(self, rows: NDArray[np.int64], steps: Array, weights: Array) -> None:
-        """As much of each step as makes rows better: nearer to the origin, or to the limit."""
+        """The part of each step that improves rows: nearer to the origin, or to the limit."""
         merits = 0.5 * self.sizes[rows] ** 2 + weights * np.abs(self.inside[rows])
         waiting, share = np.arange(len(rows)), 1.0
         for _ in range(SHRINKS):

@@ -1,9 +1,9 @@
 """Effects of contributors on measures: per unit, over the whole tolerance, on the variance and on failures.
 
 The change over the whole tolerance is what 3DCS calls the GeoFactor analysis: one contributor from end to end, the
-others at their means. It sees no interaction, and no law. Sobol' indices see both: the first index is the share of the
-variance that goes with a contributor alone, the total one its share with all that it does together with others. Where
-contributors are correlated their indices are those of them all together, and Shapley effects divide what they share.
+others at their means. It ignores interactions and laws. Sobol' indices include both: the first index is a contributor's
+own share of the variance, the total one includes its interactions. Where contributors are correlated their indices are
+those of them all together, and Shapley effects divide what they share.
 
 Everything is at the same positions, and averaged over them; see pick_freeze.py.
 """
@@ -114,7 +114,7 @@ def effects(
         seed: of their points.
         position: whether the position is an input as well, in place of being averaged over.
         shapley: whether Shapley effects are wanted also where no contributors are correlated.
-        activity: told what is being done.
+        activity: progress callback.
 
     Raises:
         InputError: the position is to be an input and there is none, or a base is no power of two.
@@ -155,7 +155,7 @@ def effects(
 
 
 def _alike(response: Response) -> Sequence[Sequence[Measure]]:
-    """Measures by the positions of a trial: what is swept takes longer, and gets fewer pairs."""
+    """Measures by the positions of a trial: sweeps take longer, and get fewer pairs."""
     groups: dict[int, list[Measure]] = {}
     for own in response.measures:
         groups.setdefault(own.positions.in_a_trial, []).append(own)
@@ -163,7 +163,7 @@ def _alike(response: Response) -> Sequence[Sequence[Measure]]:
 
 
 def default_base(response: Response, inputs: int) -> int:
-    """Pairs of builds that are worth their time."""
+    """Affordable number of pairs of builds."""
     most = min(MOST_EVALUATIONS, MOST_MINUTES / response.minutes if response.minutes > 0.0 else math.inf)
     size = 1 << int(math.log2(max(most / (inputs + 2), 1.0)))
     return min(max(size, LEAST_BASE), MOST_BASE)

@@ -1,4 +1,4 @@
-"""The matrix of contributors and measures as a heat map: how much of a measure's total change is whose."""
+"""The matrix of contributors and measures as a heat map: shares of a measure's total change."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Effects as tables: for each measure what every contributor does to it, and the matrix of all as a file."""
+"""Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A probability as it was estimated, with the interval that holds it, and what may spoil it."""
+"""An estimated probability, with its confidence interval and warnings."""
 
 import math
 from dataclasses import dataclass
@@ -38,12 +38,12 @@ class Estimate:
 
 
 def weighted_interval(probability: float, error: float, freedoms: float, unseen: float) -> tuple[float, float]:
-    """By Student's law of the logarithm, on the side that is the rarer one.
+    """By Student's law for the logarithm, on the rarer side.
 
     Args:
         probability, error: estimated.
         freedoms: of the error.
-        unseen: what it is at most where nothing was found.
+        unseen: upper bound if nothing was found.
     """
     if probability > 0.5:
         low, high = weighted_interval(1.0 - probability, error, freedoms, unseen)
@@ -56,7 +56,7 @@ def weighted_interval(probability: float, error: float, freedoms: float, unseen:
 
 
 def counted_interval(failed: int, draws: int) -> tuple[float, float]:
-    """Clopper and Pearson's: so many of independent draws."""
+    """Clopper and Pearson's interval for a count of independent draws."""
     half = (1 - CONFIDENCE) / 2
     low = float(beta_law.ppf(half, failed, draws - failed + 1)) if failed else 0.0
     high = float(beta_law.ppf(1 - half, failed + 1, draws - failed)) if failed < draws else 1.0

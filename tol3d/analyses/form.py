@@ -1,9 +1,10 @@
 """First order at many tolerances: design points that are followed from one set of tolerances to the next.
 
 A design point moves little where tolerances change little, so that a step or two of Hasofer, Lind, Rackwitz and
-Fiessler take it along. What a factor does to a distance β follows at the design point itself: the limit state's change
-with the factor, the normals held, over the size of its gradient there. About a design point the limit state is nearly
-linear in the deviations, whatever the laws are: with that tangent no build is asked until the factors are found.
+Fiessler take it along. The effect of a factor on a distance β follows at the design point itself: the limit state's
+change with the factor, the normals held, over the size of its gradient there. About a design point the limit state is
+nearly linear in the deviations, whatever the laws are: with that tangent no build is evaluated until the factors are
+found.
 """
 
 import math
@@ -31,7 +32,7 @@ STEP: Final = 1e-3
 """Step of central differences, in standard normals and in logarithms of factors."""
 STEPS: Final = 12
 MET: Final = 1e-3
-"""A step that is left, in standard normals: a distance is then known to its square."""
+"""Remaining step, in standard normals: a distance is then known to its square."""
 LONGEST: Final = 3.0
 """Length of a step, in standard normals."""
 SHARES: Final = (0.1, 1.5)

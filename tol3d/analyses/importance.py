@@ -1,4 +1,4 @@
-"""Importance sampling about design points: whatever these are worth, its mean is the probability.
+"""Importance sampling about design points: its mean is the probability even for poor ones.
 
 Builds are drawn from a mixture: plain ones, normals about each design point, and normals beyond the plane through it.
 Each is weighed by how much likelier the mixture made it. Positions are drawn as the study draws them; where some of
@@ -32,10 +32,10 @@ APART: Final = 0.02
 """Share of the failures that plain draws may find apart from the design points."""
 MOST_APART: Final = 4
 FEW: Final = 30.0
-"""Effective draws, below which it is told."""
+"""Effective draws, below which a warning is given."""
 FEW_PLACES: Final = 6.0
 HEAVY: Final = 0.2
-"""Share of one draw in all of them, from which on it is told."""
+"""Share of one draw in all of them, above which a warning is given."""
 
 
 # draws ----------------------------------------------------------------------------------------------
@@ -70,7 +70,7 @@ def importance_sampled(
     Args:
         state: the limit state.
         places: positions and design points.
-        draws: how many in all.
+        draws: their number.
         generator: of the draws.
     """
     first = places.first_order
@@ -107,7 +107,7 @@ def importance_sampled(
 def _plain(
     state: LimitState, places: Places, draws: int, generator: np.random.Generator, *, no_point: bool
 ) -> Estimate:
-    """By plain draws, where failures are frequent, or nothing is known of them."""
+    """By plain draws, if failures are frequent, or nothing is known of them."""
     moving = bool(state.response.simulation.system.streams)
     positions = state.response.positions(draws, "drawn" if moving else "rest", int(generator.integers(2**31)))
     fails, unseated = state.failing(generator.standard_normal((draws, state.dimension)), positions)
@@ -136,7 +136,7 @@ def _sampled(state: LimitState, places: Places, draws: int, generator: np.random
 
 
 def _by_place(found: Drawn, places: Places, weights: Array) -> Array:
-    """Mean of the draws of each place, times what the place stands for."""
+    """Mean of the draws of each place, times its weight."""
     return np.asarray(places.weights * np.bincount(found.places, weights, minlength=places.count) / found.counts)
 
 

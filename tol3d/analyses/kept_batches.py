@@ -1,4 +1,4 @@
-"""Batches that an analysis evaluated: the same analysis, asked again after it was interrupted, goes on from there.
+"""Batches evaluated by an analysis: after an interruption the same analysis resumes from them.
 
 An analysis draws from stated seeds and so asks for the same batches each time. Those that took long are kept in the
 cache as they are evaluated, by the digest of all that decides them, and read instead. They go when the analysis ends.
@@ -25,7 +25,7 @@ from tol3d.runs.fingerprint import Fingerprint
 LONG: Final = 0.2
 """Seconds of an evaluation from which it is kept."""
 OLD: Final = 14 * 86_400
-"""Seconds after which what was kept of an analysis that nobody asked for again is deleted."""
+"""Seconds after which batches of an analysis that was not resumed are deleted."""
 PREFIX: Final = "analysis-"
 SUFFIX: Final = ".batch"
 
@@ -39,7 +39,7 @@ class KeptBatches:
 
     Args:
         owner: digest of what decides values beside the builds.
-        written: whether any was kept since this began.
+        written: True if any was kept since this began.
     """
 
     owner: str

@@ -20,10 +20,10 @@ NEARLY: Final = 1e-3
 
 
 def equal_factors(search: Search, wanted: Array, begun: Array) -> Array:
-    """One factor of all, each as far as its bounds let it.
+    """One factor for all, each within its bounds.
 
     Args:
-        search: what is looked for.
+        search: the search.
         wanted: logarithms of the shares that may be beyond limits (targets,).
         begun: logarithms of factors to start from.
     """

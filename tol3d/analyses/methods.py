@@ -1,13 +1,13 @@
 """Methods side by side: a measure's worst case, its root sum of squares (RSS), modified RSS, and simulation.
 
-The half tolerance of a contributor is half of what it does between its two ends, by its slopes at the mean build: of a
-law with limits these; of one without them its 0.135 % and 99.865 % percentiles, as ± 3 sigma of a normal law. RSS is
-the root of the sum of their squares, the worst case by slopes their sum. Modified RSS is RSS × C_f, with
-C_f = 1 + 0.5 (WC − RSS) / (RSS (√n − 1)) of n contributors that act, WC the worst case by slopes: it grows from RSS by
-half of how far WC exceeds it, less where WC is the most that n equal contributors may add up to.
-Source: Drake, Dimensioning and Tolerancing Handbook, 1999, chapter 9.
+The half tolerance of a contributor is half of its effect between its two ends, by its slopes at the mean build: the
+limits of its law; without them its 0.135 % and 99.865 % percentiles, like ± 3 sigma of a normal law. RSS is the root of
+the sum of their squares, the worst case by slopes their sum. Modified RSS is RSS × C_f, with C_f = 1 + 0.5 (WC − RSS) /
+(RSS (√n − 1)) of n contributors that act, WC the worst case by slopes: it grows from RSS by half of how far WC exceeds
+it, less where WC is the most that n equal contributors may add up to. Source: Drake, Dimensioning and Tolerancing
+Handbook, 1999, chapter 9.
 
-The worst case is looked for, not known: see study/worst_case.py.
+The worst case is searched for, not known exactly: see study/worst_case.py.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Methods side by side as tables: of each measure a row a method, and the worst builds that were found."""
+"""Methods side by side as tables: for each measure one row per method, and the worst builds found."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final

@@ -1,4 +1,4 @@
-"""The picture of rare events: how often each limit is left by each method, and who leads to the design points."""
+"""The picture of rare events: probability beyond each limit by each method, and contributors to the design points."""
 
 from collections.abc import Sequence
 from pathlib import Path

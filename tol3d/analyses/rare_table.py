@@ -1,4 +1,4 @@
-"""Rare events as tables: how often each limit is left, and the build by which it most likely is."""
+"""Rare events as tables: probability beyond each limit, and the most likely build beyond it."""
 
 from collections.abc import Iterator, Sequence
 from typing import Final

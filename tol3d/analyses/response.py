@@ -77,14 +77,14 @@ class Count:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Implements what analyses ask.
+    """The response of a scene to deviations.
 
     Args:
         simulation: of the scene.
         measures: which are read, one number a trial each; of a curve its lowest and its highest value.
         method: that builds; None for the analytic one.
         draws: by contributor, how it is drawn: the scene's, or other tolerances.
-        curves: by the name of such an end of a curve, the curve.
+        curves: by the name of an end of a curve, the curve.
         count: of evaluations.
         batches: where those that took long are kept, so that an interrupted analysis can go on; None: nowhere.
     """
@@ -381,7 +381,7 @@ class Response:
         return replace(self, draws={**self.draws, **draws})
 
     def with_laws(self, laws: Mapping[str, Distribution]) -> "Response":
-        """The same system with other tolerances, by contributor: its deviations as a scene draws them that says so.
+        """The same system with other tolerances, by contributor: deviations as drawn by a scene with these tolerances.
 
         Raises:
             InputError: no such contributor, one that is not drawn by a law, or deviations that cannot be.

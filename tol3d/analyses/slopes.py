@@ -1,7 +1,7 @@
-"""Rates of measures: how each contributor moves them, spreads them, and takes their means off nominal.
+"""Rates of measures: their change, spread and mean shift by each contributor.
 
-Slopes are central differences of builds as they are drawn, at their positions, and averaged: of a measure that is the
-length of a sum, or the least of several, the slopes of the mean build say nothing.
+Slopes are central differences of builds as they are drawn, at their positions, and averaged: for a measure that is the
+length of a sum, or the least of several, slopes at the mean build are useless.
 """
 
 import warnings

@@ -32,7 +32,7 @@ TURNED: Final = 0.2
 FREQUENT: Final = 0.05
 """Probability from which on its first level is enough."""
 UNLIKE: Final = 0.6
-"""Spread of the repetitions, by their mean, from which on it is told."""
+"""Spread of the repetitions over their mean, above which a warning is given."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Found by subset simulation.
+    """Result of subset simulation.
 
     Args:
         estimate: of the probability.
@@ -72,7 +72,7 @@ def subset_simulated(
         state: the limit state.
         draws: of each level, all repetitions together.
         generator: of all draws.
-        activity: told at each level.
+        activity: progress callback, called at each level.
     """
     streams = len(state.response.simulation.system.streams)
     each = max(20, round(draws / REPETITIONS / 10) * 10)

@@ -1,7 +1,7 @@
 """A sweep: variants of a scene, each simulated by itself, with the same draws.
 
 A contributor's draws depend on the seed, its name and the trial alone, so that variants differ by what is varied and
-not by chance. What is done is kept, a run a variant without its trials: an interrupted sweep goes on where it stopped.
+not by chance. Finished variants are kept, one run each without its trials: an interrupted sweep resumes.
 """
 
 import hashlib
@@ -120,11 +120,11 @@ def sweep(scene: Scene, question: SweepQuestion, order: Order) -> Sweep:
 
     Args:
         scene: as `load` gives it.
-        question: what is varied.
+        question: the variables.
         order: how they are simulated.
 
     Raises:
-        InputError: a field that the scene has not, values that are none, or a folder that cannot be written.
+        InputError: a field that does not exist, invalid values, or a folder that cannot be written.
     """
     points, order = question.points, replace(order, overrides=replace(order.overrides, witness=0))
     study = asked_study(scene, order.overrides)
@@ -163,7 +163,7 @@ def write_text(text: str, path: Path) -> None:
 
 
 def _refuse_all(scene: Scene, point: Point, out: Path) -> None:
-    """Refuse what is no variant's own fault: a field that the scene has not, a folder that cannot be written."""
+    """Refuse errors common to all variants: a field that does not exist, a folder that cannot be written."""
     for field in point:
         known_path(scene, field)
     try:
@@ -200,7 +200,7 @@ def _written(value: Value) -> Any:
 
 
 def _run(scene: Scene, order: Order) -> Run:
-    """The variant's run, that of before where it is whole."""
+    """The variant's run; an earlier one if it is complete."""
     simulation = simulation_of(scene, order.overrides)
     folder = order.out / f"variant-{_key(scene, simulation.study)}"
     kept = Execution(order.workers, keep_trials=False, resume=True)

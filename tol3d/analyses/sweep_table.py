@@ -32,7 +32,7 @@ def _headings(found: Sweep) -> list[Heading]:
 
 
 def _named(found: Sweep) -> Iterator[tuple[str, str]]:
-    """Fields without what all of them have in front, for tables."""
+    """Fields without their common prefix, for tables."""
     yield from zip(short_names(found.fields), found.units, strict=True)
 
 

@@ -26,7 +26,7 @@ A_LITTLE: Final = 1e-4
 
 @dataclass(frozen=True)
 class Target:
-    """A measure, which of its limits count, and what share of the builds may leave them.
+    """A measure, the limits that count, and the fraction of builds that may be out of them.
 
     Args:
         measure: its name.
@@ -178,7 +178,7 @@ def with_sides(response: Response, target: Target) -> Target:
 def begun(
     response: Response, targets: Sequence[Target], question: Question
 ) -> tuple[Search, dict[str, tuple[str, str]]]:
-    """The search, and by name of what is not searched the contributor whose tolerance it tells, and why.
+    """The search, and by name the contributors that are not searched, with the reason.
 
     Raises:
         InputError: a contributor that does not exist, or none whose tolerance can be scaled.
@@ -238,7 +238,7 @@ def _refuse_strangers(
 
 
 def _reached(response: Response, question: Question, each: Sequence[str], bound: float) -> float:
-    """A bound, or how far from 1 towards it deviations are physical and zones hold what refines them."""
+    """A bound, or the factor nearest to it at which deviations are physical and zones contain their refinements."""
 
     def fits(factor: float) -> bool:
         try:

@@ -1,1 +1,1 @@
-"""Gears in mesh and the trains that they make: builds, contact, measures, and the stack-up beside them."""
+"""Gears in mesh and their trains: builds, contact, measures, and the stack-up."""

@@ -24,7 +24,7 @@ class Effect(ABC):
 
     @property
     def singles(self) -> tuple["Effect", ...]:
-        """The effects that it is made of; itself alone."""
+        """Its elementary effects; itself alone."""
         return (self,)
 
     @abstractmethod

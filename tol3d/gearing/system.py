@@ -116,7 +116,7 @@ class GearSystem:
         return self.model.turns_at_random(contributor, positions)
 
     def seen_by_gears(self, trials: Trials) -> tuple[Trials, Mapping[str, Codes]]:
-        """Trials as the gears see them, and by shaft what became of what holds it: as they are, nothing does."""
+        """Trials as seen by the gears, and status codes by shaft; here unchanged, without codes."""
         return trials, {}
 
     # its methods --------------------------------------------------------------------------------------

@@ -53,11 +53,11 @@ def animate_run(
     Args:
         run: a finished run.
         which: a trial, or "worst", "nominal", "mean".
-        path: the file, whose ending says what is written: .gif, .png (animated) or .webp.
+        path: the file, with the ending of its format: .gif, .png (animated) or .webp.
         motion: what moves; None: the first motion there is.
-        frames: how many; None: as many as suit the motion.
+        frames: their number; None: as many as suit the motion.
         magnify: scales the deviations and simulates again.
-        presenter: import path of what shows the system; by default that of the run's measures.
+        presenter: import path of the system's presenter; by default that of the run's measures.
 
     Returns:
         what the user should know, such as the magnification in use.
@@ -106,7 +106,7 @@ def encoded(motion: Motion, drawn: Iterator[Image.Image], suffix: str) -> bytes:
 
 
 def _few_colours(drawn: Pictures, exact: Sequence[str]) -> Iterator[Image.Image]:
-    """Pictures in the colours of some of them and some exact ones, "#RRGGBB": what stands still stays to the pixel.
+    """Pictures in the colours of some of them and some exact ones, "#RRGGBB": static pixels stay unchanged.
 
     They are not dithered: noise that changes from frame to frame would triple the file.
     """

@@ -1,4 +1,4 @@
-"""Histograms ready to be drawn: fewer bars for few trials, densities in % a unit."""
+"""Histograms ready to be drawn: fewer bars for few trials, densities in % per unit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ class Bars:
 def bars_of(measure: MeasureSummary) -> dict[Method, Bars]:
     """Bars of each method of a measure; none where nothing was counted.
 
-    Trials are all: what failed is missing in the bars, and does not make the others seem more.
+    Densities refer to all trials: failed ones are missing in the bars and do not raise the others.
     """
     histogram = measure.histogram
     if histogram is None or histogram.counts is None or histogram.lower_edge is None or histogram.bin_width is None:

@@ -27,7 +27,7 @@ class Body:
         scale: thermal growth, 1 at the reference temperature; `surface` is without it.
         smooth: whether its facets stand for one round surface, as a cylinder's do.
         opacity: of its surface in pictures, from 0 to 1; what is within it is seen where that is less.
-        details: a closed triangle mesh in its own frame that pictures show on it or within it, and no file holds.
+        details: a closed triangle mesh in its own frame, shown in pictures on it or within it but not exported.
         painted: "#RRGGBB" of each triangle of its surface that has a colour of its own, empty of the others; made when
             asked for. None: none has.
     """

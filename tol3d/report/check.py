@@ -23,7 +23,7 @@ class ShowsParts(Protocol):
 
 
 def check_report(simulation: Simulation, drawn: Sequence[PageItem] = ()) -> Page:
-    """Everything that a scene says, with what follows from it; nothing is drawn at random.
+    """All entries of a scene, with their consequences; nothing is drawn at random.
 
     Args:
         simulation: of the scene.
@@ -47,7 +47,7 @@ def check_report(simulation: Simulation, drawn: Sequence[PageItem] = ()) -> Page
 
 
 def parts_report(simulation: Simulation) -> Page:
-    """Which move places which part on which others, as a tree; a line where parts are not placed one by one.
+    """Tree of parts with the moves that place them; a line if parts are not placed one by one.
 
     Raises:
         MechanismError: a mechanism of another package is at fault.

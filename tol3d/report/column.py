@@ -22,8 +22,8 @@ class Column:
     """One column of a measure.
 
     Args:
-        heading: what stands on top.
-        method: where it comes from.
+        heading: its title.
+        method: its source.
         values: mean, sigma, low_3sigma ... in the measure's unit, as far as they are known; None of shares alone.
         percents: share of each contributor [% of the variance].
     """

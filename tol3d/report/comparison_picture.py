@@ -48,7 +48,7 @@ LEGEND_SIZE: Final = 8.5  # points
 HEAD_SIZE: Final = 12.0
 DIFFERENCE_UNITS: Final = {"um": ("µm", 1.0), "mm": ("µm", 1000.0), "arcmin": ("″", 60.0), "pins": ("pins", 1.0)}
 FULL_TURN: Final = 360.0  # deg
-"""Unit of small differences, and how many of it are one of the measure's unit."""
+"""Unit of small differences, and the number of them in one of the measure's unit."""
 
 
 @dataclass(frozen=True)

@@ -101,14 +101,14 @@ def draw_distribution(axes: Axes, measure: MeasureSummary) -> None:
 
 
 def _published_bars(own: Section, trials: float | None) -> Bars:
-    """Somebody's histogram, of so many trials if he says that."""
+    """A published histogram, with its number of trials if stated."""
     counts = np.asarray(own["counts"], dtype=np.float64)
     edges = own["lower_edge"] + own["bin_width"] * np.arange(len(counts) + 1, dtype=np.float64)
     return Bars(edges, counts, max(float(counts.sum()), trials or 0.0))
 
 
 def _draw_published(axes: Axes, bars: Bars, colour: str) -> float:
-    """Somebody's histogram as an outline; its highest density."""
+    """A published histogram as an outline; returns its highest density."""
     axes.stairs(bars.density, bars.edges, color=colour, linewidth=1.4)
     return float(bars.density.max())
 

@@ -1,4 +1,4 @@
-"""Limits that a scene writes as a drawing does, and what they mean."""
+"""Limits written in a scene as on a drawing, and their meaning."""
 
 from collections.abc import Iterator
 from typing import Any

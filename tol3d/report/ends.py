@@ -1,4 +1,4 @@
-"""From where to where a measure's bars go: mean ∓ 3 sigma, or quantiles where trials do not reach so far."""
+"""Ends of a measure's bars: mean ∓ 3 sigma, or quantiles if trials do not reach that far."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ QUANTILES_MEAN: Final = "; marked are 0.135 % and 99.865 % of the trials, which 
 
 @dataclass(frozen=True)
 class Ends:
-    """The ends of a bar in the measure's unit, None where one is not known, and what they are called."""
+    """The ends of a bar in the measure's unit, None if unknown, and their names."""
 
     low: float | None
     high: float | None

@@ -46,7 +46,7 @@ def export_run(
     out: Path = Path(),
     presenter: str | None = None,
 ) -> Exported:
-    """Write the perturbed parts of one build where they ended up.
+    """Write the perturbed parts of one build at their poses.
 
     Args:
         run: a finished run.
@@ -56,7 +56,7 @@ def export_run(
             a robot, is one file in any format.
         magnify: scales the deviations and simulates again.
         out: the folder; made if missing.
-        presenter: import path of what shows the system; by default that of the run's measures.
+        presenter: import path of the system's presenter; by default that of the run's measures.
 
     Raises:
         InputError: an unknown format or build, no bodies, a STEP file magnified or without any solid, or a folder that
@@ -183,7 +183,7 @@ def file_words(names: Iterable[str]) -> dict[str, str]:
 
 
 def _written(path: Path, content: object) -> Path:
-    """Write a file aside and rename it, so that it is whole or not there."""
+    """Atomic write of a file: written aside and renamed."""
     beside = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
         with named_in_errors(path):

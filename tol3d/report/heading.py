@@ -1,4 +1,4 @@
-"""Headings of reports, and which measures and contributors they show."""
+"""Headings of reports, and the measures and contributors shown."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Final, TypeVar

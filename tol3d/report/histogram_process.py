@@ -1,12 +1,12 @@
 """Draws a run's histogram, those of its many measures and what its system's presenter draws, in a process of its own.
 
-matplotlib takes as long to load as a whole study of 2000 trials takes to run: so it loads beside the study, and what
-is drawn comes at the end, on its standard input, pickled: where modules are found, then the picture's path, the
-presenter's module, which measures are drawn, the kinds of summaries and the summary as JSON.
+Loading matplotlib takes as long as a study of 2000 trials: so it loads beside the study, and the order comes at the
+end, on its standard input, pickled: where modules are found, then the picture's path, the presenter's module, which
+measures are drawn, the kinds of summaries and the summary as JSON.
 
 The presenter's pictures are drawn beside the histogram; where all are wanted also contributors.png, and of many
-measures each as histogram-<measure>.png. It ends quietly where nothing comes. What goes wrong with the histogram is the
-one line on its standard error; of another picture it stands on its standard output, {"chain.png": "why"}.
+measures each as histogram-<measure>.png. It ends quietly without an order. An error of the histogram is the one line on
+its standard error; errors of other pictures are on its standard output, {"chain.png": "why"}.
 """
 
 import gc
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def _further(summary: RunSummary, presenter: str | None, wanted: Pictures) -> Iterator[tuple[str, Draw]]:
-    """Files besides the histogram, and what draws them."""
+    """Files besides the histogram, and the functions that draw them."""
     pictures = presenter_of(summary, presenter).pictures(summary)
     yield from ((file, pictures[name]) for name, file in named_files(pictures).items())
     if wanted is Pictures.ALL:

@@ -35,7 +35,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class Intervals:
-    """Those of one measure, in its unit.
+    """The bars of one measure, in its unit.
 
     Args:
         name, words: of the measure, and what is said below.

@@ -42,7 +42,7 @@ def yield_lines(run: RunSummary) -> list[PageItem]:
 
 
 def yield_text(ppm: float | None) -> str:
-    """A yield in %, with two digits of what is lost at least.
+    """A yield in %, with at least two digits of the loss.
 
     >>> yield_text(983000.0), yield_text(999_971.0), yield_text(1e6), yield_text(0.0), yield_text(None)
     ('98.30 %', '99.9971 %', '100 %', '0 %', '–')

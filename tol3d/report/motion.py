@@ -1,4 +1,4 @@
-"""A build in motion: where its bodies stand from frame to frame, what is marked, and from where it is seen."""
+"""A build in motion: poses of its bodies in each frame, marks, and view directions."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -148,7 +148,7 @@ class Mapped(Protocol):
 
         Args:
             simulation: of the scene.
-            measure: whose sigma is shown; what the mechanism says of its poses if not given.
+            measure: whose sigma is shown; default the mechanism's own data on its poses.
             activity: progress callback.
 
         Raises:

@@ -93,7 +93,7 @@ def sheet_names(names: Sequence[str]) -> list[str]:
 
 
 def escaped_text(text: str) -> str:
-    """A text whose signs that XML does not allow are told by their numbers."""
+    """A text with characters that XML does not allow replaced by their code points."""
     return "".join(sign if sign in "&<>\"'" else str(escaped(sign)) for sign in text)
 
 

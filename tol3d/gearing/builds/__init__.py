@@ -1,1 +1,1 @@
-"""From deviations to builds: what effects displace, where the gears then lie, and the rates of that."""
+"""From deviations to builds: displacements by effects, resulting poses of gears, and their rates."""

@@ -1,4 +1,4 @@
-"""Model and deviations to a Build: where every part's axis lies, and how its flanks deviate.
+"""Model and deviations to a Build: the place of every part's axis, and the deviations of its flanks.
 
 A Build knows nothing of positions: the poses at a turn come from `world_from_gear`.
 """
@@ -26,7 +26,7 @@ from tol3d.numerics.arrays import Array
 
 @dataclass(frozen=True)
 class Build:
-    """Virtual builds of a block of trials; axis 1 follows `model.seats`: a gear has a place in each of its meshes.
+    """Virtual builds of a block of trials; axis 1 follows `model.seats`: a gear has one entry per mesh.
 
     The world is that of the seat's mesh.
 
@@ -112,7 +112,7 @@ class Sums:
     temperature: dict[str, Array]
 
     def growth(self, model: Model, part: str) -> Array:
-        """By how much a part has grown, (trials,)."""
+        """Growth of a part, (trials,)."""
         return self.temperature.get(part, np.zeros(len(self.seats))) * model.expansions[part]
 
 
@@ -128,7 +128,7 @@ def summed(model: Model, deviations: Array) -> Sums:
 
 
 def _add(term: AnyDisplacement, columns: Array, sums: Sums) -> None:
-    """Add what deviations (trials, components) displace; single flanks are none of a seat's sums."""
+    """Add displacements by deviations (trials, components); single flanks are not in a seat's sums."""
     match term:
         case Displacement():
             sums.seats[:, term.seat, term.slots] += term.change(columns)

@@ -31,7 +31,7 @@ class Displacement:
         seat: its place in `model.seats`.
         slot: the first of the slots, see slots.py.
         matrix: (slots, components) [mm or rad per mm or rad].
-        factor: by which the deviation is multiplied first.
+        factor: on the deviation.
     """
 
     seat: int
@@ -81,7 +81,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class FlankOffsets:
-    """Offsets of single flanks of a gear, in all of its meshes: what the effect says."""
+    """Offsets of single flanks of a gear, in all of its meshes, by the effect."""
 
     effect: FlankDeviation
 
@@ -148,7 +148,7 @@ def _(effect: FlankDeviation, model: Model, components: int) -> Iterator[FlankOf
 @displacements.register(LinkDeviation)
 @displacements.register(Clocking)
 def _(effect: LinkDeviation | Clocking, model: Model, components: int) -> Iterator[Displacement]:
-    """A mesh finds its rest for any turn of its gears; what the shafts turn by is in clocking.py."""
+    """A mesh finds its rest for any turn of its gears; for turns of shafts see clocking.py."""
     return iter(())
 
 

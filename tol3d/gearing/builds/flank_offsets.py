@@ -1,7 +1,7 @@
 """Offsets of single flanks of gears: one row a build, shared by all positions at which the build is read.
 
-Coefficients of a flank lie together: what it is offset everywhere [mm], and by how much along profile, form and face,
-see FlankDeviation in effects.py. A gear that no deviation of single flanks acts on has none.
+Coefficients of a flank are consecutive: its constant offset [mm], and those along profile, form and face, see
+FlankDeviation in effects.py. A gear without deviations of single flanks has none.
 """
 
 import math
@@ -109,7 +109,7 @@ class FlankPlaces:
         return [np.flatnonzero(part == own) for own in range(before.max(initial=0))]
 
     def rates(self, model: Model, seat: int, flank: Flank, teeth: Integers, place: tuple[Array, Array]) -> Array:
-        """By how much points of flanks move out along the normal per component, (rows, components).
+        """Outward motion of points of flanks along the normal per component, (rows, components).
 
         Args:
             model, seat: whose flanks.
@@ -137,7 +137,7 @@ class FlankPlaces:
         return any(gear in self.starts for gear in gears)
 
     def reach(self, made: "FlankDeviations", model: Model, *gears: str) -> Array:
-        """By how much more than its neighbours a pair of flanks of some gears may stand out at most, (builds,) [mm]."""
+        """Largest excess of a pair of flanks of some gears over its neighbours, (builds,) [mm]."""
         total = np.zeros((len(made.values), 2))  # of right and left flanks
         for gear in gears:
             if gear in self.starts:
@@ -148,7 +148,7 @@ class FlankPlaces:
         return np.asarray(total.max(axis=1))
 
     def _extremes(self, gear: SpurGear, name: str, own: Array) -> tuple[Array, Array]:
-        """The least and the most that flanks (…, SHAPES) stand out by anywhere [mm], at least so far."""
+        """Bounds of the least and largest offset of flanks (…, SHAPES) anywhere [mm]."""
         begin, end = self.spans[name]
         ends = [(roll - (begin + end) / 2) / (end - begin) for roll in (gear.form_roll, gear.tip_roll)]
         level, slope, form, helix = np.moveaxis(own, -1, 0)

@@ -1,6 +1,6 @@
 """Derivatives of a Build by each deviation, exact at the build itself and not only at the nominal one.
 
-Rates are per mm, rad or K of a component of the deviations. Like a Build they know nothing of positions.
+Rates are per mm, rad or K of a component of the deviations. Like a Build they do not depend on positions.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class BuildRates:
         centre: (trials, seats, components, 2), of the gear's centre off its axis [mm], in the gear's frame.
         flank_turn, flank_offset, scale: (trials, seats, components), of the same fields of the Build.
 
-    Offsets of single flanks go with the components as FlankPlaces has it, in every build alike.
+    Offsets of single flanks depend on the components by FlankPlaces, alike in every build.
     """
 
     origin: Array
@@ -77,7 +77,7 @@ def build_rates(model: Model, made: Build, deviations: Array) -> BuildRates:
 
 
 def _summed(model: Model, deviations: Array) -> tuple[Array, dict[str, Array]]:
-    """Rates of what `build.summed` adds up: (trials, seats, components, slots), and (components,) by part."""
+    """Rates of the sums by `build.summed`: (trials, seats, components, slots), and (components,) by part."""
     seats = np.zeros((len(deviations), len(model.seats), model.component_count, SLOTS))
     temperature: dict[str, Array] = {}
     for contributor in model.contributors:

@@ -1,6 +1,6 @@
 """Slots of the sums of a seat: shift and turn of its axis, its gear's centre, its flanks.
 
-Nothing is imported here: kernels are compiled anew where a module that they import changes.
+Nothing is imported here: kernels are recompiled if a module that they import changes.
 """
 
 OFFSET = 0  # x, y, z of the axis [mm], in the seat's frame at rest

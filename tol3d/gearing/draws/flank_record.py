@@ -48,7 +48,7 @@ class FlankRecord:
 
         Args:
             sides: "right", "left", or "" for whole teeth of a file without a column `flank`.
-            gaps: whether rows may lack, or be empty, of teeth that were not measured.
+            gaps: True if rows of teeth that were not measured may be missing or empty.
 
         Raises:
             SceneError: rows lack, come twice, or hold no tooth, flank or number; the text names file and line.

@@ -14,16 +14,16 @@ from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Values
 
 END_SIGMAS = 3.0
-"""At which the ends of a normal law stand."""
+"""Sigmas at the ends of a normal law."""
 
 
 @dataclass(frozen=True, eq=False)
 class NormalPitchDraw(PitchDraw):
     """Single pitches of one side are normal with 3 cpk sigma at f_p, on condition that they sum to zero.
 
-    No gear has index deviations of more than F_p from the largest to the smallest: how the pitches go round is as
-    likely as without that limit, and their size, that of normals, is cut off where it reaches F_p. Single pitches may
-    exceed f_p, as normal laws do.
+    No gear has index deviations of more than F_p from the largest to the smallest: patterns round the gear are as
+    likely as without that limit, and their size, that of normals, is cut off at F_p. Single pitches may exceed f_p, as
+    normal laws do.
 
     Args:
         cpk: how far the process fills f_p, as ISO 22514-2 has it.

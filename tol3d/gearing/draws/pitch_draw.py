@@ -1,9 +1,9 @@
 """Pitch deviations of a gear's teeth as a named law draws them: a pattern round the gear, and how far it fills limits.
 
 What is drawn is the index deviation F of each flank [mm]: the arc at the reference circle by which the flank lies ahead
-of its place, counter-clockwise about the gear's z. The mean over the teeth of a flank side is taken out: what flanks
-have in common is a turn of the gear, or tooth thickness. The single pitch deviation of a tooth is f_k = F_k - F_(k-1);
-round the gear they sum to zero whatever F is.
+of its place, counter-clockwise about the gear's z. The mean over the teeth of a flank side is removed: it is a turn of
+the gear, or tooth thickness. The single pitch deviation of a tooth is f_k = F_k - F_(k-1); round the gear they sum to
+zero whatever F is.
 """
 
 import math
@@ -24,7 +24,7 @@ from tol3d.system.draw import Values
 from tol3d.system.normals import Group, scalars, shifted
 
 NET: Final = 4096
-"""Patterns over which the covariance of a law is taken; each counts once for every tooth, for no tooth is special."""
+"""Patterns over which the covariance of a law is averaged; each counts once for every tooth, as no tooth is special."""
 QUANTILES: Final = 1001
 
 
@@ -231,12 +231,12 @@ class PitchDraw:
 
 @dataclass(frozen=True, eq=False)
 class GivenDraw:
-    """Deviations of a gear that is there, such as a measured one: the same in every trial.
+    """Deviations of an actual gear, such as a measured one: the same in every trial.
 
     Args:
         names: of the components.
         given: each of them [mm].
-        whence: where from, in words.
+        whence: their source, in words.
     """
 
     names: tuple[str, ...]

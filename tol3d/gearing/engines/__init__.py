@@ -1,4 +1,4 @@
-"""Engines answer one question: how far apart are the flanks of each candidate tooth pair of a Build."""
+"""Engines measure the gaps between the flanks of each candidate tooth pair of a Build."""
 
 from tol3d.gearing.engines.gaps import Engine, Gaps, MeshReading, ReadingEngine
 from tol3d.gearing.engines.status import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, STATUS_TEXT

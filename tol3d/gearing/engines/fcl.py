@@ -1,14 +1,14 @@
 """The witness: distances between measuring strips of the CAD flanks, by the Flexible Collision Library.
 
 One BVH a tooth flank, as full-width strips. FCL gives no depth of overlap, so the strips are pulled inward by a slack
-along their normals, and both nearest points are put back afterwards, each by what it was pulled: the gap is their
-distance along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance
-stays away from zero. Between flanks that line is the normal of both, and what is put back is the slack. An edge that
-touches (a tip, an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it
-by slack sin delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left
-of it is 0.0073 um per millimetre of module at delta = 0.46 rad.
+along their normals, and both nearest points are put back afterwards by the same amounts: the gap is their distance
+along the line on which FCL found them. The flanks may overlap by up to the slack of both and the distance stays away
+from zero. Between flanks that line is the normal of both, and the shift back is the slack. An edge that touches (a tip,
+an end of the face) was pulled along a normal of its own, delta off that line, and comes back beside it by slack sin
+delta, from where the other flank curves away by (slack sin delta)^2/(2 r): that is added. What is left of it is 0.0073
+um per millimetre of module at delta = 0.46 rad.
 
-All lengths here go with the module, so that gears that are alike in all but their size read alike.
+All lengths here scale with the module, so that geometrically similar gears read alike.
 """
 
 import math
@@ -36,10 +36,10 @@ Numbers = tuple[float, ...]
 
 @dataclass(frozen=True, eq=False)
 class DeviatedStrips:
-    """The strips of a model's gears, moved along their normals by what each flank deviates.
+    """The strips of a model's gears, moved along their normals by each flank's deviation.
 
-    Strips are cut anew for each flank that deviates in its own way, trial by trial; both ends of a generator are moved,
-    so that a flank that is turned about its profile stays ruled.
+    Strips are rebuilt for each flank with its own deviations, trial by trial; both ends of a generator are moved, so
+    that a flank that is turned about its profile stays ruled.
 
     Args:
         model: gears and meshes.

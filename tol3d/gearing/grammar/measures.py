@@ -1,4 +1,4 @@
-"""Kinds of measure: backlashes of a mesh, lost motion of a train and what it does to a tip, transmission error."""
+"""Kinds of measure: backlashes of a mesh, lost motion of a train and its effect on a tip, transmission error."""
 
 from abc import ABC
 from collections.abc import Iterator, Mapping
@@ -141,7 +141,7 @@ class AngularBacklashSpec(MeshMeasureSpec):
 
 
 class TrainMeasureSpec(FlankMeasureSpec):
-    """A measure that is read on a train: a number a trial, for kinds that do not say otherwise."""
+    """A measure that is read on a train; by default one number per trial."""
 
     take: ClassVar[Take] = "value"
 

@@ -1,4 +1,4 @@
-"""Kinds of assembly move: meshes, links of two shafts that are none, trains."""
+"""Kinds of assembly move: meshes, other links of two shafts, trains."""
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
@@ -122,7 +122,7 @@ class BevelMeshSpec(GearMeshSpec):
 
 
 class LinkSpec(MoveSpec):
-    """Two shafts that turn with each other; a kind of link, of whatever mechanism, is a subclass and says its link."""
+    """Two shafts that turn with each other; a kind of link of any mechanism is a subclass that defines its link."""
 
     words: ClassVar[str] = "a link of two shafts"
 
@@ -158,7 +158,7 @@ def _not_negative(angle: Quantity) -> Quantity:
 
 
 class ReducerSpec(LinkSpec):
-    """Two coaxial shafts with a bought reducer between them, of which ratio and backlash are known and nothing else."""
+    """Two coaxial shafts with a bought reducer between them, of which only ratio and backlash are known."""
 
     words: ClassVar[str] = "a reducer"
 

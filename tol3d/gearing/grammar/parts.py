@@ -1,4 +1,4 @@
-"""Kinds of part: gears, shafts and what they carry, bearings, arms, housings."""
+"""Kinds of part: gears, shafts, bearings, arms, housings."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -139,7 +139,7 @@ class ShaftSpec(PartSpec):
 
 
 def gears_on(shaft: str, parts: Mapping[str, PartSpec]) -> tuple[str, ...]:
-    """The gears that turn with a shaft: those that it carries, or itself where it is a gear."""
+    """The gears that turn with a shaft: those that it carries, or itself if it is a gear."""
     part = parts[shaft]
     return tuple(part.carries) if isinstance(part, ShaftSpec) else (shaft,)
 
@@ -187,7 +187,7 @@ class BearingSpec(PartSpec):
 
 
 class ArmSpec(PartSpec):
-    """An arm: it turns with its shaft, and says where the points are that measures ask for."""
+    """An arm: it turns with its shaft, and defines points for measures."""
 
     words: ClassVar[str] = "an arm"
 

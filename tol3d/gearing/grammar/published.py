@@ -72,7 +72,7 @@ class PublishedTrains(PublishedFigures):
     trains: Mapping[Name, PublishedTrain] = Field(default_factory=dict, description="trains of the scene")
 
     def problems(self, scene: "Scene") -> Iterator[tuple[KeyPath, str]]:
-        """Trains and links that the scene does not have."""
+        """Refuse trains and links that do not exist in the scene."""
         trains = scene.of(TrainSpec)
         links = [name for name, move in scene.moves.items() if not isinstance(move, TrainSpec)]
         yield from self.strangers("trains", self.trains, trains, "the name of a train")

@@ -1,4 +1,4 @@
-"""Links of shafts that are no gear meshes: what a train asks of one, and the kinds that tol3d brings along."""
+"""Links of shafts that are no gear meshes: their interface, and the bundled kinds."""
 
 from tol3d.gearing.links.reducer import Reducer
 from tol3d.gearing.links.stated_link import FreeTurn, LinkSum, LinkTrials, Moved, StatedLink, pin_name

@@ -13,7 +13,7 @@ from tol3d.units import angle_text
 
 @dataclass(frozen=True, kw_only=True)
 class Reducer(StatedLink):
-    """A reducer between two shafts on one axis, of which a data sheet states ratio and backlash.
+    """A reducer between two shafts on one axis, with ratio and backlash from a data sheet.
 
     Args:
         backlash: angular backlash of the driven shaft [rad], taken in every trial; 0 where a contributor draws it.
@@ -30,7 +30,7 @@ class Reducer(StatedLink):
         return f"{angle_text(self.backlash)} of play in every trial" if self.backlash else ""
 
     def exact(self, seen: LinkTrials) -> FreeTurn:
-        """The data sheet's maximum, or what a contributor draws."""
+        """The data sheet's maximum, or a contributor's draw."""
         total = np.full(len(seen), self.backlash)
         for contributor in seen.contributors:
             total = total + seen.deviations[contributor.name][:, 0]

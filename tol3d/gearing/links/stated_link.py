@@ -1,6 +1,6 @@
-"""A link of two shafts that is no gear mesh: its rate and its play are its own, and trains add up or compare the play.
+"""A link of two shafts that is no gear mesh, with its own rate and play; trains add up or compare the play.
 
-A kind of link from elsewhere is a subclass here, and a kind of move whose `link` makes one; see LinkSpec.
+Another kind of link is a subclass of it, with a kind of move whose `link` makes it; see LinkSpec.
 """
 
 from abc import ABC, abstractmethod
@@ -94,12 +94,12 @@ class LinkSum:
 
 @dataclass(frozen=True)
 class Moved:
-    """A part of a link whose centre lies off its place because the bores of its shaft do, or a pin of its carrier.
+    """A part of a link moved by the bores of its shaft, or a pin of its carrier.
 
     Args:
         contributor: displacement x, y of a point of that shaft, or of the pin [mm].
         part: in the link; of a pin its `pin_name`.
-        matrix: what the centre moves by x and by y: rows x and y across the driver's axis, in its frame at rest; of a
+        matrix: motion of the centre by x and by y: rows x and y across the driver's axis, in its frame at rest; of a
             pin outwards and counter-clockwise, in the frame of the carrier.
     """
 
@@ -119,8 +119,8 @@ class StatedLink(ABC):
         carrier: the shaft that carries the link round, as the arm of an epicyclic gear does; None if it rests in the
             world.
         offset: of the driven shaft's origin along the driver's axis [mm].
-        moved: what bores do to its parts.
-        assumed: what is taken of parts whose bores nobody names, in words.
+        moved: effect of bores on its parts.
+        assumed: assumption for parts without named bores, in words.
     """
 
     kind: ClassVar[str]
@@ -133,7 +133,7 @@ class StatedLink(ABC):
     """True if its free turns have a middle of their own."""
 
     unfollowed: ClassVar[str] = "whose error from position to position is not known"
-    """Why trains have no transmission error with it, in words."""
+    """Reason why trains have no transmission error with it, in words."""
 
     compares: ClassVar[bool] = False
     """True if load paths within it are compared, so that its play is no sum of effects; see `parts`."""
@@ -216,10 +216,9 @@ class StatedLink(ABC):
         return iter(())
 
     def offset_by(self, contributor: str, part: str) -> "StatedLink | None":
-        """The same link, of which a contributor also moves a part off its axis of rotation by an offset (x, y) [mm].
+        """The same link, with a contributor that also moves a part off its axis of rotation by (x, y) [mm].
 
-        The offset turns with the part, as by the run-out of the shaft that carries it; None where the link does not
-        know what that does.
+        The offset turns with the part, as by the run-out of its shaft; None if the link cannot model it.
         """
         return None
 
@@ -240,7 +239,7 @@ class StatedLink(ABC):
 
     @property
     def held(self) -> str:
-        """The part of it that stands in the world; empty where nobody asks which."""
+        """The part of it that is fixed in the world; "" if it is not needed."""
         return ""
 
     def asides(self, seen: LinkTrials) -> Mapping[str, Array]:
@@ -254,7 +253,7 @@ class StatedLink(ABC):
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """Change of the play at the first position by each of `asides` (trials, 2) [rad/mm].
 
-        To first order, the contacts as they are met in each trial; asked of a link that compares load paths.
+        To first order, with the contacts of each trial; used for links that compare load paths.
         """
         return {}
 
@@ -271,7 +270,7 @@ class StatedLink(ABC):
         return {}
 
     def ends(self, contributors: Sequence[Contributor]) -> tuple[float, float] | None:
-        """Between which ends the play lies by the laws of its contributors [rad]; None where that is not known."""
+        """Ends of the play by the laws of its contributors [rad]; None if unknown."""
         return None
 
     def sum_of(self, contributors: Sequence[Contributor]) -> LinkSum | None:

@@ -42,14 +42,14 @@ def measure_backlash(kind: Backlash, meshing: Meshing, seat: MeshSeat) -> Array:
 
 
 def turning_gear(kind: Backlash, mesh: Mesh) -> str | None:
-    """Which gear's free turn the measure needs; None for the normal backlash and for the rest."""
+    """Gear whose free turn the measure needs; None for the normal backlash and for the rest."""
     if kind.quantity in ("normal_backlash", "rest_angle"):
         return None
     return kind.gear if kind.quantity == "angular_backlash" else mesh.driven
 
 
 def read_backlash(kind: Backlash, mesh: Mesh, reading: MeshReading) -> Array:
-    """The same of a mesh that its engine has read."""
+    """The same for a mesh read by its engine."""
     known = reading.status <= INTERFERES
     if kind.quantity == "rest_angle":
         return np.where(known, reading.driven_angle - mesh.pair.driven_angle(reading.driver_angle), np.nan)
@@ -61,10 +61,11 @@ def read_backlash(kind: Backlash, mesh: Mesh, reading: MeshReading) -> Array:
 
 
 def moved(kind: Kind, free: Array) -> Array:
-    """A measure's values of what its backlashes leave free.
+    """A measure's values from its play.
 
-    A tip goes round its shaft's axis: the chord 2 L sin(turn/2) [mm]. Over a swing it errs where the other flanks work
-    than at the start, by whose rest it is counted. A transmission error is counted from that at the first position.
+    A tip goes round its shaft's axis: the chord 2 L sin(turn/2) [mm]. Over a swing it has an error where other flanks
+    work than at the start, whose rest is the reference. A transmission error is counted from that at the first
+    position.
 
     Args:
         kind: what is measured.

@@ -53,12 +53,12 @@ class MeshSeat:
 
 @dataclass(frozen=True)
 class Meshing:
-    """The builds of a mesh, asked by an engine for gaps: what stays while gears turn.
+    """The builds of a mesh, with an engine for gaps: the data that stay while gears turn.
 
     Args:
         engine: measures gaps.
-        model, mesh, build: what is built; one row for each position.
-        reading: where on the face, and at which teeth, flanks are looked at.
+        model, mesh, build: the builds; one row per position.
+        reading: place on the face, and teeth, at which flanks are evaluated.
     """
 
     engine: Engine
@@ -193,7 +193,7 @@ class _AtRest:
         self._vectors = np.full((3, *teeth.shape, 3), np.nan)
 
     def keep(self, rows: NDArray[np.intp], gaps: Gaps, chosen: NDArray[np.bool_], closed: Array) -> None:
-        """Keep the chosen rows; `closed` [mm] is what the last step takes off each gap."""
+        """Keep the chosen rows; `closed` [mm] is the reduction of each gap by the last step."""
         self._value[rows] = (gaps.value - closed)[chosen]
         self._at_end[rows] = gaps.at_end[chosen]
         for kept, vectors in zip(self._vectors, (gaps.driver_point, gaps.driven_point, gaps.normal), strict=True):

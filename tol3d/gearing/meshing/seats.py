@@ -61,7 +61,7 @@ def seated(model: Model, engine: Engine, trials: Trials, measures: Sequence[Meas
 
 
 def play_of(measure: Measure, seats: Seats) -> Play:
-    """The backlashes of a measure on the geometric method."""
+    """The backlashes of a measure by the geometric method."""
 
     def read(backlash: Backlash, key: SeatKey) -> Array:
         values = measure_backlash(backlash, seats.meshings[key], seats.seats[key])
@@ -71,5 +71,5 @@ def play_of(measure: Measure, seats: Seats) -> Play:
 
 
 def geometric_values(measure: Measure, seats: Seats) -> Array:
-    """Values of a measure on the geometric method [mm or rad], (trials, positions)."""
+    """Values of a measure by the geometric method [mm or rad], (trials, positions)."""
     return moved(measure.kind, play_of(measure, seats).free())

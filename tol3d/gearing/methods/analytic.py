@@ -1,4 +1,4 @@
-"""The analytic method: stack-ups of single meshes, added up and compared as their trains say."""
+"""The analytic method: stack-ups of single meshes, added up and compared by trains."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -43,17 +43,17 @@ class AnalyticMethod:
 
 
 def analytic_play(model: Model, measure: Measure, trials: Trials) -> Play:
-    """The backlashes of a measure on the analytic method."""
+    """The backlashes of a measure by the analytic method."""
     return Play(model, measure, trials, _Stacks(model, trials), by_theory)
 
 
 def analytic_values(model: Model, measure: Measure, trials: Trials) -> Array:
-    """Values of a measure on the analytic method [mm or rad], (trials, positions)."""
+    """Values of a measure by the analytic method [mm or rad], (trials, positions)."""
     return _values(analytic_play(model, measure, trials))
 
 
 def _values(play: Play) -> Array:
-    """Values of a measure: of its play, or of what turns in its meshes."""
+    """Values of a measure, from its play or from rotating deviations in its meshes."""
     kind = play.measure.kind
     if not isinstance(kind, TransmissionError):
         return first_order(kind, play.free())
@@ -62,7 +62,7 @@ def _values(play: Play) -> Array:
 
 
 def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Iterator[tuple[Backlash, Array]]:
-    """The backlashes of the meshes that a measure reads, each with its values on the analytic method [mm or rad]."""
+    """The backlashes of the meshes that a measure reads, each with its values by the analytic method [mm or rad]."""
     stacks = _Stacks(model, trials)
     for _, read in measure.kind.backlashes:
         backlash = replace(read, quantity="angular_backlash") if read.quantity == "rest_angle" else read
@@ -70,7 +70,7 @@ def analytic_backlashes(model: Model, measure: Measure, trials: Trials) -> Itera
 
 
 class _Stacks:
-    """Reads backlashes on the analytic method; those that are read alike share one stack-up."""
+    """Reads backlashes by the analytic method; those that are read alike share one stack-up."""
 
     def __init__(self, model: Model, trials: Trials) -> None:
         self._model, self._trials = model, trials

@@ -41,7 +41,7 @@ class GeometricMethod:
         return self.engine.chord_error
 
     def answers(self, trials: Trials, measures: Sequence[system_measure.Measure]) -> Answers:
-        """See Method: by an engine that reads meshes itself so many builds at once that they stay in the cache."""
+        """See Method: with an engine that reads meshes itself, as many builds at once as fit the cache."""
         own = gear_measures(measures)
         if not isinstance(self.engine, ReadingEngine):
             return self._by_gaps(trials, own)
@@ -50,7 +50,7 @@ class GeometricMethod:
         return joined_answers([self._by_readings(self.engine, piece, own) for piece in pieces])
 
     def _by_gaps(self, trials: Trials, measures: Sequence[Measure]) -> Answers:
-        """By seating every mesh on the gaps that the engine finds."""
+        """By seating every mesh on the engine's gaps."""
         seats = seated(self.model, self.engine, trials, measures)
         contacts: Details = {}
         for mesh in self.model.meshes:
@@ -191,8 +191,8 @@ rounding (0.002 um per millimetre), and squares of tilts within a section's widt
 class FclMethod(GeometricMethod):
     """The geometric method by FCL, the witness of the exact one, with its error bound. Implements WitnessMethod.
 
-    A strip's chords lie inside the tooth, by the chord error at most: FCL sees up to four of them more backlash than
-    there is, for two flanks touch and two are measured.
+    A strip's chords lie inside the tooth, by the chord error at most: FCL finds up to four chord errors too much
+    backlash, as two flanks touch and two are measured.
 
     Args:
         strips: of every gear, by name.

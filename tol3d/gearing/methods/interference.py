@@ -17,7 +17,7 @@ ZERO_BACKLASH = 1e-9  # mm or rad; nominal backlash zero is legal, and closed fo
 
 
 def interferences(model: Model) -> Iterator[Problem]:
-    """Meshes whose non-working flanks overlap with every contributor at its mean, and load paths that bind then."""
+    """Meshes whose non-working flanks overlap with every contributor at its mean, and load paths that then bind."""
     nominal = nominal_build(model)
     asked: set[str] = set()
     for measure in model.measures:

@@ -17,7 +17,7 @@ from tol3d.system.trials import Trials
 
 
 def neglected(model: Model, measure: Measure, trials: Trials) -> Mapping[str, Array]:
-    """Largest first-order change of a measure that is left out, in its unit: (trials,) by what is left out.
+    """Largest neglected first-order change of a measure, in its unit: (trials,) by neglected term.
 
     Of several positions the one with the largest counts, for a range twice; of parallel load paths all are added up.
     """

@@ -26,7 +26,7 @@ from tol3d.system.trials import Trials
 Columns = Mapping[str, NDArray[Any]]
 
 MOST_KEPT: Final = 200_000
-"""Trials of links that are kept, of what their contributors add."""
+"""Trials of links whose contributions are cached."""
 
 _KEPT: Final[list[dict[tuple[Itself, bytes, bytes], Array]]] = [{}]
 
@@ -183,7 +183,7 @@ def position_column(mesh: str) -> str:
 
 
 class _Turning:
-    """Cosines and sines of gears' turns, each worked out once."""
+    """Cosines and sines of gears' turns, each computed once."""
 
     def __init__(self, angles: Mapping[str, Array]) -> None:
         self._angles = angles

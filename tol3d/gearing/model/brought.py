@@ -1,4 +1,4 @@
-"""Links that other mechanisms bring into a scene of gears, with what of the scene is theirs."""
+"""Links that other mechanisms add to a scene of gears, with their parts and contributors."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -21,7 +21,7 @@ Owner = TypeVar("Owner")
 
 @dataclass(frozen=True)
 class BroughtLink:
-    """A link whose parts gears know nothing of.
+    """A link with parts unknown to gears.
 
     Args:
         link: as a move of the scene stands for it.
@@ -61,7 +61,7 @@ def brought_into(scene: Scene) -> Brought:
     """Links and contributors of all mechanisms of a scene together, in the order of its moves.
 
     Raises:
-        SceneError: parts that two moves have, or that sit on shafts otherwise than their link says.
+        SceneError: parts of two moves, or parts on shafts that contradict their link.
     """
     found: list[Brought] = list(brought(scene))
     order = list(scene.moves)
@@ -90,7 +90,7 @@ def _refuse_shared(scene: Scene, own: Brought) -> None:
 
 
 def _refuse_other_ends(scene: Scene, own: Brought) -> None:
-    """Refuse parts of links that no shaft turns with, and such as sit on one otherwise than the link says."""
+    """Refuse parts of links that no shaft turns with, and parts on a shaft that contradict their link."""
     owners = own.owners
     for name, move in scene.moves.items():
         for role in ("driver", "driven") if isinstance(move, LinkSpec) else ():
@@ -129,7 +129,7 @@ def shaft_of(scene: Scene, part: str) -> tuple[str, float]:
 
 
 def tolerances_of(scene: Scene, owners: Mapping[str, Owner]) -> Iterator[tuple[str, Owner]]:
-    """Tolerances of parts, each with whose they are."""
+    """Tolerances of parts, each with its owner."""
     for name, spec in scene.tolerances.items():
         of: Any = getattr(spec, "of", ())
         for part in (of,) if isinstance(of, str) else of:
@@ -152,7 +152,7 @@ def acting_in(
 def with_shared_shafts(
     scene: Scene, own: Brought, contributors: Sequence[Contributor]
 ) -> tuple[Brought, tuple[Contributor, ...]]:
-    """With what run-outs of shafts do to the parts of links on them.
+    """The links with the effect of shaft run-outs on their parts.
 
     Raises:
         SceneError: a tolerance moves a shaft otherwise, or a part that its link does not let run out.

@@ -1,4 +1,4 @@
-"""A contributor: one toleranced deviation, how it is drawn, and what it does to the parts."""
+"""A contributor: one toleranced deviation, its draw, and its effect on the parts."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -17,13 +17,13 @@ INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arc
 
 @dataclass(frozen=True)
 class Contributor:
-    """A tolerance as the simulation sees it.
+    """A tolerance in the simulation.
 
     Args:
         name: as in the scene.
         kind: the tolerance's kind, the scene's word.
-        effect: what a deviation does.
-        draw: how its components come from uniforms.
+        effect: of a deviation.
+        draw: of its components, from uniforms.
         unit: unit of its columns in results ("um", "mrad", "arcmin", "K").
         description: the scene's own words.
         least: smallest physical deviation [mm, rad or K], such as 0 for a clearance; draws below it are kept

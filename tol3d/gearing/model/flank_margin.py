@@ -11,7 +11,7 @@ from tol3d.gears import GearPair, SpurGear
 from tol3d.gears.flank import RIGHT
 
 MARGINS: Final = (0.35, 0.6, 0.85)
-"""Pitches beyond CONTACT_MARGIN: the first that does."""
+"""Pitches beyond CONTACT_MARGIN to try: the first sufficient one is taken."""
 
 SAMPLE: Final = 200
 """Builds by which it is chosen."""
@@ -21,7 +21,7 @@ LARGEST: Final = np.array([1.0, 1 / 2, 2 / 3, 1 / 2])
 
 
 def standing_out(pair: GearPair, margin: float) -> float:
-    """By how much a flank may stand out of its neighbours [mm] so that it touches nowhere beyond a margin [pitches].
+    """Excess of a flank over its neighbours [mm] up to which it touches nowhere beyond a margin [pitches].
 
     Where the path of contact ends, a tip edge leaves its mate by s^2 rho T/(2 r_b^2 rho_m), s the arc on the base
     circle by which the gears have turned on, rho and rho_m the radii of curvature of tip and mate, T = rho + rho_m.
@@ -44,7 +44,7 @@ def margin_of(model: Model, mesh: Mesh) -> float:
 
 
 def _steps(model: Model, mesh: Mesh, name: str) -> float:
-    """By how much more than its neighbours a flank of a gear stands out, at most of some builds [mm]."""
+    """Largest excess of a gear's flank over its neighbours in some builds [mm]."""
     gear, generator = mesh.gear(name), np.random.Generator(np.random.Philox(key=1))
     flanks = np.zeros((gear.teeth, 2, SHAPES, SAMPLE))
     for own in model.contributors:

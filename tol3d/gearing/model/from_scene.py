@@ -136,7 +136,7 @@ def model_from_scene(scene: Scene) -> Model:
 
 
 def _jumping(model: Model, measure: Measure) -> Measure:
-    """The measure; where single teeth deviate it jumps from position to position, as they come to touch."""
+    """The measure; if single teeth deviate it jumps from position to position, as they come into contact."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     gears = {gear for mesh in meshes for gear in (mesh.driver, mesh.driven)}
     jumps = any(own.effect.deviates_teeth(gear) for own in model.contributors for gear in gears)
@@ -144,7 +144,7 @@ def _jumping(model: Model, measure: Measure) -> Measure:
 
 
 def meshes_of_scene(scene: Scene, brought: Brought = NOTHING) -> tuple[tuple[Mesh, ...], Layout]:
-    """The meshes of a scene, with flanks as it says them, and where its shafts lie.
+    """The meshes of a scene, with their stated flanks, and the layout of its shafts.
 
     Raises:
         SceneError: gears that cannot be made or run together, or shafts that do not make trees.
@@ -175,7 +175,7 @@ def _mesh(scene: Scene, name: str, move: GearMeshSpec) -> Mesh:
 
 
 def _loaded(scene: Scene, mesh: Mesh, trains: tuple[Train, ...], layout: Layout, arms: tuple[Arm, ...]) -> Mesh:
-    """The mesh with the flank that works by the load, where the scene leaves it to that."""
+    """The mesh with the working flank by the load, if the scene states none."""
     move = scene.moves[mesh.name]
     if not isinstance(move, GearMeshSpec) or move.working_flank != "either":
         return mesh

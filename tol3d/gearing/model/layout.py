@@ -39,7 +39,7 @@ from tol3d.numerics.arrays import Array
 
 @dataclass(frozen=True)
 class Turning:
-    """An angle that goes with the root of its tree: `offset` [rad] at 0, and turns per turn of the root."""
+    """An angle that turns with the root of its tree: `offset` [rad] at 0, and turns per turn of the root."""
 
     offset: float = 0.0
     rate: Fraction = Fraction(1)
@@ -179,7 +179,7 @@ def layout_of(meshes: Sequence[Mesh], shafts: Sequence[Shaft], stated: Sequence[
 
 
 class _Placing:
-    """Collects where shafts and meshes lie and how they turn, link by link from the roots on."""
+    """Collects positions and turning ratios of shafts and meshes, link by link from the roots."""
 
     def __init__(self, carrying: dict[str, tuple[str, Carried]]) -> None:
         self.carrying = carrying
@@ -239,7 +239,7 @@ class _Placing:
 
 
 def misfit(layout: Layout, mesh: Mesh) -> tuple[float, float]:
-    """By how much a mesh would put the shaft that it drives elsewhere than it lies: [mm], and the axes' angle [rad]."""
+    """Offset of a driven shaft from its place by a mesh: [mm], and the axes' angle [rad]."""
     shaft, _ = layout.carrying[mesh.driven]
     frame = layout.shaft_from_gear[mesh.driven]
     there = layout.world_from_mesh[mesh.name] @ _wheel_in_mesh(mesh) @ np.linalg.inv(frame)
@@ -271,7 +271,7 @@ def _clocked(
         mesh: that mesh.
         driver, driven: how they sit as written, and how their shafts turn.
         azimuth: see Closing.
-        busy: in how many meshes each gear is; one that is in several fits the others already.
+        busy: number of meshes of each gear; one that is in several fits the others already.
     """
     (first, turning), (last, turned) = driver, driven
     stated = _of_driver(mesh, first, turning).offset

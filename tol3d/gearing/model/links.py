@@ -1,4 +1,4 @@
-"""Links: what makes shafts turn with each other, the load paths that they make, and the trees of shafts."""
+"""Links between shafts, their load paths, and the trees of shafts."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,7 +35,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Parallel:
-    """Load paths that part at one shaft and join at another.
+    """Load paths that divide at one shaft and join at another.
 
     Args:
         driver, driven: the shafts.
@@ -154,7 +154,7 @@ def load_path_between(links: Sequence[Link], first: str, last: str) -> LoadPath:
 
 
 def _about_carriers(links: Sequence[Link], paths: tuple[LoadPath, LoadPath], ends: tuple[str, str]) -> LoadPath:
-    """The load path between two shafts where carriers turn: what turns the last shaft while the first one is held."""
+    """The load path between two shafts where carriers turn: links that turn the last shaft while the first is held."""
     (up, down), (first, last) = paths, ends
     elements = (*(element for element in reversed(up) if element not in down), *down)
     path = tuple(element for element in elements if freed_turn(links, element.driven, last, first))
@@ -163,7 +163,7 @@ def _about_carriers(links: Sequence[Link], paths: tuple[LoadPath, LoadPath], end
 
 
 def load_path_from_root(links: Sequence[Link], shaft: str) -> LoadPath:
-    """The load path from a tree's root to a shaft, with what turns the carriers on it."""
+    """The load path from a tree's root to a shaft, with the links that turn the carriers on it."""
     driving = [link for link in links if link.driven == shaft]
     if not driving:
         return ()
@@ -230,7 +230,7 @@ def turned_by(links: Sequence[Link], freed: str, shaft: str) -> Fraction:
 
 
 def _alike(paths: Sequence[LoadPath]) -> int:
-    """With how many elements all load paths begin alike."""
+    """Number of elements with which all load paths begin alike."""
     count = 0
     while all(len(path) > count for path in paths) and len({path[count] for path in paths}) == 1:
         count += 1

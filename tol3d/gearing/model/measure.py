@@ -77,7 +77,7 @@ class Stage:
         backlash: angular backlash of the mesh's driven gear; None for a link that is no mesh.
         sense: of the turn of the shaft that is read for a turn of the driven gear about its own z, 1 or -1; without a
             gear, of the driven shaft.
-        has_middle: whether a link that is no mesh says where the middle of its free turn lies.
+        has_middle: True if a link that is no mesh defines the middle of its free turn.
         compares: whether a link that is no mesh compares load paths within it, so that its play is no sum.
     """
 
@@ -136,12 +136,12 @@ class Tip:
 
 @dataclass(frozen=True)
 class LostMotion:
-    """Turn of a shaft that all links between it and the held shaft leave free [rad], or what that moves a tip [mm].
+    """Play of a shaft from all links between it and the held shaft [rad], or the resulting motion of a tip [mm].
 
     Args:
         quantity: the turn, the tip's displacement by it, or its error over a swing.
         train: the train's name.
-        shaft, held: what is read while what is held.
+        shaft, held: the shaft read and the one held.
         stages: the links between them, from the held shaft on.
         tip: the point that is displaced.
         turned: for a swing, at which of its positions the other flanks work than at its start.

@@ -1,4 +1,4 @@
-"""From what a scene writes of a measure to the measure; those of meshes."""
+"""Measures of meshes from their entries in a scene."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -47,7 +47,7 @@ def reader_of(spec: FlankMeasureSpec) -> Reader:
 
 
 def reader_like(kind: Kind | None) -> Reader:
-    """As another measure reads the same meshes; by default where it reads others, or there is none."""
+    """Reading as for another measure of the same meshes; the default if it reads others, or there is none."""
     known = {} if kind is None else {backlash.mesh: backlash.reading for _, backlash in kind.backlashes}
     return lambda mesh: known.get(mesh.name) or default_reading(mesh)
 
@@ -91,7 +91,7 @@ def _idle(measure: Measure, model: Model) -> Iterator[str]:
 
 
 def measure_of(scene: Scene, name: str, model: Model) -> Measure:
-    """A measure of a scene on its model, which has all but its measures.
+    """A measure of a scene on its model, which is complete but for its measures.
 
     Raises:
         SceneError: a shaft or an arm that is not on the train, a swing without a load, one tooth that is out of action.
@@ -108,12 +108,12 @@ def measure_of(scene: Scene, name: str, model: Model) -> Measure:
 
 @singledispatch
 def measured(spec: MeasureEntry, scene: Scene, name: str, model: Model) -> Measure:
-    """A measure without its limits; each kind registers how it is made.
+    """A measure without its limits; each kind registers its own function.
 
     Args:
-        spec: what the scene writes of it.
+        spec: its entry.
         scene, name: where.
-        model: what it is read on, without measures yet.
+        model: without measures yet.
 
     Raises:
         SceneError: it cannot be read there.
@@ -201,10 +201,10 @@ def _of_train(spec: TransmissionErrorSpec, scene: Scene, name: str, model: Model
 
 
 def _mesh_of(element: Link | Parallel, scene: Scene, name: str, model: Model, train: Train) -> Mesh:
-    """The mesh that a link of a train is.
+    """The mesh of a train's link.
 
     Raises:
-        SceneError: it is something whose transmission error nobody states.
+        SceneError: it is a link without a known transmission error.
     """
     mesh = next((mesh for mesh in model.meshes if mesh.name == element.name), None)
     if mesh is not None:

@@ -28,7 +28,7 @@ def driver_angles(
 ) -> Mapping[str, Array]:
     """Driver angle of each trial [rad] (count,) by mesh, or by another link whose play depends on it.
 
-    The first shaft of a tree stands uniform over its long period, so that each mesh stands uniform over its own.
+    The first shaft of a tree is uniform over its long period, so that each mesh is uniform over its own.
 
     Args:
         layout: how shafts turn with each other.
@@ -84,8 +84,8 @@ class Housing:
 class Model:
     """Everything that a trial needs. Parts, contributors and measures keep the scene's order.
 
-    `profile_steps` are those of the strips that FCL measures; `warnings` are what the gears' geometry may spoil. A
-    gear that no shaft carries is a shaft of its own.
+    `profile_steps` are those of the strips that FCL measures; `warnings` are those of the gears' geometry. A gear that
+    no shaft carries is a shaft of its own.
     """
 
     name: str

@@ -1,9 +1,9 @@
-"""Load paths that part and join in any way: all walks between two shafts, and all loops, which hold each other.
+"""Load paths that divide and join in any way: all walks between two shafts, and all loops.
 
-Each link lets its driven shaft differ by an interval from what its driver asks for. Angles counted in turns of one
-shaft, these are bounds of differences, and how far one shaft may go while another is held is the shortest of all walks
-between them, where no loop is shorter than 0: the dual of the linear programme. There are few links, so walks and loops
-are listed once. Source: Cormen et al., Introduction to Algorithms, 3rd ed. (2009), 24.4.
+Each link lets its driven shaft deviate by an interval from its driver's ratio. Angles counted in turns of one shaft,
+these are bounds of differences, and the play of one shaft while another is held is the shortest of all walks between
+them, if no loop is shorter than 0: the dual of the linear programme. There are few links, so walks and loops are listed
+once. Source: Cormen et al., Introduction to Algorithms, 3rd ed. (2009), 24.4.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ from tol3d.gearing.model.links import Link, LoadPath, Parallel
 MOST_WALKS: Final = 2000  # each is compared in every trial; a drive has a dozen
 
 Walk = tuple[tuple[Link, int], ...]
-"""Links one after another, with 1 where they are gone from driver to driven and -1 where back."""
+"""Links in series, with 1 if traversed from driver to driven and -1 if traversed backwards."""
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class Nominal:
         return [own for name, own in self.layout.carrying.values() if name == shaft]
 
     def contributor(self, name: str, spec: ToleranceEntry) -> Contributor:
-        """A tolerance as the simulation sees it.
+        """A tolerance in the simulation.
 
         Raises:
             SceneError: of a shaft, or a bearing of one, on which no gear sits; limits that do not go with their gear.

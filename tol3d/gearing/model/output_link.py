@@ -1,4 +1,4 @@
-"""Links of a train that are mechanisms with an output of their own: what reducers and planetary sets have in common."""
+"""Links of a train that are mechanisms with their own output: common base of reducers and planetary sets."""
 
 import math
 from abc import abstractmethod
@@ -21,8 +21,8 @@ from tol3d.system.taken import ROWS_AT_ONCE
 class OutputLink(StatedLink):
     """A mechanism whose input and output turn with shafts of a train, its third shaft held in the world.
 
-    It stands as by itself, its output at 0 where the driver is at 0, and is read where the driver stands nominally: by
-    how little the play of the stages before turns it more, nothing of it notices.
+    It is modelled by itself, its output at 0 with the driver at 0, and read at the driver's nominal position: the small
+    extra turn by the play of earlier stages has no effect.
 
     Args:
         own: the mechanism: its ratio, and its period in turns of the output.
@@ -40,7 +40,7 @@ class OutputLink(StatedLink):
 
     @property
     def turns(self) -> Fraction:
-        """Turns of the input until all meets again as it did."""
+        """Turns of the input until all parts meet again as before."""
         return Fraction(self.own.period * abs(self.own.ratio))
 
     @cached_property
@@ -49,11 +49,11 @@ class OutputLink(StatedLink):
         return dict(self.actions)
 
     def output_turns(self, seen: LinkTrials) -> Array:
-        """Turns of the output (trials, positions) where the driver stands nominally."""
+        """Turns of the output (trials, positions) at the driver's nominal positions."""
         return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-        """By what touches in each trial, to first order; see StatedLink, and regressors.py of the mechanism."""
+        """By the contacts of each trial, to first order; see StatedLink, and regressors.py of the mechanism."""
         found = [
             {name: self.part_of(slopes, acts, piece.deviations[name] - means[name]) for name, acts in self.actions}
             for piece, _, slopes in self.slopes(seen)

@@ -1,4 +1,4 @@
-"""Moves to pairs of gears: the geometry of each kind of mesh, or why it cannot be made."""
+"""Pairs of gears from moves: the geometry of each kind of mesh, or the reason why it cannot be made."""
 
 import math
 from functools import singledispatch
@@ -28,7 +28,7 @@ def pair_of(move: GearMeshSpec, name: str, scene: Scene) -> GearPair:
     Args:
         move: the move.
         name: its name.
-        scene: the scene that it stands in.
+        scene: its scene.
 
     Raises:
         SceneError: gears that cannot be made or run together, with their numbers and place.

@@ -1,4 +1,4 @@
-"""Why the shafts of a scene do not make trees that a motor turns."""
+"""Checks that the shafts of a scene make trees that a motor can turn."""
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
@@ -17,7 +17,7 @@ ON_THE_AXIS = 1e-6  # mm, and rad
 def refuse_no_trees(scene: Scene, links: Sequence[Link]) -> None:
     """Refuse shafts that do not make trees, carriers that no motor turns, or load paths that join and would lock.
 
-    Several links may drive a shaft only where they come from one first shaft and ask for one ratio.
+    Several links may drive a shaft only if they come from one first shaft and give one ratio.
 
     Raises:
         SceneError: at the link that is too many.
@@ -96,7 +96,7 @@ def _loop(scene: Scene, link: str, shafts: Sequence[str]) -> SceneError:
 
 
 def refuse_revolving(scene: Scene, layout: Layout, arms: Sequence[Arm]) -> None:
-    """Refuse what rests in the world on a shaft whose axis a carrier takes round: a gear mesh, a plain link, an arm.
+    """Refuse a gear mesh, a plain link or an arm fixed in the world on a shaft whose axis goes round with a carrier.
 
     Raises:
         SceneError: at the move, or the arm.

@@ -1,4 +1,4 @@
-"""Meshes of two gears, shafts and what hangs on them: gears, arms, and the trains that they make."""
+"""Meshes of two gears, shafts with gears and arms, and the trains that they make."""
 
 import math
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Seat:
-    """A gear in one of its meshes: builds have a place for each.
+    """A gear in one of its meshes: builds have one entry for each.
 
     Args:
         mesh, gear: names.

@@ -1,4 +1,4 @@
-"""Measures of trains: lost motion at a shaft, what it does to a point of an arm, the point's error over a swing."""
+"""Measures of trains: lost motion at a shaft, its effect on a point of an arm, the point's error over a swing."""
 
 import math
 from collections.abc import Iterator
@@ -154,10 +154,10 @@ def _(spec: TipErrorSpec, scene: Scene, name: str, model: Model) -> Measure:
 
 
 def over_swing(model: Model, train: Train, plain: LostMotion, shown: tuple[float, ...], name: str) -> Measure:
-    """Error of a tip over angles of the output [rad], somewhere in which gravity turns it.
+    """Error of a tip over angles of the output [rad], within which gravity changes sense.
 
     Args:
-        model, train: whose.
+        model, train: the train and its model.
         plain: the lost motion at the output that moves the tip.
         shown: the angles.
         name: of the measure.

@@ -1,4 +1,4 @@
-"""Shafts, reducers, arms and trains of a scene, or why they do not make trains."""
+"""Shafts, reducers, arms and trains of a scene, with checks that they make trains."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -103,7 +103,7 @@ def stated_links_of(scene: Scene) -> tuple[StatedLink, ...]:
     """The scene's links that are no meshes, of whatever mechanism.
 
     Raises:
-        SceneError: what nobody builds, such as a shaft that another one does not turn.
+        SceneError: an impossible link, such as one on a shaft that its driver does not turn.
     """
     found = tuple(move.link(name, scene) for name, move in scene.moves.items() if isinstance(move, LinkSpec))
     for link in found:
@@ -218,7 +218,7 @@ def _train(scene: Scene, name: str, move: TrainSpec, layout: Layout) -> Train:
 
 
 def refuse_incomparable(scene: Scene, path: KeyPath, layout: Layout, first: str, last: str) -> None:
-    """Refuse a shaft to which load paths lead that cannot be compared: carriers turn in them, or they are too many.
+    """Refuse a shaft with load paths that cannot be compared: carriers turn in them, or there are too many.
 
     Raises:
         SceneError: at the path.

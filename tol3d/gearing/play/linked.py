@@ -13,7 +13,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.system.trials import Trials
 
 DEAR: Final = 4
-"""Contacts of a link from which it is worth the while to look for trials that it sees alike."""
+"""Contacts of a link from which it pays to look for trials that are alike for it."""
 
 LinkLaw = Callable[[StatedLink, LinkTrials], FreeTurn]
 """The free turn of a link's driven shaft."""
@@ -21,13 +21,13 @@ LinkLaw = Callable[[StatedLink, LinkTrials], FreeTurn]
 
 @dataclass
 class Remembered:
-    """A law by which the free turns of a link in the same trials are worked out once, whatever measures read them."""
+    """A law that computes the free turns of a link in the same trials once, for all measures."""
 
     law: LinkLaw
     known: dict[tuple[str, tuple[int, ...], bytes], FreeTurn] = field(default_factory=dict)
 
     def __call__(self, link: StatedLink, seen: LinkTrials) -> FreeTurn:
-        """See LinkLaw; all that it is asked is of the same trials."""
+        """See LinkLaw; all calls are for the same trials."""
         key = link.name, seen.angles.shape, seen.angles.tobytes()
         if key not in self.known:
             self.known[key] = _each_once(self.law, link, seen) if link.contacts >= DEAR else self.law(link, seen)

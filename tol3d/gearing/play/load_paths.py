@@ -1,9 +1,9 @@
 """Play where parallel load paths join: the intersection of their plays.
 
 The free turn of a shaft on one load path is an interval: from where its driven gear rests on the working flank to where
-the other flank touches, links in series added up. All is linear in the play of each mesh and the angle at which it
-rests, once it is known which path ends first on either side; so derivatives are computed as values are. Load paths that
-share links are compared likewise, walk by walk; each of their loops must leave itself some play, or they bind.
+the other flank touches, links in series added up. Once the path that ends first on either side is known, all is linear
+in the play of each mesh and its rest angle; so derivatives are computed like values. Load paths that share links are
+compared likewise, walk by walk; each of their loops must have some play, or they bind.
 """
 
 from collections.abc import Callable, Mapping
@@ -56,7 +56,7 @@ def _around(loop: tuple[Stage, ...], flank: WorkingFlank, read: VariableValues) 
 
 
 def _meeting(stage: ParallelStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
-    """Both ends of what is free on all load paths."""
+    """Both ends of the common play of all load paths."""
     each = [_ends_of_path(path, flank, read) for path in stage.paths]
     lows, highs = [low for low, _ in each], [high for _, high in each]
     return (
@@ -77,7 +77,7 @@ def _ends_of_path(
 
 
 def _ends(stage: AnyStage, flank: WorkingFlank, read: VariableValues) -> tuple[LinearForm, LinearForm]:
-    """Both ends of what a stage leaves free, at the shaft where its load paths join."""
+    """Both ends of a stage's play, at the shaft where its load paths join."""
     factor = np.array(stage.sense * stage.factor)
     if isinstance(stage, ParallelStage):
         both = tuple(

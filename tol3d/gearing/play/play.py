@@ -167,7 +167,7 @@ class Play:
         return value(self.form(stage), self.values_of)
 
     def form(self, stage: AnyStage) -> LinearForm:
-        """That as a weighted sum of the readings of its links."""
+        """The play as a weighted sum of the readings of its links."""
         if isinstance(stage, Stage):
             return {(stage, "play"): np.array(1.0)}
         return free_form(stage, self._flank, self.values_of)

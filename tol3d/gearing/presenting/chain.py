@@ -1,4 +1,4 @@
-"""The picture of a train: its chain from the motor to the tip, what each link brings, and the sum of it all."""
+"""The picture of a train: its chain from the motor to the tip, the contribution of each link, and their sum."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -89,7 +89,7 @@ def chain_figure(summary: RunSummary, train_name: str) -> Figure:
 
 
 def _draw_head(axes: Axes, name: str, train: TrainSummary, summary: RunSummary) -> None:
-    """The legend at the right, the name in the room that it leaves, and below it what train this is."""
+    """The legend at the right, the name beside it, and below it a description of the train."""
     left, right = EDGE - CAPTIONS, WIDTH - CAPTIONS - EDGE
     published = published_colours(train)
     letters = min(PUBLISHED_LETTERS // max(len(published), 1), MOST_LETTERS)

@@ -1,4 +1,4 @@
-"""Bars below the chain of a train: what each link brings at the shaft that is read, and its share of the variance."""
+"""Bars below the chain of a train: each link's contribution at the shaft read, and its share of the variance."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -46,13 +46,13 @@ def highest_bar(stages: Sequence[ShownStage]) -> float:
 
 
 def _published_highs(stage: ShownStage) -> dict[str, float]:
-    """Others' highs at the shaft that is read [arcmin]."""
+    """Published highs at the shaft that is read [arcmin]."""
     highs = {name: ends.times(stage.factor).high for name, ends in stage.published.items()}
     return {name: high for name, high in highs.items() if high is not None}
 
 
 def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: ChainRow, highest: float) -> None:
-    """Mean and high of each link of a row, and others' highs as marks.
+    """Mean and high of each link of a row, and published highs as marks.
 
     Args:
         figure, place: where.
@@ -78,7 +78,7 @@ def draw_bars(figure: Figure, place: SubplotSpec, train: TrainSummary, row: Chai
 
 
 def _draw_published(axes: Axes, train: TrainSummary, row: ChainRow, at: Array, width: float) -> Array:
-    """Marks of others' highs side by side over the bars of ours; returns the highest of each link [arcmin]."""
+    """Marks of published highs side by side over our bars; returns the highest of each link [arcmin]."""
     colours = published_colours(train)
     highs = [_published_highs(stage) for stage in row.stages]
     for own, x in zip(highs, at, strict=True):
@@ -133,7 +133,7 @@ class SumLine:
 
 
 def sum_lines(train: TrainSummary, summary: RunSummary) -> list[SumLine]:
-    """The distribution of the sum by each method, the stages' highs by the leading one, and others' sums."""
+    """The distribution of the sum by each method, the stages' highs by the leading one, and published sums."""
     return list(_lines(train, summary))
 
 

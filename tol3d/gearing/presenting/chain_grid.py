@@ -120,7 +120,7 @@ def plain_part(
 
 
 def published_colours(train: TrainSummary) -> dict[str, str]:
-    """A colour for everybody who published something of a train."""
+    """A colour for each published source of a train."""
     published = [stage.published for stage in train.stages] + [train.sums.published]
     names = dict.fromkeys(name for each in published for name in each)
     return {name: PUBLISHED_COLOURS[(k + 1) % len(PUBLISHED_COLOURS)] for k, name in enumerate(names)}

@@ -13,7 +13,7 @@ NO_SUM = "the tighter load path counts, which is no sum; run gives the shares of
 
 
 def coefficients_tables(model: Model) -> list[PageItem]:
-    """A table for all measures that have the same coefficients, and what its signs mean."""
+    """A table for all measures with the same coefficients, and the meaning of its signs."""
     names: dict[Measure, list[str]] = {}
     for measure in model.measures:
         names.setdefault(of_one_value(measure), []).append(measure.name)

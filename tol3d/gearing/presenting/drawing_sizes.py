@@ -19,7 +19,7 @@ MEANING = (
 
 
 def drawing_sizes(model: Model) -> list[PageItem]:
-    """A table of what shops measure of every gear [mm]; nothing where there are no gears."""
+    """A table of the shop dimensions of every gear [mm]; nothing without gears."""
     rows = [row for part in model.gears for row in _rows(model, part.name, part.gear)]
     if not rows:
         return []

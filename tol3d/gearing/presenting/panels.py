@@ -207,7 +207,7 @@ class CloseUp:
             add_solid(plotter, solid, colour)
 
     def _in_front(self, point: Array, beyond: float = 0.0) -> Array:
-        """A point of a flank at the front ends of the teeth, where it can be seen: along its generator."""
+        """A point of a flank moved along its generator to the front ends of the teeth, where it is visible."""
         front = max(float(solid.bounds[5]) for solid in self.solids) + beyond
         if self.seated.mesh.pair.arm_spread:
             return np.asarray(point * (front / point[2]))

@@ -120,7 +120,7 @@ def check_blocks(simulation: Simulation) -> list[PageItem]:
 
 
 def mechanics_blocks(model: Model) -> list[PageItem]:
-    """Gears, what shops measure of them, meshes and trains."""
+    """Gears, their shop dimensions, meshes and trains."""
     housings = [housings_line(model)] if model.housings else []
     return [*gears_table(model), *housings, *drawing_sizes(model), *meshes_table(model), *train_blocks(model)]
 
@@ -141,7 +141,7 @@ def gears_table(model: Model) -> list[PageItem]:
 
 
 def _merged(columns: Sequence[Mapping[str, str]]) -> dict[str, list[str]]:
-    """Rows that some column has, in the columns' order; what another kind does not have is NOTHING."""
+    """Rows that some column has, in the columns' order; NOTHING where another kind has none."""
     labels = dict.fromkeys(label for column in columns for label in column)
     return {label: [column.get(label, NOTHING) for column in columns] for label in labels}
 
@@ -314,7 +314,7 @@ def _limits(measure: Measure) -> str:
 
 
 def contributors_table(model: Model) -> list[PageItem]:
-    """The contributors: law and limits, and what each measure makes of them.
+    """The contributors: law and limits, and their coefficients in each measure.
 
     Low and high of one with a direction are lengths, its sigma is that along any one axis.
     """

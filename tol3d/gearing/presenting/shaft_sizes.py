@@ -79,7 +79,7 @@ class ShaftSizes:
         return self._model.gear(gear).gear.bore
 
     def _shaft(self, name: str) -> Shaft:
-        """A shaft, or a part that is its own; one that is in no mesh carries nothing that is known here."""
+        """A shaft, or a part that is its own; one in no mesh carries nothing known here."""
         if name in self.shafts:
             return self.shafts[name]
         own = self._model.layout.carrying.get(name)
@@ -150,5 +150,5 @@ class ShaftSizes:
 
 
 def _with_meshing(shaft: Shaft, faces: Mapping[str, Span]) -> Shaft:
-    """A shaft with those of its gears that are in meshes; others are shown by whoever knows them."""
+    """A shaft with those of its gears that are in meshes; other presenters show the others."""
     return replace(shaft, carries=tuple(carried for carried in shaft.carries if carried.gear in faces))

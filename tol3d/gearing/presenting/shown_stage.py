@@ -1,4 +1,4 @@
-"""The stages of a train as they are shown from a run's summary, and what each brings to the lost motion at a shaft."""
+"""The stages of a train from a run's summary, with the contribution of each to the lost motion at a shaft."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ SUMMED_KINDS = frozenset(("lost_motion", "tip_displacement"))
 
 @dataclass(frozen=True)
 class Range:
-    """An angular backlash or a lost motion [arcmin]: mean -+ 3 sigma and mean; None where nobody knows it."""
+    """An angular backlash or a lost motion [arcmin]: mean -+ 3 sigma and mean; None if unknown."""
 
     low: float | None
     mean: float | None
@@ -52,7 +52,7 @@ class Range:
 
 @dataclass(frozen=True)
 class ShownStage:
-    """A stage of a train as it is shown: its link, and what it brings to the shaft that is read.
+    """A stage of a train as shown: its link, and its contribution at the shaft that is read.
 
     Args:
         number: its place in the train, from 1 on.
@@ -64,9 +64,9 @@ class ShownStage:
         working_flank: "left" or "right"; None where it is no mesh.
         factor: turn of the shaft that is read per turn of the driven shaft, without its sign.
         own: angular backlash at the driven shaft.
-        at_shaft: what it brings to the lost motion of the shaft that is read.
+        at_shaft: contribution to the lost motion of the shaft that is read.
         share: of the variance there [%].
-        published: others' angular backlash at the driven shaft, by who says so.
+        published: published angular backlash at the driven shaft, by source.
         within_its_law: whether an end of `own` is that of a data sheet's law, nearer than 3 sigma.
     """
 
@@ -158,7 +158,7 @@ def shafts_along(stages: Sequence[ShownStage], held: str) -> list[str]:
 
 
 def sums_of(measure: MeasureSummary, summary: RunSummary) -> Mapping[str, Range]:
-    """Sums of the stages' lows, means and highs in the unit of a measure, by method and by who published them.
+    """Sums of the stages' lows, means and highs in the unit of a measure, by method and by published source.
 
     Empty for a measure that is no such sum, or is read at another shaft, point or position than the train's stages are.
     """
@@ -177,7 +177,7 @@ def sums_of(measure: MeasureSummary, summary: RunSummary) -> Mapping[str, Range]
 
 
 def ends_by_column(train: TrainSummary) -> dict[str, Ends]:
-    """Sums of the stages' ends by method, and by who published them."""
+    """Sums of the stages' ends by method, and by published source."""
     own: dict[str, Ends] = {"analytic": train.sums.analytic}
     if train.sums.geometric is not None:
         own["geometric"] = train.sums.geometric
@@ -192,7 +192,7 @@ def _lever_of(measure: TrainMeasureSummary, train: TrainSummary) -> float | None
 
 
 def distributions_of(train: TrainSummary, summary: RunSummary) -> dict[str, Range]:
-    """The lost motion that the train's stages add up to, by method and by who published it: ends and mean [arcmin].
+    """The sum of the train's stages in lost motion, by method and by published source: ends and mean [arcmin].
 
     Of a train whose stages are those of a tip's displacement it is the turn that displaces the tip so far.
     """

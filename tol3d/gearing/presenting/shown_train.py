@@ -35,7 +35,7 @@ class ShownLink:
 
     Args:
         bodies: what is in it, in the world of its train; names differ from those of other parts of the scene.
-        note: what the user should know of it as it is shown, such as "reducer jams"; "" for nothing.
+        note: for the user, such as "reducer jams"; "" for none.
         seen: the same for pictures, where many like parts are one body; None: as they are.
     """
 
@@ -59,7 +59,7 @@ class ShowsLinks(Protocol):
 
         Args:
             link: of this presenter's own kind.
-            seen: what it deviates by, and where its driver stands.
+            seen: its deviations, and its driver's position.
             world_from_driver: pose of the driver's shaft at 0, (4, 4).
         """
 
@@ -187,6 +187,6 @@ def _in_pictures(own: ShownLink) -> tuple[Body, ...]:
 
 
 def shown_build(build: SeatedBuild) -> GearDisplay | ShownTrain:
-    """A build with what is in its links, if anybody shows it."""
+    """A build with the parts in its links, if they have a presenter."""
     gears = GearDisplay(build)
     return ShownTrain(gears, build.model, build.seen.trials) if any(map(shows, build.model.links)) else gears

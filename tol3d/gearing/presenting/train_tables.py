@@ -1,4 +1,4 @@
-"""The trains of a run as tables: what each stage brings to the lost motion, and the sum of the stages."""
+"""The trains of a run as tables: contribution of each stage to the lost motion, and the sum of the stages."""
 
 from collections.abc import Iterator
 
@@ -65,7 +65,7 @@ def train_words(train: TrainSummary) -> str:
 
 
 def stages_table(train: TrainSummary, stages: list[ShownStage]) -> Table:
-    """A row a stage, and the whole train below; angles in minutes and seconds of arc."""
+    """One row per stage, and the whole train below; angles in minutes and seconds of arc."""
     published = list(dict.fromkeys(name for stage in stages for name in stage.published))
     headings = [
         *(Heading(word, plain=word == "ratio") for word in ("ratio", "sense", "low", "mean", "high")),
@@ -92,7 +92,7 @@ def _angle(arcmin: float | None) -> Shown:
 
 
 def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
-    """Sums of the stages' ends against the distribution of the sum, a column a method and who published."""
+    """Sums of the stages' ends against the distribution of the sum, one column per method and published source."""
     distributions = distributions_of(train, summary)
     columns = {name: Range.of(ends) for name, ends in ends_by_column(train).items()}
     columns = {name: columns[name] for name in (*METHOD_WORDS, *columns) if name in columns}

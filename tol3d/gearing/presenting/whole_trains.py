@@ -31,7 +31,7 @@ HOUSING_COLOUR: Final = "#A4ACB5"
 
 @dataclass(frozen=True, eq=False)
 class WholeTrain:
-    """A tree of shafts with all that hangs on it, in the world of its first shaft.
+    """A tree of shafts with all of its parts, in the world of its first shaft.
 
     Args:
         root: its first shaft.
@@ -39,7 +39,7 @@ class WholeTrain:
         bodies: shafts, arms and housings of links.
         shaft_of: the shaft that each gear and body turns with, by the part's name; None for a housing.
         points: points of the arms that are named in pictures, (3,) [mm].
-        gravity: its direction and where it pulls, both (3,); None where the scene does not say.
+        gravity: its direction and its point of action, both (3,); None if the scene states none.
     """
 
     root: str
@@ -230,7 +230,7 @@ def _about_z(angle: float) -> Array:
 
 
 def _faces(build: SeatedBuild) -> Mapping[str, Span]:
-    """From where to where each gear reaches along its own z [mm]."""
+    """Ends of each gear along its own z [mm]."""
     spans = {}
     for seated in build.meshes:
         for part in (seated.driver, seated.driven):

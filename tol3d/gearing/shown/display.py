@@ -32,11 +32,11 @@ class SeatedBuild:
 
     Args:
         model: whose build it is.
-        label: what it is, such as "trial-17" or "nominal", good as the start of a file's name.
+        label: such as "trial-17" or "nominal", usable as the start of a file's name.
         magnify: the factor of its deviations.
         meshes: each in a world of its own; those that are measured, or all of a model whose shafts are shown.
         values: value of each measure on the geometric method, in the measure's unit, magnified too.
-        notes: what the user should know.
+        notes: for the user.
         seen: the build itself, simulated again with its deviations as they are magnified.
     """
 
@@ -106,7 +106,7 @@ def replayed_of(run: Run, which: Which) -> tuple[str, Replay]:
 
 
 def magnified_of(run: Run, which: Which, magnify: float) -> tuple[str, Replay, tuple[str, ...]]:
-    """The same with its deviations magnified, its label, and what is to be noted.
+    """The same with its deviations magnified, its label, and notes.
 
     Raises:
         InputError: no such build, or no such factor.
@@ -155,7 +155,7 @@ def _key(model: Model, measure: Measure, mesh: Mesh) -> SeatKey | None:
 
 
 def _rows(seen: Replay) -> dict[str, int]:
-    """At which position of its first measure each mesh is shown: the extreme that the measure takes, or the first."""
+    """Position of its first measure at which each mesh is shown: the extreme that the measure takes, or the first."""
     if shows_shafts(_model(seen)):
         return {mesh.name: 0 for mesh in _model(seen).meshes}
     rows = {}

@@ -73,7 +73,7 @@ class PlacedGear:
 
 @dataclass(frozen=True, eq=False)
 class SeatedMesh:
-    """A mesh of the build: its gears, where they touch, and how far their other flanks are apart.
+    """A mesh of the build: its gears, their contact, and the gap between their other flanks.
 
     Args:
         mesh: the mesh.
@@ -111,7 +111,7 @@ Meshes = Sequence[SeatedMesh]
 
 
 def allowed_factor(seated: Callable[[float], Meshes], wanted: float) -> tuple[float, str]:
-    """The largest factor up to the wanted one with which a build can be shown, and what the user should know of it.
+    """The largest factor up to the wanted one with which a build can be shown, and notes on it.
 
     Args:
         seated: the meshes of the build with its deviations multiplied by a factor.

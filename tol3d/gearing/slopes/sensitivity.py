@@ -1,11 +1,11 @@
 """Derivatives of measures by deviations, through the contacts that seat a mesh.
 
-A gap changes by how its nearest points move along its normal, for they stay nearest to first order (envelope
+A gap changes by the motion of its nearest points along its normal, for they stay nearest to first order (envelope
 theorem). The driven gear's turn keeps the gap of the touching pair zero, which gives its rate (implicit function
-theorem), and the measure's own gap or turn follows. Where two pairs tie, or a gap lies all along a face, a
-measure has a kink, and the derivative is that of the one pair or point which the engine gives.
+theorem), and the measure's own gap or turn follows. Where two pairs tie, or a gap lies all along a face, a measure has
+a kink, and the derivative is that of the one pair or point which the engine gives.
 
-Neglected: what an engine's normals lack. At contacts of edges an engine that gives the normal of a flank, not of the
+Neglected: errors of an engine's normals. At contacts of edges an engine that gives the normal of a flank, not of the
 nearest points, is off by the slope of the gap along that edge.
 """
 
@@ -33,10 +33,10 @@ from tol3d.system.trials import Trials
 
 
 def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure) -> Array:
-    """Derivatives of what a measure takes by each component of the deviations, each trial at its own build.
+    """Derivatives of a measure's value by each component of the deviations, each trial at its own build.
 
     Args:
-        model, engine: what is built, and what gives its gaps.
+        model, engine: the model, and the engine for its gaps.
         trials: deviations and driver positions of the trials.
         measure: of that model, or one like it.
 
@@ -59,7 +59,7 @@ def _sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measur
 
 
 def _free_rates(model: Model, measure: Measure, moves: BuildRates, seats: Seats) -> Array:
-    """Derivatives of what the backlashes of a measure leave free, (rows, components)."""
+    """Derivatives of a measure's play, (rows, components)."""
     kind = measure.kind
     if isinstance(kind, Backlash):
         key = seat_key(model, measure, kind)

@@ -1,6 +1,6 @@
-"""Mean, standard deviation and variance shares of a measure without drawing anything.
+"""Mean, standard deviation and variance shares of a measure without draws.
 
-Contributors are independent, so means and variances add; what one of them does in several meshes is added up first.
+Contributors are independent, so means and variances add; the effects of one in several meshes are added first.
 Deviations with a direction count by the mean square of their length; tilts by numerical integration of their one-sided
 loss, together with all else where contributors do more than tilt one mesh (`leaning.py`). Offsets of fixed direction
 that turn together are the exception: a random position turns them alike, so they vary together, and each takes half of
@@ -150,7 +150,7 @@ Wave = tuple[float, float, Fraction]
 """Amplitude per length, phase [rad] and turns per turn of the first shaft; 0 of what rests."""
 
 _Sums = Sequence[tuple[float, LinkSum]]
-"""The links of a measure that are no meshes, with what the measure makes of their play."""
+"""The links of a measure that are no meshes, with the factor from their play to the measure."""
 
 
 def _link_sums(model: Model, measure: Measure) -> _Sums | None:
@@ -242,7 +242,7 @@ def _with_covariances(each: Sequence[_Linear]) -> list[Share]:
 
 
 def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
-    """One share a contributor, in the model's order: what it does in tilts and else added up."""
+    """One share per contributor, in the model's order: its tilts and other effects added up."""
     for contributor in model.contributors:
         own = [share for share in shares if share.name == contributor.name]
         if own:
@@ -255,7 +255,7 @@ def _merged(model: Model, shares: Sequence[Share]) -> Iterator[Share]:
 
 
 def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm], alike: bool) -> list[Share] | None:
-    """Shares of -max(|in plane|, |out of plane|) of a mesh whose tilts do nothing else; None of any other group.
+    """Shares of -max(|in plane|, |out of plane|) for a mesh whose tilts have no other effect; None for other groups.
 
     Of two tilts only where both flank sides are read alike: else the loss is another.
 
@@ -281,7 +281,7 @@ def _plain_tilts(group: Sequence[Contributor], terms: Sequence[_ReadTerm], alike
 
 
 def _plane(term: _ReadTerm) -> str:
-    """In which plane a term tilts; in none where the middle of the face is read."""
+    """Plane in which a term tilts; none if the middle of the face is read."""
     if term.term.tilts is None:
         return "no tilt"
     in_plane, across = term.term.tilts

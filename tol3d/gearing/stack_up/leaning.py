@@ -1,11 +1,10 @@
-"""Shares of contributors that lean the axis of a spur gear and shift it too, as the bearings of a shaft do.
+"""Shares of contributors that both tilt and shift the axis of a spur gear, as the bearings of a shaft do.
 
-What a lean takes, `Stack.lost`, is no sum, so that mean and variance are integrated over the laws of all contributors
-of one group: those that lean the same gears. The rule is one net of fixed points, no trials: no seed or number of
-trials is in it. Of the variance each contributor has what it does alone (first-order
-Sobol' index); what several do together is shared in the ratio of what each has in it (total less first-order index),
-in equal parts where two act together.
-Source: Saltelli et al., Comput. Phys. Commun. 181 (2010), table 2 (the estimators of both indices).
+The loss by a tilt, `Stack.lost`, is no sum, so that mean and variance are integrated over the laws of all contributors
+of one group: those that tilt the same gears. The rule is one net of fixed points, no trials: no seed or number of
+trials is in it. Each contributor has its own part of the variance (first-order Sobol' index); joint parts are shared in
+the ratio of total less first-order index, equally if two act together. Source: Saltelli et al., Comput. Phys. Commun.
+181 (2010), table 2 (the estimators of both indices).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -53,7 +52,7 @@ def leaning_shares(parts: Sequence[tuple[float, Stack[GearPair]]], group: Sequen
 
 
 def shares_by_net(change: Change, group: Sequence[AnyContributor]) -> list[Share]:
-    """The shares of a group in a measure that is no sum of what they do alone.
+    """The shares of a group in a measure that is no sum of their single effects.
 
     Args:
         change: of the measure (points,), by the deviations (points, components) of the group, by name.

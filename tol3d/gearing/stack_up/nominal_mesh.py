@@ -1,4 +1,4 @@
-"""The nominal mesh that a stack-up deviates from: where each gear sees its mate, and what shifts of it open.
+"""The nominal mesh of a stack-up: azimuth of each gear's mate, and the opening by its shifts.
 
 alpha_w is the working pressure angle, delta the pitch angle of a gear (0 for a cylinder).
 """
@@ -62,7 +62,7 @@ class NominalMesh(Generic[Pair]):
     def azimuth_onwards(self, role: Role) -> float:
         """Azimuth [rad], in the gear's frame at rest in the mesh, of a shift that turns the driven gear positively.
 
-        The driven gear's teeth go on where its shift takes them back; the driver's take them along.
+        The driven gear turns on where its shift takes its teeth back; the driver's shift takes them along.
         """
         towards = self.pair.mesh_azimuths[1]
         onwards = np.array([-math.sin(towards), math.cos(towards), 0.0])  # motion of the driven teeth at the mesh

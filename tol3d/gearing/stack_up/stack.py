@@ -1,8 +1,8 @@
 """Normal backlash of a pair of gears: the nominal one plus the first-order change by each deviation.
 
-The terms of each effect are in terms.py; here they are added up. What is left out is in backlash.py, by kind of pair.
-Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sections 2.1 and 3.1, where
-alpha_w = alpha and delta = 45 deg.
+The terms of each effect are in terms.py; here they are added up. Neglected terms are in backlash.py, by kind of pair.
+Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, sections 2.1 and 3.1, where alpha_w = alpha
+and delta = 45 deg.
 """
 
 from collections.abc import Mapping
@@ -43,7 +43,7 @@ class Stack(NominalMesh[Pair]):
     def normal_backlash(self, deviations: Array, driver_angle: Array, turns: Role | None = None) -> Array:
         """j_bn [mm], (rows,), of deviations (rows, components) at the driver's turns [rad] (rows,).
 
-        Where single flanks deviate it is another as the gap of gears at rest, and as what a gear that turns takes up.
+        If single flanks deviate, the gap of gears at rest and the turn of a gear give different values.
         """
         angles = (driver_angle, self.pair.driven_angle(driver_angle))
         total = np.full(len(deviations), self.nominal)
@@ -59,7 +59,7 @@ class Stack(NominalMesh[Pair]):
         return self.reading.contact == self.reading.gap
 
     def lost(self, in_plane: Array, across: Array) -> Array:
-        """Normal backlash [mm] that tilts take, (rows,), of what they take in the plane of the axes and across it.
+        """Loss of normal backlash by tilts [mm], (rows,), from their parts in the plane of the axes and across it.
 
         Half a face times |a + b| on the side of the driver's right flanks, |a - b| on the other: 2 max(|a|, |b|) of
         both together.

@@ -1,4 +1,4 @@
-"""One contributor's place in a stack-up, and what a stack-up leaves out of the first order, with its size."""
+"""One contributor's term in a stack-up, and first-order terms neglected by a stack-up, with their sizes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ class Term:
     """A contributor's first-order change of the normal backlash.
 
     Args:
-        contributor: whose it is.
+        contributor: its contributor.
         coefficient: change of j_bn per deviation [mm/mm, mm/rad, mm/K]; for a deviation with a
             direction, per length along its worst direction.
         along: that direction for Planar draws, as the azimuth [rad] of largest opening in the gear's frame at
@@ -55,7 +55,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Bound:
-    """A bound: `factor` times the absolute value of what some terms add up to."""
+    """A bound: `factor` times the absolute value of the sum of some terms."""
 
     factor: float
     terms: tuple[Term, ...]
@@ -63,10 +63,10 @@ class Bound:
 
 @dataclass(frozen=True)
 class Neglect:
-    """Something that a stack-up leaves out on purpose, and by how much at most that changes j_bn.
+    """A term that a stack-up neglects on purpose, and a bound of its effect on j_bn.
 
     Args:
-        words: what is left out, for people.
+        words: description for people.
         parts: bounds that add up [mm].
     """
 
@@ -74,7 +74,7 @@ class Neglect:
     parts: tuple[Bound, ...]
 
     def bound(self, slices: Mapping[str, slice], deviations: Array, angles: tuple[Array, Array]) -> Array:
-        """Largest change of j_bn that is left out [mm], (rows,); 0 where no deviation of its terms acts.
+        """Largest neglected change of j_bn [mm], (rows,); 0 where no deviation of its terms acts.
 
         Args:
             slices: columns of each contributor in the deviations.

@@ -1,6 +1,6 @@
-"""First-order terms of effects, worked out without the geometric method.
+"""First-order terms of effects, derived without the geometric method.
 
-Each effect registers its own, one from elsewhere by `contributes`.
+Each effect registers its own, external ones by `contributes`.
 """
 
 import math
@@ -63,7 +63,7 @@ _KNOWN: dict[tuple[type[Effect], type | None], Law] = {}
 
 
 def contributes(effect: type[Effect], pair: type[GearPair] | None = None) -> Callable[[F], F]:
-    """Register what an effect does in meshes of one kind of pair, or in those of every kind that has none of its own.
+    """Register the contribution of an effect in meshes of one kind of pair, or of every kind without its own.
 
     The registered function is called with the effect, the mesh and the contributor.
     """

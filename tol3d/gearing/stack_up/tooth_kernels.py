@@ -1,4 +1,4 @@
-"""The compiled half of tooth_pairs.py: what the pairs of flanks of a mesh take, row by row.
+"""The compiled half of tooth_pairs.py: losses by the pairs of flanks of a mesh, row by row.
 
 Formulas are those of the stack-up; nothing here sees a pose or a kernel of the exact engine.
 """

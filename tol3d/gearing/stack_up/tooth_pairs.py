@@ -34,7 +34,7 @@ NUMBERS_AT_ONCE: Final = 4_000_000
 """Deviations of rows that are held at once: 32 MB."""
 
 KERNELS: Final = "tol3d.gearing.stack_up.tooth_kernels"
-"""Imported where it is used: it loads the compiler of kernels, which stack-ups of other gears do without."""
+"""Lazy import: it loads the compiler of kernels, which stack-ups of other gears do not need."""
 
 WHO_TURNS: Final[Mapping[Role | None, int]] = {None: 0, "driven": 1, "driver": 2}
 """In the words of tooth_kernels."""
@@ -121,7 +121,7 @@ class ToothPairs:
     beyond: float
 
     def built(self, deviations: Array, trial: Integers) -> BuiltTeeth:
-        """The flanks of trials (trials, components), and which of them each row (rows,) is."""
+        """The flanks of trials (trials, components), and the trial of each row (rows,)."""
         return BuiltTeeth(self.driver.numbers(deviations), self.driven.numbers(deviations), trial)
 
     def taken(
@@ -241,7 +241,7 @@ def _flanks(model: Model, mesh: Mesh, name: str, acting: Sequence[tuple[Contribu
 
 
 def distinct(deviations: Array) -> tuple[Array, Integers]:
-    """Rows of deviations without those that repeat the row before, and which of them each row is."""
+    """Rows of deviations without repetitions of the row before, and the index of each row among them."""
     new = np.ones(len(deviations), dtype=bool)
     new[1:] = (deviations[1:] != deviations[:-1]).any(axis=1)
     return deviations[new], np.cumsum(new) - 1

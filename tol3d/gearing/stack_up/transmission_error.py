@@ -1,4 +1,4 @@
-"""Transmission error to first order: what turns with the gears, on the flanks that touch.
+"""Transmission error to first order: rotating deviations, on the flanks that touch.
 
 What shifts a flank along the line of action by s turns the driven gear by s over its arm r_b2. A centre that lies e off
 its axis shifts the flanks of a driver by e sin(psi + alpha) on the drive side and e sin(psi - alpha) on the back side,
@@ -9,11 +9,11 @@ phi2 + theta2, each gear's angle positive in its own sense, the drive side leads
     TE_d = 1/r_b2 [e1 sin(psi1 + alpha) + e2 sin(psi2 - alpha)] less that at the first position.
 
 Source: Wang, Zhou, Zou, Chinese J. Engineering 42(8), 2020, 1055-1064, equations 3 and 4. Here it is half of what a
-deviation takes from the normal backlash (-2 e1 sin(alpha) cos(psi1) ...) and the shift of the middle of the play
-(e1 cos(alpha) sin(psi1) ...) of every effect that turns, of any pair; sin(psi) cos(alpha) + cos(psi) sin(alpha) is the
-sine of the sum. What rests drops out: tooth thickness, centre distance, bearing clearance, tilt, temperature. They come
-back in products with what turns only, and where base pitches differ, which is left out here as in all stack-ups. Single
-flanks that deviate add what the pair that touches first stands out by, see tooth_pairs.py.
+deviation takes from the normal backlash (-2 e1 sin(alpha) cos(psi1) ...) and the shift of the middle of the play (e1
+cos(alpha) sin(psi1) ...) of every effect that turns, of any pair; sin(psi) cos(alpha) + cos(psi) sin(alpha) is the sine
+of the sum. What rests drops out: tooth thickness, centre distance, bearing clearance, tilt, temperature. They return
+only in products with rotating deviations, and if base pitches differ, which is neglected here as in all stack-ups.
+Single flanks that deviate add the offset of the pair that touches first, see tooth_pairs.py.
 """
 
 from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ def _turned_by_teeth(model: Model, backlash: Backlash, deviations: Array, driver
 
 
 def _waves(model: Model, backlash: Backlash, driver: Array) -> Iterator[tuple[range, Array]]:
-    """Columns of what turns, and what one mm of each turns the driven gear about its z: (components, positions)."""
+    """Columns of rotating deviations, and the driven gear's turn about z per mm of each: (components, positions)."""
     mesh = model.mesh(backlash.mesh)
     stack = stack_of(model, mesh, backlash.reading)
     side = mesh.pair.mating_flank(mesh.resting_flank(backlash.reading.flank))

@@ -1,4 +1,4 @@
-"""Words for what measures of gears take, over which positions, and where on the teeth they read."""
+"""Words for the values of gear measures, their positions, and the places on the teeth."""
 
 from collections.abc import Mapping
 from typing import Final, Literal

@@ -211,7 +211,7 @@ def _of_method(stages: Sequence[AnyStage], tallied: PooledTerms) -> ByLink:
 
 
 def _within_sheets(model: Model, ends: ByLink) -> ByLink:
-    """Ends of a link's play no further than its laws go, which 3 sigma may."""
+    """Ends of a link's play, clipped to its laws, which 3 sigma may exceed."""
     known = {link.name: link.ends(link_contributors(model, link.name)) for link in model.links}
     return {link: _within(own, known.get(link)) for link, own in ends.items()}
 
@@ -251,7 +251,7 @@ def _published(model: Model, kind: LostMotion, ours: ByLink, others: Published) 
 
 
 def _ends_of_meshes(model: Model, kind: LostMotion, figures: PublishedColumn, said: ByLink) -> ByLink:
-    """Each mesh's ends by what somebody says of it; nothing if he says none of one of them."""
+    """Each mesh's ends from published figures; nothing if one of them has none."""
     meshes = {stage.link: stage.backlash for stage in kind.stages if stage.backlash is not None}
     ends = {link: said.get(link) or _published_ends(model, figures, own) for link, own in meshes.items()}
     known = {link: own for link, own in ends.items() if own is not None}
@@ -263,12 +263,12 @@ def _stated_ends(own: PublishedEnds) -> Ends:
 
 
 def _arcmin(value: Quantity | float | None) -> float | None:
-    """An angle as summaries have it; a share as it is."""
+    """An angle as in summaries; a share unchanged."""
     return value.internal * ARCMIN if isinstance(value, Quantity) else value
 
 
 def _published_ends(model: Model, measures: PublishedColumn, backlash: Backlash) -> Ends | None:
-    """Somebody's lost motion of a mesh's driven gear, or else his normal backlash as such a turn; None of neither."""
+    """Published lost motion of a mesh's driven gear, or else published normal backlash as such a turn; else None."""
     for quantity in ("angular_backlash", "normal_backlash"):
         for measure in model.measures:
             kind = measure.kind

@@ -81,7 +81,7 @@ class BacklashSummary(BacklashWords, MeasureSummary):
 
     @property
     def conversions(self) -> Sequence[Conversion]:
-        """The turn of the driven gear that a normal backlash leaves free."""
+        """The free turn of the driven gear from a normal backlash."""
         if self.lost_motion is None:
             return ()
         free = self.lost_motion
@@ -153,7 +153,7 @@ class TrainMeasureWords(Section):
 
 
 class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
-    """The lost motion of a train, or what it does to the tip of an arm; every value is in `unit`."""
+    """The lost motion of a train, or its effect on the tip of an arm; every value is in `unit`."""
 
     presenter = PRESENTER
 

@@ -71,7 +71,7 @@ def beside(axis: Axis, left: float, right: float, label: str) -> Iterator[Markup
 
 
 def chart(words: str, height: float, *inside: Markup) -> Markup:
-    """A chart: an SVG as wide as the page lets it, with words for who does not see it."""
+    """A chart: an SVG as wide as the page allows, with alternative text."""
     return tag(
         "svg",
         tag("title", words),

@@ -51,7 +51,7 @@ def _pieces(pieces: Sequence[tuple[str, str]]) -> Iterator[Inside]:
 
 
 def table(own: Table) -> Markup:
-    """A table; numbers stand right, each with its value to copy, and what is left out is told."""
+    """A table; numbers are right-aligned, each with its value to copy, and omissions are stated."""
     shown = own.shown
     head = tag("tr", tag("th", shown.corner, scope="col"), *(_head(heading) for heading in shown.headings))
     body = together(*(_row(row, shown.headings) for row in shown.rows))

@@ -55,7 +55,7 @@ from tol3d.system.outcome import value_column
 
 TRIALS_A_BAR: Final = 5
 MOST_READ: Final = 200_000
-"""Trials that are looked through for those of each bar."""
+"""Trials searched for those of each bar."""
 POLICY: Final = (
     "default-src 'none'; script-src {scripts}; style-src 'sha256-{style}'; img-src data:; base-uri 'none'; "
     "form-action 'none'"
@@ -91,7 +91,7 @@ def report_html(
         analyses: sections of the first run by their titles.
         shares: of contributors [%] by measure, of sections that have them.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
-        in_3d: whether the first run's parts are shown in 3D.
+        in_3d: True to show the first run's parts in 3D.
         missing: what is left out, and why.
         made: when and where, the one element that differs between two reports of the same runs.
 

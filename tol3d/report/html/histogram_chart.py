@@ -58,7 +58,7 @@ def histogram_chart(name: str, measure: MeasureSummary) -> Markup:
 
 
 def _bars(sample: DrawnSample, x: Axis, y: Axis, measure: MeasureSummary) -> Iterator[Markup]:
-    """Each bar with its values and how many trials are in it, told where the pointer rests."""
+    """Each bar with its values and number of trials in a tooltip."""
     bars = sample.bars
     for k, (density, count) in enumerate(zip(bars.density, bars.counts, strict=True)):
         if not count:

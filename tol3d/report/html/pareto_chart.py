@@ -1,4 +1,4 @@
-"""Contributors of a measure as bars, the largest first, and what they add up to."""
+"""Contributors of a measure as bars, the largest first, with their cumulative share."""
 
 from typing import Final
 
@@ -13,7 +13,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 BAR, GAP, FOOT = 11.0, 8.0, 44.0
 NAMES: Final = 230.0
 LONGEST: Final = 38
-"""Signs of a name; longer ones are told where the pointer rests."""
+"""Characters of a name; longer ones are shown in a tooltip."""
 
 
 def pareto_chart(measure: MeasureSummary) -> Markup | None:

@@ -1,11 +1,11 @@
-"""Elements of HTML and SVG as text, in which whatever a scene is called does nothing."""
+"""Elements of HTML and SVG as text, with names of a scene escaped."""
 
 import unicodedata
 from collections.abc import Iterator, Mapping
 from typing import Final
 
 UNSAFE: Final = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp"))
-"""Unicode categories that hide or turn text: told by their numbers."""
+"""Unicode categories that hide or turn text: shown by their code points."""
 VOID: Final = frozenset(("br", "meta", "img", "input"))
 ENTITIES: Final[Mapping[str, str]] = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;"}
 
@@ -18,7 +18,7 @@ Inside = str | Markup | float | None
 
 
 def escaped(text: object) -> Markup:
-    """Text as HTML shows it, sign by sign; what is markup already stays as it is.
+    """Text escaped for HTML; markup stays unchanged.
 
     >>> escaped("</script>"), escaped(Markup("<b>"))
     ('&lt;/script&gt;', '<b>')

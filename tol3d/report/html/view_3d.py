@@ -47,7 +47,7 @@ class _State:
     """A build as it is shown.
 
     Args:
-        words: what it is, and what should be known of it.
+        words: description and notes.
         meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
     """
 
@@ -64,7 +64,7 @@ class _Model:
     of_parts: dict[str, list[int]] = field(default_factory=dict)
 
     def place(self, name: str, surface: Surface) -> tuple[int, Array]:
-        """Which mesh a part's surface is, and where that lies on it (4, 4)."""
+        """Index of a part's mesh, and its pose on the part (4, 4)."""
         vertices, triangles = surface
         for mesh in self.of_parts.setdefault(name, []):
             known, alike = self.surfaces[mesh]
@@ -176,7 +176,7 @@ def _called(which: Which) -> str:
 def _undeviated(
     builds: Sequence[tuple[str, list[_State]]], model: _Model, world: World
 ) -> tuple[list[tuple[str, list[_State]]], _Model, tuple[str, ...]]:
-    """The same with every part as it is nominally, and which parts are not as they were built."""
+    """The same with every part nominal, and the parts that differ from their build."""
     nominal = builds[0][1][0].meshes
     deviate = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh != nominal[k]}
     fewer = _Model([model.surfaces[mesh] for mesh in nominal])

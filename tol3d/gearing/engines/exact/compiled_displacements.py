@@ -91,7 +91,7 @@ def compiled_displacements(model: Model) -> CompiledDisplacements:
 
 
 def _growing(model: Model, part: str) -> list[int]:
-    """Slots that a part's growth goes to: of its own seats, and of the meshes that it holds."""
+    """Slots of a part's growth: in its own seats, and in the meshes that it holds."""
     seats = [SLOTS * index + SCALE for index, seat in enumerate(model.seats) if seat.gear == part]
     after = SLOTS * len(model.seats)
     return seats + [after + index for index, mesh in enumerate(model.meshes) if mesh.housing == part]

@@ -1,7 +1,7 @@
-"""Spur gears whose flanks deviate tooth by tooth: feet and lines of action as of SpurTooth, less what flanks stand out.
+"""Spur gears whose flanks deviate tooth by tooth: feet and lines of action as of SpurTooth, less flank offsets.
 
 A flank stands out of the involute along its normals by a smooth offset of roll and height, micrometres over
-millimetres. What is left out is of the order of (its slope)^2 times itself, 1e-8 um.
+millimetres. Neglected terms are of the order of (its slope)^2 times itself, 1e-8 um.
 """
 
 import math
@@ -22,7 +22,7 @@ LEAST_BEND = (
 
 
 class DeviatedTooth(NamedTuple):
-    """Flanks of a spur gear, and what one of them stands out by.
+    """Flanks of a spur gear, and the offset of one of them.
 
     Args:
         base ... high: as of SpurTooth.
@@ -194,7 +194,7 @@ def deviated_flank(tooth: DeviatedTooth, flanks: FlankOffsets, gear: int, place:
 
 @variant(foot, DeviatedTooth)
 def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: Facing, roll: float, z: float) -> Foot:
-    """See foot.foot: of the point that own flank has there, the gap is less by what the mate's stands out at the foot.
+    """See foot.foot: for the point of own deviated flank, the gap is reduced by the mate's offset at the foot.
 
     A point d outside an involute lies on one that is turned by d/r_b, d/r_b of roll further on. As it rolls on by dt,
     its foot's roll goes back by r_b t dt over the foot's radius of curvature: both flanks are parallel where they are
@@ -237,7 +237,7 @@ def deviated_foot(own: DeviatedTooth, mate: DeviatedTooth, pose: Pose, facing: F
 def deviated_turn(mate: DeviatedTooth, gap: float, offset: float, at: Foot) -> float:
     """As flanks of SpurTooth; on the way the foot comes to where the mate stands out by another length.
 
-    The way along the line of action is not shortened by the slope that shortens the gap.
+    The distance along the line of action is not shortened by the slope that shortens the gap.
     """
     turn = gap * mate.per_base
     if is_level(mate):

@@ -136,7 +136,7 @@ def aside(at: Turn, line: Sight, its: Touch, sigma: float, base: float) -> float
 
 @part
 def quick_turn(build: MeshBuild, at: Turn, look: Look) -> tuple[bool, float]:
-    """The smallest turn of the driven gear [rad] that closes a pair of a side; whether it is sure."""
+    """The smallest turn of the driven gear [rad] that closes a pair of a side; True if it is certain."""
     sigma, pose, mate = look.sigma, pose_at(build, at), build.driven
     middle = section(build.driver, build.pair.section)
     own = middle if look.in_section else build.driver
@@ -245,8 +245,8 @@ def rest_deviated_rows(
     """Seat every build at every position on both sides; arguments as in rests.rest_rows and above.
 
     Where axes are parallel all positions but the first take their contact from the line of action, see
-    tooth_contact.py: pairs in action one after the other, edges only to know that they touch later. Where one does not,
-    or anything else lies beyond that, they are seen as all others are.
+    tooth_contact.py: pairs in action one after the other, edges only to know that they touch later. All other cases are
+    evaluated as usual.
     """
     gears = (which[0], which[1])
     for row in range(len(shafts)):

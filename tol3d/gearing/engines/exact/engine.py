@@ -48,7 +48,7 @@ class ExactEngine:
         return DEPTH
 
     def last_step(self, mesh: Mesh) -> float:
-        """1e-8 mm: what is left of a gap after it goes with its square."""
+        """1e-8 mm: the rest of a gap that falls quadratically."""
         return LAST_STEP
 
     def build(self, deviations: Array) -> Build:
@@ -155,7 +155,7 @@ class ExactEngine:
         return drive, back
 
     def _refuse_far(self, build: Build, mesh: Mesh, readings: Array, status: NDArray[np.int8]) -> None:
-        """Mark rows in which a flank stands out so far that teeth beyond the candidates might touch first."""
+        """Mark rows in which a flank stands out enough for teeth beyond the candidates to touch first."""
         places = self._displacements.flanks
         if build.flanks is None or not places.acts_in(mesh.driver, mesh.driven):
             return

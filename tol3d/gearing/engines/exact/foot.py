@@ -14,7 +14,7 @@ PER_TURN = 1.0 / TURN
 
 
 def foot(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: float) -> Foot:
-    """The foot on the mate's endless flank of a point of own flank; one variant a kind of gears.
+    """The foot on the mate's endless flank of a point of own flank; one variant per kind of gears.
 
     Args:
         own, mate: the gears' teeth.
@@ -26,17 +26,17 @@ def foot(own: Any, mate: Any, pose: Any, facing: Facing, profile: float, face: f
 
 
 def grown(tooth: Any, scale: float) -> Any:
-    """The teeth of a gear that has grown about its origin; one variant a kind."""
+    """The teeth of a gear that has grown about its origin; one variant per kind."""
     raise NotImplementedError
 
 
 def section(tooth: Any, share: float) -> Any:
-    """The teeth with no more of the face than one section, at a share of it; one variant a kind."""
+    """The teeth reduced to one section, at a fraction of the face; one variant per kind."""
     raise NotImplementedError
 
 
 def turn_to(mate: Any, gap: float, offset: float, at: Foot) -> float:
-    """By how much the mate must turn [rad] for its flank to pass through a point; one variant a kind.
+    """Turn of the mate [rad] until its flank passes through a point; one variant per kind.
 
     Args:
         mate: its teeth.

@@ -56,7 +56,7 @@ class PairKernels:
         numbers: pinion's teeth, wheel's, which of them may meet, where the wheel's shaft sees the pinion's.
         read, gaps, rests: see kernels.
         flanks: where offsets of single flanks lie, of a pair that has any.
-        standing_out: how far one of them may stand out of its neighbours [mm].
+        standing_out: largest excess of one of them over its neighbours [mm].
     """
 
     numbers: tuple[Any, Any, PairNumbers, Pose]

@@ -78,9 +78,9 @@ class Nearest(NamedTuple):
     Args:
         gap: [mm], inf where the faces do not overlap.
         turn: by which the mate must turn to close it [rad], of the gap's sign.
-        how: ALIKE, the turn is exact, and the same for all pairs of one base pitch; CLOSED, the turn is exact;
-            AT_EDGE, it is so to first order, for an edge comes to touch; BEYOND, gap and turn are no more than bounds,
-            for both flanks end; NOWHERE, nothing of it is known.
+        how: ALIKE, the turn is exact, and the same for all pairs of one base pitch; CLOSED, the turn is exact; AT_EDGE,
+            it is so to first order, for an edge comes to touch; BEYOND, gap and turn are no more than bounds, for both
+            flanks end; NOWHERE, nothing is known.
         profile, face: where on `own`.
         x, y, z: the point of `own` [mm].
         nx, ny, nz: unit vector from the mate to it.

@@ -1,6 +1,6 @@
-"""Both rests of a mesh at many positions: one contact a side and position, every build made once for all of them.
+"""Both rests of a mesh at many positions: one contact per side and position, each build made once for all.
 
-A position begins where the one before it came to rest: there the gears have hardly to turn.
+A position begins at the previous rest, so that the gears hardly have to turn.
 """
 
 from typing import Any

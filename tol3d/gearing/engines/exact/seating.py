@@ -1,8 +1,8 @@
-"""A pair brought to contact and read, build by build: what the measures of a mesh are made of.
+"""A pair brought to contact and read, build by build: the basis of a mesh's measures.
 
 The driver is held. For a mate without eccentricity the turn that closes a gap is exact, so the working flanks touch
-after one look at each candidate pair; an eccentric one moves aside a little as it turns, which is added to first
-order: what is left is of the order of (eccentricity times turn)^2 over the flanks' radius, 1e-11 mm.
+after one evaluation of each candidate pair; an eccentric one moves aside a little as it turns, which is added to first
+order: the rest is of the order of (eccentricity times turn)^2 over the flanks' radius, 1e-11 mm.
 """
 
 import math
@@ -178,7 +178,7 @@ def middle_first(step: int, first: float, count: int, middle: float) -> float:
 
 @part
 def mating_tooth(driven: Any, tooth: float, sigma: float) -> float:
-    """The driven gear's tooth that a driver's meets."""
+    """The driven gear's tooth that meets a driver's tooth."""
     if opening(driven) < 0.0:
         return tooth - 1.0 if sigma > 0.0 else tooth
     return -tooth if sigma > 0.0 else -tooth - 1.0
@@ -230,7 +230,7 @@ def pair_nearest(
     """The nearest points of a tooth pair.
 
     Args:
-        build, at: what is built, and where its gears stand.
+        build, at: the build, and the positions of its gears.
         sigma, tooth: side, and tooth of the driver.
         pose: as pose_at gives it.
         own: what is looked at of the driver's teeth; the search begins at `face` [mm] on it.
@@ -252,7 +252,7 @@ def pair_nearest(
 
 @part
 def aside(at: Turn, turn: float, near: Nearest) -> float:
-    """By how much more a gap [mm] opens as the driven gear's centre moves with its turn, along the normal there."""
+    """Additional opening of a gap [mm] by the motion of the driven gear's centre with its turn, along the normal."""
     fx, fy = turned(at.fx, at.fy, turn)
     return -((near.nx - near.lean * near.x) * (fx - at.fx) + (near.ny - near.lean * near.y) * (fy - at.fy))
 
@@ -264,8 +264,8 @@ def seen(build: MeshBuild, at: Turn, seen_at: float, look: Look) -> Side:
     Args:
         build: what is built.
         at: where the gears stand.
-        seen_at: the driver's angle [rad] that decides which teeth are looked at.
-        look: which side, and where.
+        seen_at: the driver's angle [rad] that selects the teeth.
+        look: side and place.
     """
     pair, sigma = build.pair, look.sigma
     sense = sigma * opening(build.driven)

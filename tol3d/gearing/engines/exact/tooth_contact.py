@@ -1,7 +1,7 @@
 """Contact of two deviated flanks of spur gears with parallel axes, from the line of action of their involutes.
 
-In general Newton seeks it from foot to foot, see nearest.py, and each foot takes sines and arcs. Here all pairs share
-the line of action, and what lies beside it takes a root. A point of own flank that lies d of roll short of that line
+In general Newton's method goes from foot to foot, see nearest.py, and each foot takes sines and arcs. Here all pairs
+share the line of action, and points beside it take a root. A point of own flank that lies d of roll short of that line
 moves by s = rho_1 - r_1 d per roll, at an angle d to it. Its foot on the mate has gone th round the mate's axis, and a
 string L long leads to it, so that the involutes' gap has grown by L - rho_2 + r_2 th, per roll by s sin(d - th), and th
 changes by -(s/L) cos(d - th).
@@ -83,7 +83,7 @@ def wrapped(angle: float) -> float:
 
 @part
 def beside(base: float, mate_base: float, rho: float, mate_rho: float, d: float) -> tuple[float, float, float]:
-    """By what a point d [rad] of roll beside the line of action is further from the mate, its string, the foot's way.
+    """Added distance from the mate of a point d [rad] of roll beside the line of action, its string, the foot's angle.
 
     [mm; mm; rad], of an involute whose point on that line has radii of curvature rho and mate_rho to either side.
     """
@@ -110,7 +110,7 @@ def near_offset(tooth: DeviatedTooth, roll: float, z: float, cos: float, sin: fl
 
 @part
 def most_out(tooth: DeviatedTooth) -> float:
-    """The most that a flank stands out by anywhere, once as it is and twice more by its shapes [mm]."""
+    """Bound of a flank's offset anywhere, once as it is and twice more by its shapes [mm]."""
     u = max(abs(tooth.begin - tooth.middle), abs(tooth.end - tooth.middle)) * tooth.per_length
     form = 0.5 if tooth.waves != 0.0 else 1.0 / 3.0 + 4.0 * u * u
     z = max(abs(tooth.low), abs(tooth.high)) * tooth.per_face
@@ -119,7 +119,7 @@ def most_out(tooth: DeviatedTooth) -> float:
 
 @part
 def edge_gap(own: DeviatedTooth, mate: DeviatedTooth, tangent: float, beyond: float) -> float:
-    """The least by which own tip edge has left the mate [mm] where its pair is so far beyond the path of contact [rad].
+    """Least distance of own tip edge from the mate [mm] for a pair so far beyond the path of contact [rad].
 
     Just beyond it is b d^2/2, b = rho T/(T - rho) with the edge's radius of curvature rho: the mate's, T - rho, grows
     by less than the arc r_b d on the way.

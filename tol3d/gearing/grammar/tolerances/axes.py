@@ -1,4 +1,4 @@
-"""Tolerances of how the axes of a mesh lie to each other."""
+"""Tolerances of the relative position of a mesh's axes."""
 
 import math
 from typing import TYPE_CHECKING, ClassVar, Literal

@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Lever:
-    """A gear on a shaft of which one point moves.
+    """A gear on a shaft with one moving point.
 
     Args:
         own: the gear on the shaft.
         moved: z of the point that moves [mm].
         fixed: z of one that does not; None where all of the shaft moves alike.
-        rate: how far the point moves by a deviation of 1; half of it by a clearance.
+        rate: motion of the point per deviation; half for a clearance.
     """
 
     own: "Carried"
@@ -163,7 +163,7 @@ class BearingClearanceSpec(GearToleranceSpec):
         return Meaning(together([effect for lever in levers for effect in lever.towards(azimuth)]), least=0.0)
 
     def _azimuth(self, gear: str, nominal: "Nominal") -> float:
-        """Which way the axis of a gear moves [rad], in its frame at rest on its shaft."""
+        """Azimuth in which the axis of a gear moves [rad], in its frame at rest on its shaft."""
         if isinstance(self.direction, At):
             return self.direction.at.internal
         mesh = nominal.mesh_of(gear, self.mesh)

@@ -1,10 +1,10 @@
-"""Evaluation ranges: between which places of a flank slopes and forms count.
+"""Evaluation ranges: limits on a flank between which slopes and forms count.
 
 ISO 1328-1:2013 finds the mean line of a trace in an evaluation range, and takes the slope deviation from it between the
 ends of the flank, to which it is extrapolated: f_Halpha from the profile control diameter to the tip diameter, f_Hbeta
 over the whole face width. The form deviation counts within the evaluation range. The profile's is the first 95 % of the
 length of roll from the control diameter, which is where the active profile begins if no drawing says otherwise, to the
-tip; older editions have 92 %, for slopes too. The standard itself was not at hand.
+tip; older editions have 92 %, for slopes too. The standard itself was not available.
 """
 
 from dataclasses import dataclass

@@ -48,7 +48,7 @@ class ShapeLimitsSpec(Strict):
 
 
 class UniformShapeSpec(Strict):
-    """Any deviation within the limits is as likely as any other."""
+    """All deviations within the limits are equally likely."""
 
     kind: Literal["uniform"]
 
@@ -197,7 +197,7 @@ class FlankShapeSpec(FlankToleranceSpec):
 
 
 class ProfileSlopeSpec(FlankShapeSpec):
-    """f_Halpha, a length: by so much more the flank stands out at its tip than where its active profile begins.
+    """f_Halpha, a length: offset of the flank at its tip less that at the start of its active profile.
 
     Linear in the roll over the whole involute, 0 in the middle between both, or of a range that is stated.
     """
@@ -252,7 +252,7 @@ class ProfileFormSpec(FlankShapeSpec):
 
 
 class HelixSlopeSpec(FlankShapeSpec):
-    """f_Hbeta, a length: by so much more the flank stands out at the upper end of its face than at the lower one.
+    """f_Hbeta, a length: offset of the flank at the upper end of its face less that at the lower end.
 
     Linear in the gear's z over the whole face width, 0 in its middle, or in that of a range that is stated.
     """

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 class RecordSpec(Strict):
-    """Deviations as a measuring centre wrote them, the same in every trial: a CSV file with a row a tooth and flank."""
+    """Deviations from a measuring centre, the same in every trial: a CSV file with one row per tooth and flank."""
 
     kind: Literal["record"]
     file: str = Field(description="CSV with columns `tooth` and `flank` (right or left), and one of the deviations")
@@ -62,7 +62,7 @@ class RecordSpec(Strict):
         return FlankRecord(csv_table(files[self.file]), teeth, self.column, self.unit)
 
     def placed(self, tooth: int, teeth: int) -> int:
-        """Which tooth of the gear one of the file is, both counted from their first ones."""
+        """Tooth of the gear for a tooth of the file, both counted from their first ones."""
         return tooth if self.counted == "counter_clockwise" else -tooth % teeth
 
 
@@ -142,7 +142,7 @@ def limits_of_class(iso_class: int, gear: SpurGear) -> FlankTolerances:
 
 
 def no_word(example: str) -> BeforeValidator:
-    """Refuses a word where a law or limits with their numbers are meant, such as `example`."""
+    """Refuse a word such as `example` in place of a law or of limits with numbers."""
 
     def checked(value: Any) -> Any:
         if isinstance(value, str | int | float):

@@ -42,7 +42,7 @@ class Meaning:
 
 
 class GearingToleranceSpec(ToleranceSpec):
-    """A tolerance of gears, of what carries them, or of how they lie to each other."""
+    """A tolerance of gears, of their shafts and bearings, or of their relative position."""
 
     @abstractmethod
     def meaning(self, nominal: Any) -> Meaning:
@@ -69,7 +69,7 @@ def together(effects: Sequence[Effect]) -> Effect:
 
 
 class GearToleranceSpec(GearingToleranceSpec):
-    """A tolerance of one gear, or of what carries it."""
+    """A tolerance of one gear, or of its shaft or bearing."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec,)
 
@@ -81,7 +81,7 @@ class GearToleranceSpec(GearingToleranceSpec):
 
 
 class MeshToleranceSpec(GearingToleranceSpec):
-    """A tolerance of how two axes lie to each other."""
+    """A tolerance of the relative position of two axes."""
 
     applies_to: ClassVar[tuple[type[Entry], ...]] = (MeshSpec,)
 
@@ -93,7 +93,7 @@ class MeshToleranceSpec(GearingToleranceSpec):
 
 
 class LinkToleranceSpec(GearingToleranceSpec):
-    """A deviation of a link; the link finds it by the kind of the tolerance, and knows what it does to its play."""
+    """A deviation of a link; the link finds it by the kind of the tolerance, and knows its effect on the play."""
 
     link_spec: ClassVar[type[Any]] = LinkSpec  # or a kind of it
 

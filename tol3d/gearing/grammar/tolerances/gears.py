@@ -1,4 +1,4 @@
-"""Tolerances of a gear as a whole, and of how it sits on its shaft."""
+"""Tolerances of a gear as a whole, and of its seat on the shaft."""
 
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -61,7 +61,7 @@ class ShimSpec(GearToleranceSpec):
 class ClockingSpec(GearToleranceSpec):
     """An angle: the gear is turned on its shaft, positive counter-clockwise about its own z.
 
-    It takes nothing from one mesh's backlash. Where parallel load paths join, it shifts the play of one against that of
+    It does not change one mesh's backlash. Where parallel load paths join, it shifts the play of one against that of
     the others.
     """
 
@@ -159,5 +159,5 @@ class ToothThicknessSpec(GearToleranceSpec):
         return self.measured != "arc"
 
     def sign_in(self, *, ring: bool) -> float:
-        """-1 where what is measured grows as the teeth get thinner: the span of a ring, over its spaces."""
+        """-1 if the measured quantity grows as the teeth get thinner: the span of a ring, over its spaces."""
         return -1.0 if ring and isinstance(self.measured, SpanOverSpec) else 1.0

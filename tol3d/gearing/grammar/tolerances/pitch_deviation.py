@@ -69,7 +69,7 @@ class PitchLimitsSpec(Strict):
 
 
 class FilledSpec(Strict):
-    """A pattern round the gear whose size follows from how much of the limits it takes up."""
+    """A pattern round the gear whose size follows from its utilisation of the limits."""
 
     fill: Annotated[tuple[Share, Share], listed("shares", 2, 2)] = Field(
         description="least and most of the limits that a flank side takes up, uniform in between; 1 reaches one of them"
@@ -122,7 +122,7 @@ class GivenSpec(Strict):
 
 
 class PitchRecordSpec(RecordSpec):
-    """Pitch deviations as a measuring centre wrote them, positive the way it counts the teeth."""
+    """Pitch deviations written by a measuring centre, positive in its counting direction."""
 
     deviation: Literal["index", "single"] = Field(
         description="index: F_p, how far each flank lies ahead; single: f_p, from the flank before to this one"
@@ -162,8 +162,8 @@ Law = Annotated[
 class PitchDeviationSpec(FlankToleranceSpec):
     """Index deviations F of the flanks, arcs at the reference circle, positive counter-clockwise about the gear's z.
 
-    Single pitch deviations are their differences from tooth to tooth and sum to zero. What all flanks of a side have
-    in common is taken out: it is tooth thickness.
+    Single pitch deviations are their differences from tooth to tooth and sum to zero. The common part of all flanks of
+    a side is removed: it is tooth thickness.
     """
 
     kind: Literal["pitch_deviation"]
