@@ -52,9 +52,7 @@ class PlacingMethod:
         """See Method."""
         return self.answers_in_pose(trials, measures, {})
 
-    def answers_in_pose(
-        self, trials: Trials, measures: Sequence[Measure], kept: dict[int, dict[str, Any]]
-    ) -> Answers:
+    def answers_in_pose(self, trials: Trials, measures: Sequence[Measure], kept: dict[int, dict[str, Any]]) -> Answers:
         """Answers in one of many poses; `kept` goes from pose to pose, see World."""
         names = [measure.name for measure in measures]
         found, decided = placing.planned_answers(self.plan, trials.deviations, names, kept)
