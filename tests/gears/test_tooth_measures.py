@@ -12,7 +12,7 @@ from scipy.optimize import brentq, minimize_scalar
 from tol3d.errors import GeometryError
 from tol3d.gears import InternalGear, SpurGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
-from tol3d.gears.tooth_measures import OverPins, Span, pins_of, span_of, spans_of
+from tol3d.gears.tooth_measures import OverPins, PinScale, Span, pins_of, span_of, spans_of
 
 GEARS = 1000
 CLOSE = 1e-9  # mm
@@ -114,6 +114,10 @@ def _against_outlines(count: int) -> None:
         assert pins.size(gear) == pytest.approx(over_pins_by_search(gear, pins.diameter), abs=CLOSE), gear
         assert span.thickness(gear, span.size(gear)) == pytest.approx(gear.tooth_thickness, abs=CLOSE)
         assert pins.thickness(gear, pins.size(gear)) == pytest.approx(gear.tooth_thickness, abs=CLOSE)
+        scale, off = PinScale(gear, pins), gear.module * np.array([-0.03, 0.0, 0.02])
+        arcs = [pins.thickness(gear, pins.size(gear) + own) - gear.tooth_thickness for own in off.tolist()]
+        assert scale.deviation(off) == pytest.approx(arcs, abs=CLOSE)
+        assert scale.measured(scale.deviation(off)) == pytest.approx(off, abs=CLOSE)
 
 
 def test_a_span_by_hand() -> None:

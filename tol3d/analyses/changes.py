@@ -142,7 +142,7 @@ def told(contributor: Contributor, draw: Draw) -> str:
     sign = {"um": "µm", "1": ""}.get(unit, unit)
     if isinstance(draw, Zoned):
         return f"zone of {draw.width / per:.5g} {sign}".strip()
-    name = type(law).__name__.lower() if isinstance(law, Distribution) else ""
+    name = law.words if isinstance(law, Distribution) else ""
     limits = law.limits if isinstance(law, Distribution) else None
     if limits is not None:
         return f"{name} {limits[0] / per:.5g} … {limits[1] / per:.5g} {sign}".strip()

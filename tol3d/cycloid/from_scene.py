@@ -169,7 +169,7 @@ def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
     """
     if own.first is None:
         return ()
-    gears = {own.first.sun: own.first.pair.pinion, own.first.planet: own.first.pair.wheel}
+    gears = {name: own.first.gear(name) for name in (own.first.sun, own.first.planet)}
     return tuple(implausible_teeth(scene, gears))
 
 
@@ -195,7 +195,7 @@ def rv_system(scene: Scene) -> RVSystem:
         PlainContributor(
             name,
             spec.kind,
-            draw_of(own, acts[name], spec.distribution.resolve(scene.files)),
+            draw_of(own, acts[name], spec, scene.files),
             *UNITS[spec.dimensions[0]],
             spec.description,
             least=0.0 if acts[name].effect in NOT_NEGATIVE else None,

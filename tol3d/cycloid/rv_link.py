@@ -224,7 +224,7 @@ def reducers_as_links(scene: Scene) -> Brought:
         spec: Any = scene.tolerances[name]
         acts = acts_of(scene, own, name, spec)
         actions[own.name].append((name, acts))
-        draw = draw_of(own, acts, spec.distribution.resolve(scene.files))
+        draw = draw_of(own, acts, spec, scene.files)
         turning = {"sun offset": spec.of, "planet offset": spec.of}.get(acts.effect)
         least = 0.0 if acts.effect in NOT_NEGATIVE else None
         contributors[name] = acting_in(scene, name, own.name, draw, turning, least)

@@ -1,6 +1,7 @@
 """Interface of every distribution of a deviation, and the checks of every spec of one in a scene."""
 
 import math
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -82,6 +83,11 @@ class Distribution(ABC):
     @abstractmethod
     def variance(self) -> float:
         """The variance [mm^2, rad^2 or K^2], in closed form."""
+
+    @property
+    def words(self) -> str:
+        """What kind of law it is, such as "truncated normal"."""
+        return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(self).__name__).lower()
 
     @property
     def limits(self) -> tuple[float, float] | None:

@@ -123,6 +123,17 @@ def drawn_law(value: Any) -> DistributionSpec:
     return law.between(lower, upper).as_drawn(_as_text(value))
 
 
+def nominal_size(written: Any) -> Quantity | None:
+    """The number in front of limits, such as 40.1 mm of 40.1 mm +0.12/0; None where there is none."""
+    text = written["limits"] if isinstance(written, dict) and "limits" in written else written
+    match = isinstance(text, str) and (SYMMETRIC.fullmatch(own := text.translate(MINUS)) or TWO.fullmatch(own))
+    if not match or match["nominal"] is None:
+        return None
+    return Quantity.parse(
+        f"{match['nominal']} {match['nominal_unit'] or match['unit'] or match.groupdict().get('one_unit')}"
+    )
+
+
 def _as_text(value: Any) -> Any:
     """Value as YAML writes it; from Python it may hold quantities and a LimitLaw."""
     if isinstance(value, dict):

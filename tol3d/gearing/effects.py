@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tol3d.gears.flank import Flank
+from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array
 
 if TYPE_CHECKING:
@@ -299,12 +300,14 @@ class Temperature(Effect):
 class ToothThickness(Effect):
     """Deviation of the tooth thickness of a gear [mm], positive is thicker; half of it on each flank.
 
-    Each flank turns out of its tooth by `turn` [rad/mm], and moves out along its normal by `offset` [mm/mm].
+    Each flank turns out of its tooth by `turn` [rad/mm], and moves out along its normal by `offset` [mm/mm]. `over` is
+    how the teeth are measured, where the scene says so.
     """
 
     part: str
     turn: float
     offset: float = 0.0
+    over: ToothMeasure | None = None
 
     def acts_in(self, mesh: "Mesh") -> bool:
         """In every mesh of the gear."""

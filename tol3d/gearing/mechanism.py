@@ -31,6 +31,8 @@ def _kinds(base: type[Entry], place: ModuleType = grammar) -> tuple[type[Any], .
     return tuple(sorted(found, key=lambda spec: str(kind_of(spec))))
 
 
+OTHER_KEYS: Final = (("balls", "write pins: over spur teeth balls of the same diameter give the same size"),)
+
 GEARING: Final = Mechanism(
     name="gearing",
     parts=_kinds(PartSpec),
@@ -39,6 +41,7 @@ GEARING: Final = Mechanism(
     measures=_kinds(MeasureEntry),
     checks=(carried_again, forms_of_two_shapes),
     warnings=(implausible_displacements, implausible_faces, bearings_off_shafts, shafts_thicker_than_hubs),
+    other_keys=OTHER_KEYS,
     options=GearStudyOptions,
     published=PublishedTrains,
     engines=("exact", "fcl"),

@@ -7,10 +7,14 @@ of the teeth of an external one. Each is exact for rigid involutes, and so is it
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
 
 from tol3d.errors import GeometryError
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.involute import inverse_involute, involute
+from tol3d.numerics.arrays import Array
 
 PIN_STEP = 0.05  # mm; pins that are proposed have diameters of so many of it
 REACH_SLACK = 1e-9  # mm; a face may touch at the very end of a flank
@@ -113,13 +117,16 @@ class OverPins:
         Raises:
             GeometryError: with the remedy.
         """
-        centre, sign = gear.base_radius / math.cos(self._angle(gear)), gear.iso_sign
+        pins = pins_of(gear)
+        advice = f"; {pins.diameter:g} mm does" if pins else ""
+        try:
+            centre, sign = gear.base_radius / math.cos(self._angle(gear)), gear.iso_sign
+        except GeometryError as error:
+            raise GeometryError(f"{error}{advice}") from None
         in_root = sign * (centre - sign * self.diameter / 2 - gear.root_radius) < 0.0
         stands_out = sign * (centre + sign * self.diameter / 2 - gear.tip_radius) > 0.0
         if _on_flank(gear, self.touches_at(gear)) and stands_out and not in_root:
             return
-        pins = pins_of(gear)
-        advice = f"; {pins.diameter:g} mm does" if pins else ""
         why = (
             f"touch at a diameter of {2 * self.touches_at(gear):.4f} mm, outside the involute ({_flank_words(gear)})"
             if not _on_flank(gear, self.touches_at(gear))
@@ -144,6 +151,51 @@ class OverPins:
 
 
 ToothMeasure = Span | OverPins
+
+
+@dataclass(frozen=True)
+class PinScale:
+    """The deviation of the arc at the reference circle by that of the size over pins: exact, both ways.
+
+    Args:
+        gear: nominal.
+        pins: over which it is measured.
+    """
+
+    gear: CylindricalGear
+    pins: OverPins
+
+    @property
+    def words(self) -> str:
+        """Of what is measured."""
+        return self.pins.words
+
+    @cached_property
+    def _nominal(self) -> float:
+        """inv alpha_K."""
+        return involute(self.pins._angle(self.gear))
+
+    @property
+    def _lever(self) -> float:
+        """Of the size by r_K/r_b [mm]."""
+        return 2 * _opposite(self.gear) * self.gear.base_radius
+
+    def deviation(self, measured: Array) -> Array:
+        """Arcs (n,) of sizes (n,), both less the nominal one [mm]; no pin lies within the base circle.
+
+        inv alpha_K = sqrt(q^2 - 1) - arctan sqrt(q^2 - 1) with q = r_K/r_b, and the arc changes by 2 r as much, inside
+        by -2 r.
+        """
+        far = 1.0 / math.cos(self.pins._angle(self.gear)) + measured / self._lever
+        roll = np.sqrt(np.maximum(far * far - 1.0, 0.0))
+        arc = self.gear.iso_sign * 2 * self.gear.reference_radius
+        return np.asarray(arc * (roll - np.arctan(roll) - self._nominal))
+
+    def measured(self, deviation: Array) -> Array:
+        """Sizes (n,) of arcs (n,), both less the nominal one [mm]."""
+        arc = self.gear.iso_sign * 2 * self.gear.reference_radius
+        angles = [inverse_involute(max(self._nominal + own / arc, 0.0)) for own in deviation.tolist()]
+        return np.asarray(self._lever * (1.0 / np.cos(angles) - 1.0 / math.cos(self.pins._angle(self.gear))))
 
 
 def spans_of(gear: CylindricalGear) -> list[Span]:

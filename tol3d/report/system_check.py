@@ -1,10 +1,9 @@
 """Tables of any scene: contributors, measures, and the effect of each contributor on each measure."""
 
 import math
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from tol3d.distributions import DeviationLaw
+from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
@@ -121,7 +120,7 @@ def _nominal(found: Mapping[str, FirstOrder]) -> float | None:
 
 def law_name(law: DeviationLaw) -> str:
     """A distribution in words, such as "truncated normal"."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(law).__name__).lower()
+    return law.words if isinstance(law, Distribution) else type(law).__name__.lower()
 
 
 def law_words(contributor: Contributor) -> str:

@@ -12,6 +12,7 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.system import RVSystem
 from tol3d.gearing.links import StatedLink
+from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
 from tol3d.report.page import Heading, PageItem, Row, Table, line
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
@@ -35,7 +36,20 @@ def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequen
 
 def _nominal(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
     formulas = stage_blocks(stages_by_formula(own, acts, contributors))
-    return (*map(line, _words(own)), _levers(own), *formulas)
+    return (*map(line, _words(own)), *_sizes(own, acts, contributors), _levers(own), *formulas)
+
+
+def _sizes(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    """What shops measure of the gears of the first stage."""
+    if own.first is None:
+        return ()
+    names = {"sun thickness": own.first.sun, "planet thickness": own.first.planet}
+    stated = (
+        (names[act.effect], Thickness(each.draw.distribution, act.factor, act.over))
+        for each in contributors
+        if (act := acts.get(each.name)) is not None and act.effect in names
+    )
+    return sizes_table({name: own.first.gear(name) for name in names.values()}, stated)
 
 
 def _words(own: RVSet) -> list[str]:

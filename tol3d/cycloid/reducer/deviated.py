@@ -8,6 +8,7 @@ import numpy as np
 
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
 from tol3d.numerics.trial_arrays import TrialArrays
@@ -27,10 +28,12 @@ class Acts:
 
     Args:
         factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
+        over: how teeth are measured, where the scene says so.
     """
 
     effect: Effect
     factor: float = 1.0
+    over: ToothMeasure | None = None
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,8 @@ from tol3d.cycloid.grammar.tolerances import (
 )
 from tol3d.cycloid.reducer.deviated import Acts, Effect
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.distributions import Distribution
+from tol3d.files import Files
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
 from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, ToothThicknessSpec
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
@@ -82,11 +83,15 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | E
             raise scene.refuse(("tolerances", name, "direction"), words)
         return Acts("sun offset" if of_sun else "planet offset")
     counted = 1 / math.cos(first.pair.pinion.pressure_angle) if spec.is_normal else 1.0
-    return Acts("sun thickness" if of_sun else "planet thickness", counted)
+    return Acts("sun thickness" if of_sun else "planet thickness", counted, spec.over)
 
 
-def draw_of(own: RVSet, acts: Acts, law: Distribution) -> Draw:
-    """Draw of the components of a contributor."""
+def draw_of(own: RVSet, acts: Acts, spec: Any, files: Files) -> Draw:
+    """Draw of the components of a tolerance; `files` holds what its law reads."""
+    if isinstance(spec, GearToleranceSpec) and own.first is not None:
+        law = spec.law_on(own.first.gear(spec.of), files)
+    else:
+        law = spec.distribution.resolve(files)
     discs = _numbered("disc", own.discs)
     pins, cranks = _numbered("pin", own.profile.pins), _numbered("crank", own.cranks)
     names: dict[Effect, tuple[str, ...]] = {

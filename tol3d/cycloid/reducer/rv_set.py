@@ -19,7 +19,7 @@ import numpy as np
 from tol3d.cycloid.exact.contact import ContactStage
 from tol3d.cycloid.first_order.linear import LinearStage
 from tol3d.cycloid.model.profile import DiscProfile
-from tol3d.gears import SpurPair
+from tol3d.gears import SpurGear, SpurPair
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
 
@@ -41,6 +41,10 @@ class FirstStage:
     def teeth(self) -> tuple[int, int]:
         """z1 of the sun and z2 of a planet."""
         return self.pair.pinion.teeth, self.pair.wheel.teeth
+
+    def gear(self, name: str) -> SpurGear:
+        """Sun or planet, nominal."""
+        return self.pair.pinion if name == self.sun else self.pair.wheel
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,12 @@ from dataclasses import replace
 from typing import Final
 
 import tol3d.gearing.model.train_measures  # noqa: F401  (registers its kinds)
+from tol3d.distributions.drawn import nominal_size
 from tol3d.errors import GeometryError, SceneError
 from tol3d.gearing.grammar.measures import GearStudyOptions
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import GearSpec, HousingSpec
-from tol3d.gearing.grammar.tolerances.gears import SpanOverSpec, ToothThicknessSpec
+from tol3d.gearing.grammar.tolerances.gears import MeasuredOverSpec, ToothThicknessSpec
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.brought import NOTHING, Brought, brought_into, with_shared_shafts
 from tol3d.gearing.model.layout import Layout, layout_of
@@ -34,12 +35,13 @@ from tol3d.gearing.model.trains import (
     trains_of,
 )
 from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
-from tol3d.gears.tooth_measures import Span
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, farthest, warned
 from tol3d.scene.place import KeyPath
 
 THICKNESS: Final = Implausible(0.1, "write how much thicker than nominal the tooth is, and look at the unit")
+
+SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size over pins to one hundredth at the coarsest
 
 
 def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
@@ -55,8 +57,8 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
     for name, spec in scene.of(ToothThicknessSpec).items():
         if (gear := gears.get(spec.of)) is None:
             continue
-        refuse_other_span(scene, name, spec, gear)
-        law = spec.distribution.resolve(scene.files)
+        refuse_other_measure(scene, name, spec, gear)
+        law = spec.law_on(gear, scene.files)
         arc = gear.thickness_radius / gear.section_arm if spec.is_normal else 1.0
         path: KeyPath = ("tolerances", name, "distribution")
         sign = spec.sign_in(ring=isinstance(gear, InternalGear))
@@ -65,25 +67,44 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
             words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
             words += f"{gear.section_tip:.4g} mm, where their flanks meet at the tip, got {thinnest:.4g} mm"
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
+        if sentence := _other_nominal(spec, gear):
+            yield warned(path, sentence)
         if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, farthest(law) * arc):
             yield warned(path, sentence)
 
 
-def refuse_other_span(scene: Scene, name: str, spec: ToothThicknessSpec, gear: Gear) -> None:
-    """Refuse a span of a gear that has none, or whose faces touch outside the flanks.
+def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear: Gear) -> None:
+    """Refuse a span or pins of a gear that has none, or that touch outside the flanks, also with its limits.
 
     Raises:
-        SceneError: with the numbers of teeth that would do.
+        SceneError: with what would do.
     """
-    if not isinstance(spec.measured, SpanOverSpec):
+    if not isinstance(spec.measured, MeasuredOverSpec):
         return
     path: KeyPath = ("tolerances", name, "measured")
     if not isinstance(gear, SpurGear | InternalGear):
-        raise scene.refuse(path, f"expected arc or normal, got a span: {spec.of!r} is a bevel gear")
+        word = "a span" if spec.measured.pins is None else "pins"
+        raise scene.refuse(path, f"expected arc or normal, got {word}: {spec.of!r} is a bevel gear")
     try:
-        Span(spec.measured.span).require_reach(gear)
+        measure = spec.measured.measure
+        measure.require_reach(gear)
+        for size in spec.distribution.resolve(scene.files).extremes:
+            arc = measure.thickness(gear, measure.size(gear) + size) - gear.tooth_thickness
+            measure.require_reach(replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc))
     except GeometryError as error:
-        raise scene.refuse((*path, "span"), str(error)) from None
+        raise scene.refuse((*path, "span" if spec.measured.pins is None else "pins"), str(error)) from None
+
+
+def _other_nominal(spec: ToothThicknessSpec, gear: Gear) -> str:
+    """A nominal size in front of limits that is not the gear's; "" where there is none, or nothing else is measured."""
+    stated = None if spec.over is None else nominal_size(spec.distribution.drawn)
+    if spec.over is None or stated is None or not isinstance(gear, SpurGear | InternalGear):
+        return ""
+    size = spec.over.size(gear)
+    if abs(size - stated.internal) < SAME_NOMINAL:
+        return ""
+    words = f"expected a nominal {spec.over.words} of {size:.4f} mm, from which the limits of {spec.of!r} count"
+    return f"{words}, got {stated}; look at teeth, module and profile shift"
 
 
 def model_from_scene(scene: Scene) -> Model:

@@ -7,7 +7,7 @@ from tol3d.errors import GeometryError
 from tol3d.gearing.effects import NOTHING, Temperature
 from tol3d.gearing.grammar.moves import meshes_of
 from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, by_scale
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.shafts import Carried, Mesh
@@ -66,7 +66,7 @@ class Nominal:
                 f"expected a shaft with a gear on it, or a bearing of one, got {shaft.name!r}: nothing that meshes "
                 "moves with it",
             )
-        law = spec.distribution.resolve(self.scene.files)
+        law = by_scale(spec.distribution.resolve(self.scene.files), meaning.scale)
         return Contributor(
             name=name,
             kind=spec.kind,

@@ -1,52 +1,91 @@
 """Tooth thickness of every gear as a drawing states it: arc, span and size over pins, nominal and at its limits."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
+from tol3d.distributions import DeviationLaw
 from tol3d.errors import GeometryError
 from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
 from tol3d.gears import Gear, InternalGear, SpurGear
-from tol3d.gears.tooth_measures import ToothMeasure, pins_of, span_of
+from tol3d.gears.tooth_measures import Span, ToothMeasure, pins_of, span_of
 from tol3d.report.number import NOTHING, value_cell
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 
 MEANING = (
-    "span and pins are chosen to touch near the reference circle shifted by x m; their limits are those of the tooth "
-    "thickness (the sum of its tolerances), not of the measuring; of an internal gear over spaces and between pins"
+    "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "
+    "are those of the tooth thickness (the sum of its tolerances), not of the measuring; of an internal gear over "
+    "spaces and between pins"
 )
 
 
+@dataclass(frozen=True)
+class Thickness:
+    """A tolerance of a gear's thickness.
+
+    Args:
+        law: of its deviation.
+        arc: what that counts for at the reference circle.
+        over: how the teeth are measured, where the scene says so.
+    """
+
+    law: DeviationLaw
+    arc: float = 1.0
+    over: ToothMeasure | None = None
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Of the arc [mm]."""
+        low, high = sorted((self.arc * self.law.low, self.arc * self.law.high))
+        return low, high
+
+
 def drawing_sizes(model: Model) -> list[PageItem]:
-    """A table of the shop dimensions of every gear [mm]; nothing without gears."""
-    rows = [row for part in model.gears for row in _rows(model, part.name, part.gear)]
+    """A table of what shops measure of every gear [mm]; nothing where there are no gears."""
+    return sizes_table({own.name: own.gear for own in model.gears}, _thicknesses(model))
+
+
+def _thicknesses(model: Model) -> Iterator[tuple[str, Thickness]]:
+    for contributor in model.contributors:
+        effect = contributor.effect
+        if isinstance(effect, ToothThickness):
+            gear = model.gear(effect.part).gear
+            arc = 2 * (effect.turn * gear.thickness_radius + effect.offset * gear.thickness_radius / gear.section_arm)
+            yield effect.part, Thickness(contributor.distribution, arc, effect.over)
+
+
+def sizes_table(gears: Mapping[str, Gear], tolerances: Iterable[tuple[str, Thickness]]) -> list[PageItem]:
+    """A table of what shops measure of gears [mm].
+
+    Args:
+        gears: nominal, by name.
+        tolerances: of their thickness, each with the name of its gear.
+    """
+    stated = list(tolerances)
+    rows = [row for name, gear in gears.items() for row in _rows(name, gear, [own for of, own in stated if of == name])]
     if not rows:
         return []
     headings = [Heading("size", words=True), *map(Heading, ("nominal", "thinnest", "thickest"))]
     return [*titled("tooth thickness on a drawing", Table("[mm]", headings, rows, repeated=1)), note(MEANING)]
 
 
-def thickness_limits(model: Model, name: str, gear: Gear) -> tuple[float, float]:
-    """The least and the largest deviation of a gear's arc at the reference circle [mm]; infinite without limits."""
-    low = high = 0.0
-    for contributor in model.contributors:
-        effect = contributor.effect
-        if isinstance(effect, ToothThickness) and effect.part == name:
-            arc = 2 * (effect.turn * gear.thickness_radius + effect.offset * gear.thickness_radius / gear.section_arm)
-            ends = sorted((arc * contributor.distribution.low, arc * contributor.distribution.high))
-            low, high = low + ends[0], high + ends[1]
-    return low, high
-
-
-def _rows(model: Model, name: str, gear: Gear) -> Iterator[Row]:
-    deviations = (0.0, *thickness_limits(model, name, gear))
+def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[Row]:
+    limits = [own.limits for own in stated]
+    deviations = (0.0, sum(low for low, _ in limits), sum(high for _, high in limits))
     words = "arc s" if isinstance(gear, SpurGear | InternalGear) else "arc, mean section"
     yield _row(name, words, [gear.section_thickness + own for own in deviations])
     if isinstance(gear, SpurGear | InternalGear):
-        for measure in (span_of(gear), pins_of(gear)):
-            if measure is not None:
-                yield _row("", _words(measure, gear), [_size(measure, gear, own) for own in deviations])
+        for measure in _measures(gear, [own.over for own in stated if own.over is not None]):
+            yield _row("", _words(measure, gear), [_size(measure, gear, own) for own in deviations])
+
+
+def _measures(gear: SpurGear | InternalGear, stated: Sequence[ToothMeasure]) -> Iterable[ToothMeasure]:
+    """Spans, then pins: those of the scene, or what would do."""
+    spans = [own for own in stated if isinstance(own, Span)]
+    pins = [own for own in stated if not isinstance(own, Span)]
+    found = (*(spans or [span_of(gear)]), *(pins or [pins_of(gear)]))
+    return dict.fromkeys(own for own in found if own is not None)
 
 
 def _words(measure: ToothMeasure, gear: SpurGear | InternalGear) -> str:

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.trial_arrays import TrialArrays
 from tol3d.planetary.model.planetary_set import PlanetarySet
@@ -23,12 +24,14 @@ class Acts:
         gear: the gear's name; "" of pins.
         direction: of pins, "radial" or "tangential" where the deviation is one of them alone.
         factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
+        over: how teeth are measured, where the scene says so.
     """
 
     effect: Effect
     gear: str = ""
     direction: Literal["radial", "tangential", ""] = ""
     factor: float = 1.0
+    over: ToothMeasure | None = None
 
 
 @dataclass(frozen=True)

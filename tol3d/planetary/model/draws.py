@@ -13,7 +13,9 @@ from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
 from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
+from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.planetary.model.deviated import Acts
@@ -135,7 +137,8 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
         part = scene.parts[spec.of]
         assert isinstance(part, GearSpec)
         counted = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
-        return Acts("thickness", spec.of, factor=spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted)
+        factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted
+        return Acts("thickness", spec.of, factor=factor, over=spec.over)
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
 
 
@@ -158,7 +161,13 @@ def planet_names(own: PlanetarySet) -> tuple[str, ...]:
 
 
 def _of_distribution(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
-    law, names = spec.distribution.resolve(scene.files), planet_names(own)
+    names = planet_names(own)
+    of_a_gear = isinstance(spec, GearToleranceSpec)
+    law = (
+        spec.law_on(cylindrical_gear(scene, spec.of), scene.files)
+        if of_a_gear
+        else spec.distribution.resolve(scene.files)
+    )
     of_planets = isinstance(spec, PlanetPinSpec) or spec.of in {gear.name for gear in own.gears}
     if isinstance(spec, EccentricitySpec):
         direction = spec.direction.at.internal if isinstance(spec.direction, At) else None

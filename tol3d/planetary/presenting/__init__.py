@@ -54,7 +54,7 @@ class PlanetaryPresenter(GearPresenter):
 
     def link_blocks(self, link: "StatedLink", contributors: "Sequence[Contributor]") -> "Sequence[PageItem]":
         """Ratio, meshes and efficiencies of a set; see ShowsLinks."""
-        return _lazily("tables").link_blocks(link)  # type: ignore[no-any-return]
+        return _lazily("tables").link_blocks(link, contributors)  # type: ignore[no-any-return]
 
     def link_sections(self, summary: RunSummary) -> "Sequence[PageItem]":
         """Efficiencies of sets whose friction is given, torques of springs that are; see ShowsLinks."""

@@ -4,6 +4,9 @@ import math
 from collections.abc import Mapping, Sequence
 
 from tol3d.gearing.links import StatedLink
+from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
+from tol3d.planetary.exact.shown import Made
+from tol3d.planetary.model.deviated import Acts
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.presenting.efficiencies import set_blocks
 from tol3d.planetary.sections import set_sections
@@ -13,19 +16,31 @@ from tol3d.planetary.system import PlanetarySystem
 from tol3d.report.page import Heading, PageItem, Row, Table, line
 from tol3d.report.system_check import system_blocks
 from tol3d.study.simulation import Simulation
+from tol3d.system.contributor import Contributor
 
 
 def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Ratio and meshes of the set, then the items of any system."""
     system = simulation.system
     assert isinstance(system, PlanetarySystem)
-    return (*_nominal(system.own, system.summaries), *system_blocks(simulation))
+    sizes = _sizes(system.made, system.acts, system.contributors)
+    return (*_nominal(system.own, system.summaries), *sizes, *system_blocks(simulation))
 
 
-def link_blocks(link: StatedLink) -> Sequence[PageItem]:
-    """Ratio and meshes of a set in a train."""
+def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    """Ratio and meshes of a set in a train, and what shops measure of its gears."""
     assert isinstance(link, SetLink)
-    return _nominal(link.own, set_sections(link.own, link.friction))
+    sizes = _sizes(link.made, link.acts, contributors)
+    return (*_nominal(link.own, set_sections(link.own, link.friction)), *sizes)
+
+
+def _sizes(made: Made, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
+    stated = (
+        (own.gear, Thickness(each.draw.distribution, own.factor, own.over))
+        for each in contributors
+        if (own := acts.get(each.name)) is not None and own.effect == "thickness"
+    )
+    return sizes_table(made, stated)
 
 
 def _nominal(own: PlanetarySet, sections: Mapping[str, PlanetarySetSummary]) -> Sequence[PageItem]:

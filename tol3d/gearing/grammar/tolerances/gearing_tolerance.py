@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.distributions import Distribution
+from tol3d.distributions.derived import Derived, Scale
+from tol3d.files import Files
 from tol3d.gearing.effects import Effect, LinkDeviation, Together
 from tol3d.gearing.grammar.moves import LinkSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import GearSpec
+from tol3d.gears import Gear
 from tol3d.scene.direction import At
 from tol3d.scene.entry import Entry
 from tol3d.scene.move import MoveSpec
@@ -33,12 +37,19 @@ class Meaning:
         planar: True if the deviation is a length in a direction across an axis.
         azimuth: that direction [rad]; None for a random one.
         least: smallest physical deviation [mm, rad or K], such as 0 of a clearance, if there is one.
+        scale: from what the scene states to the deviation; None where that is the deviation.
     """
 
     effect: Effect
     planar: bool = False
     azimuth: float | None = None
     least: float | None = None
+    scale: Scale | None = None
+
+
+def by_scale(stated: Distribution, scale: Scale | None) -> Distribution:
+    """The law of a deviation by that of what the scene states."""
+    return stated if scale is None else Derived(stated, scale)
 
 
 class GearingToleranceSpec(ToleranceSpec):
@@ -78,6 +89,14 @@ class GearToleranceSpec(GearingToleranceSpec):
     def references(self) -> tuple[Reference, ...]:
         """The gear, or what carries it."""
         return (Reference(("of",), self.of, self.applies_to),)
+
+    def scale_of(self, gear: Gear) -> Scale | None:
+        """From what the scene states to the deviation of a gear; None where that is the deviation."""
+        return None
+
+    def law_on(self, gear: Gear, files: Files) -> Distribution:
+        """The law of the deviation of a gear."""
+        return by_scale(self.distribution.resolve(files), self.scale_of(gear))
 
 
 class MeshToleranceSpec(GearingToleranceSpec):

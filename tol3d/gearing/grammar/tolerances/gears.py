@@ -1,16 +1,20 @@
 """Tolerances of a gear as a whole, and of its seat on the shaft."""
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
-from pydantic import Field, field_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
+from tol3d.distributions.derived import Scale
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction
-from tol3d.gears import InternalGear
+from tol3d.gears import Gear, InternalGear
+from tol3d.gears.cylindrical_gear import CylindricalGear
+from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
+from tol3d.scene.part import Length
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 
@@ -111,10 +115,36 @@ class RunOutSpec(GearToleranceSpec):
         return in_direction(offsets, self.direction)
 
 
-class SpanOverSpec(Strict):
-    """`{span: 4}`: a span over so many teeth of a spur gear, of a ring over so many spaces."""
+class MeasuredOverSpec(Strict):
+    """`{span: 4}` or `{pins: 3.5 mm}`: how the teeth of a spur gear or a ring are measured."""
 
-    span: int = Field(ge=1, description="number of teeth, of a ring of spaces")
+    span: int | None = Field(default=None, ge=1, description="over so many teeth, of a ring over so many spaces")
+    pins: Length | None = Field(
+        default=None, description="diameter of two pins or balls, over which it is measured, in a ring between them"
+    )
+
+    @model_validator(mode="after")
+    def _refuse_other_than_one(self) -> Self:
+        given = [name for name in ("span", "pins") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise refused("", "either a span such as {span: 4}, or {pins: 3.5 mm}", " and ".join(given) or "neither")
+        return self
+
+    @property
+    def measure(self) -> ToothMeasure:
+        """What it is on any gear."""
+        return Span(self.span or 0) if self.pins is None else OverPins(self.pins.internal)
+
+
+def _measured_shape(value: object) -> str:
+    """The tag of how a thickness is measured, for pydantic's Discriminator."""
+    return "word" if isinstance(value, str) else "over"
+
+
+Measured = Annotated[
+    Annotated[Literal["arc", "normal"], Tag("word")] | Annotated[MeasuredOverSpec, Tag("over")],
+    Discriminator(_measured_shape),
+]
 
 
 class ToothThicknessSpec(GearToleranceSpec):
@@ -122,14 +152,15 @@ class ToothThicknessSpec(GearToleranceSpec):
 
     `arc` counts it on the reference circle, of a bevel gear in the middle of the face; `normal` along the normals
     of the flanks, which is 1/cos(alpha) as much; `{span: 4}` by the span over so many teeth, which grows by what the
-    tooth grows along its normals, and that of a ring, over spaces, shrinks by it. A bevel tooth is thinned in
+    tooth grows along its normals, and that of a ring, over spaces, shrinks by it; `{pins: 3.5 mm}` by the size over
+    two pins or balls, of which the arc of each trial is the exact inverse. A bevel tooth is thinned in
     proportion along its face (the flank is turned), or by the same normal offset everywhere; on a spur gear that is
     the same.
     """
 
     kind: Literal["tooth_thickness"]
-    measured: Literal["arc", "normal"] | SpanOverSpec = Field(
-        default="arc", description="along the reference circle or the normals, or by the span over teeth"
+    measured: Measured = Field(
+        default="arc", description="along the reference circle or the normals, by the span over teeth, or over pins"
     )
     along_face: Literal["proportional", "constant"] = Field(
         default="proportional", description="how a bevel tooth's deviation goes along the face"
@@ -139,7 +170,7 @@ class ToothThicknessSpec(GearToleranceSpec):
     @classmethod
     def _refuse_other_words(cls, value: object) -> object:
         if isinstance(value, str) and value not in ("arc", "normal"):
-            raise refused("", "arc, normal, or a span such as {span: 4}", value)
+            raise refused("", "arc, normal, a span such as {span: 4}, or {pins: 3.5 mm}", value)
         return value
 
     def meaning(self, nominal: "Nominal") -> Meaning:
@@ -148,16 +179,26 @@ class ToothThicknessSpec(GearToleranceSpec):
         half = 0.5 * self.sign_in(ring=isinstance(gear, InternalGear))
         if self.along_face == "constant":
             cosine = gear.section_arm / gear.thickness_radius
-            return Meaning(ToothThickness(self.of, turn=0.0, offset=half if self.is_normal else half * cosine))
-        return Meaning(
-            ToothThickness(self.of, turn=half / (gear.section_arm if self.is_normal else gear.thickness_radius))
-        )
+            turn, offset = 0.0, half if self.is_normal else half * cosine
+        else:
+            turn, offset = half / (gear.section_arm if self.is_normal else gear.thickness_radius), 0.0
+        return Meaning(ToothThickness(self.of, turn, offset, self.over), scale=self.scale_of(gear))
+
+    @property
+    def over(self) -> ToothMeasure | None:
+        """What is measured, where that is no thickness."""
+        return self.measured.measure if isinstance(self.measured, MeasuredOverSpec) else None
 
     @property
     def is_normal(self) -> bool:
         """True if its size is that along the normals of the flanks."""
-        return self.measured != "arc"
+        return self.measured == "normal" or isinstance(self.over, Span)
 
     def sign_in(self, *, ring: bool) -> float:
         """-1 if the measured quantity grows as the teeth get thinner: the span of a ring, over its spaces."""
-        return -1.0 if ring and isinstance(self.measured, SpanOverSpec) else 1.0
+        return -1.0 if ring and isinstance(self.over, Span) else 1.0
+
+    def scale_of(self, gear: Gear) -> Scale | None:
+        """From what is measured to the arc, where the two are not in proportion."""
+        over = self.over
+        return PinScale(gear, over) if isinstance(over, OverPins) and isinstance(gear, CylindricalGear) else None
