@@ -30,6 +30,22 @@ class Scale(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class Proportion:
+    """A deviation in proportion to what is measured."""
+
+    factor: float
+    words: str
+
+    def deviation(self, measured: Array) -> Array:
+        """See Scale."""
+        return self.factor * measured
+
+    def measured(self, deviation: Array) -> Array:
+        """See Scale."""
+        return deviation / self.factor
+
+
 @dataclass(frozen=True, eq=False)
 class Derived(Distribution):
     """The law of a deviation of which another one is measured.

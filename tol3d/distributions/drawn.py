@@ -15,13 +15,13 @@ from pydantic import Field, TypeAdapter, ValidationError
 from tol3d.distributions.base import DistributionSpec
 from tol3d.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
 from tol3d.errors import InputError
-from tol3d.standards import iso_286, iso_2768
+from tol3d.standards import iso_286, iso_1328_2, iso_2768
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Positive, Quantity, shown
 
 DEFAULT_LAW: Final = "default_law"
 """The key of a scene that names it."""
-KEYS: Final = ("fit", "general", "limits")
+KEYS: Final = ("fit", "general", "iso_1328_2", "iso_17485", "limits")
 """Keys, one of which states the form of limits, where no kind of law is stated."""
 PLUS_MINUS: Final = ("±", "+-", "+/-")
 MINUS: Final = str.maketrans({"−": "-"})  # as drawings are copied
@@ -55,6 +55,15 @@ class GeneralSpec(Strict):
     law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
 
 
+class GradeSpec(Strict):
+    """`{iso_1328_2: F_r 7, module: 2 mm, of: 48 mm}`: from nothing to what a grade of ISO 1328-2:1997 allows."""
+
+    iso_1328_2: str = Field(description="F_r, F_i'' or f_i'' and the grade, such as F_r 7")
+    module: Annotated[Quantity, Of("length"), Positive()] = Field(description="of what has the grade")
+    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="reference diameter")
+    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+
+
 class LimitsSpec(Strict):
     """`{limits: ±0.1 mm, law: {kind: uniform}}`: limits with a law of their own."""
 
@@ -63,12 +72,14 @@ class LimitsSpec(Strict):
 
 
 DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(
-    FitSpec | GeneralSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
+    FitSpec | GeneralSpec | GradeSpec | LimitsSpec | Annotated[str, Field(examples=["±0.1 mm"])] | list[str]
 )
 """For the JSON Schema of what may be written."""
-_SPECS: Final[dict[str, type[FitSpec | GeneralSpec | LimitsSpec]]] = {
+Stated = FitSpec | GeneralSpec | GradeSpec | LimitsSpec
+_SPECS: Final[dict[str, type[Stated]]] = {
     "fit": FitSpec,
     "general": GeneralSpec,
+    "iso_1328_2": GradeSpec,
     "limits": LimitsSpec,
 }
 _LAW: Final[TypeAdapter[Any]] = TypeAdapter(StatedLimitLaw)
@@ -112,6 +123,11 @@ def drawn_law(value: Any) -> DistributionSpec:
     law = _default.get()
     if isinstance(value, dict):
         key = next(key for key in KEYS if key in value)
+        if key not in _SPECS:
+            words = "limits, as in 0/+30 um, for the formulae of ISO 17485 (f_pt, F_p and F_r by the"
+            raise refused(
+                key, f"{words} tolerance diameter and the mean normal module) are not in tol3d", shown(value[key])
+            )
         stated = _SPECS[key].model_validate(value)
         law = stated.law or law
         lower, upper = _limits(stated)
@@ -145,14 +161,20 @@ def _as_text(value: Any) -> Any:
     return str(value) if isinstance(value, Quantity) else value
 
 
-def _limits(stated: FitSpec | GeneralSpec | LimitsSpec) -> tuple[Quantity, Quantity]:
+def _limits(stated: Stated) -> tuple[Quantity, Quantity]:
     if isinstance(stated, LimitsSpec):
         return _written(stated.limits, "limits")
-    field = "fit" if isinstance(stated, FitSpec) else "general"
+    field = next(key for key, own in _SPECS.items() if isinstance(stated, own))
     try:
         if isinstance(stated, FitSpec):
             lower, upper = iso_286.limits(stated.fit, stated.of.internal)
             return Quantity(float(lower), "um"), Quantity(float(upper), "um")
+        if isinstance(stated, GradeSpec):
+            word, _, grade = stated.iso_1328_2.strip().replace("″", "''").replace('"', "''").rpartition(" ")
+            if not grade.isdecimal():
+                raise InputError(f"expected a deviation and its grade, such as F_r 7, got {stated.iso_1328_2!r}")
+            most = iso_1328_2.tolerance(word.strip(), int(grade), stated.module.internal, stated.of.internal)
+            return Quantity(0.0, "um"), Quantity(most, "um")
         size = iso_2768.linear(stated.general, stated.of.internal)
         return Quantity(-size, "mm"), Quantity(size, "mm")
     except InputError as error:

@@ -31,6 +31,25 @@ def _kinds(base: type[Entry], place: ModuleType = grammar) -> tuple[type[Any], .
     return tuple(sorted(found, key=lambda spec: str(kind_of(spec))))
 
 
+SINGLE: Final = "write pitch_deviation with limits: {single: …, cumulative: …} or {iso_class: …}"
+RUN_OUT: Final = "write tooth_run_out: the run-out of teeth; run_out is of a shaft"
+COMPOSITE: Final = "write tooth_run_out of F_i'' - f_i'', and beside it tooth_to_tooth with limits: {size: f_i''}"
+DISTANCE: Final = "write centre_distance, with {fit: js7, of: …} for DIN 3964"
+SPAN, PINS = (f"write tooth_thickness with measured: {{{word}: …}}" for word in ("span", "pins"))
+OTHER_KINDS: Final = (
+    *((word, RUN_OUT) for word in ("F_r", "Fr", "gear_run_out", "radial_run_out")),
+    *((word, COMPOSITE) for word in ("F_i''", "F_i″", "Fi''", "radial_composite", "radial_composite_deviation")),
+    *((word, "write tooth_to_tooth with limits: {size: …}") for word in ("f_i''", "f_i″", "fi''")),
+    *((word, DISTANCE) for word in ("f_a", "A_a", "centre_distance_class")),
+    *((word, SPAN) for word in ("W_k", "base_tangent_length", "span")),
+    *((word, PINS) for word in ("M_dK", "over_pins", "over_balls")),
+    *((word, SINGLE) for word in ("f_p", "f_pt", "F_p")),
+    ("f_Ha", "write profile_slope"),
+    ("f_Hb", "write helix_slope"),
+    ("f_fa", "write profile_form"),
+    ("f_sigma_delta", "write axis_in_plane"),
+    ("f_sigma_beta", "write axis_out_of_plane"),
+)
 OTHER_KEYS: Final = (("balls", "write pins: over spur teeth balls of the same diameter give the same size"),)
 
 GEARING: Final = Mechanism(
@@ -41,6 +60,7 @@ GEARING: Final = Mechanism(
     measures=_kinds(MeasureEntry),
     checks=(carried_again, forms_of_two_shapes),
     warnings=(implausible_displacements, implausible_faces, bearings_off_shafts, shafts_thicker_than_hubs),
+    other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,
     options=GearStudyOptions,
     published=PublishedTrains,

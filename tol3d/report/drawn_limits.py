@@ -42,6 +42,8 @@ def _told(written: Any) -> str:
     if isinstance(written, dict):
         if "limits" in written:
             return _told(written["limits"])
+        if "iso_1328_2" in written:
+            return f"ISO 1328-2 {written['iso_1328_2']} of m {written['module']}, d {written['of']}"
         word = written["fit"] if "fit" in written else f"ISO 2768-{written['general']}"
         return f"{word} of {written['of']}"
     return " to ".join(str(own) for own in written) if isinstance(written, list) else str(written)

@@ -1,9 +1,9 @@
 """ISO 1328-2:1997: run-out and radial composite deviations of cylindrical gears, by accuracy grade.
 
 The standard was not at hand: its formulae of grade 5 are as a published calculator states them, and F_i'' = F_r + f_i''
-holds between them term by term. m and d in them are the geometric means of the ranges that module and reference diameter
-lie in; a grade more is sqrt(2) as much. Values are rounded to whole micrometres, up to 10 um to halves. The edition of
-2020 has other classes (R30 to R50), whose formulae are not here.
+holds between them term by term. m and d in them are the geometric means of the ranges that module and reference
+diameter lie in; a grade more is sqrt(2) as much. Values are rounded to whole micrometres, up to 10 um to halves. The
+edition of 2020 has other classes (R30 to R50), whose formulae are not here.
 """
 
 import math
@@ -55,8 +55,8 @@ def tolerance(deviation: str, grade: int, module: float, diameter: float) -> flo
     if kind is None:
         raise InputError(f"expected {', '.join(KINDS)} of ISO 1328-2, got {deviation!r}")
     if grade not in kind.grades:
-        words = f"expected a grade of {deviation} from {kind.grades[0]} to {kind.grades[-1]} of ISO 1328-2:1997, got {grade}"
-        raise InputError(f"{words} (R classes of 2020 are not in tol3d: write the limit)")
+        words = f"expected a grade of {deviation} from {kind.grades[0]} to {kind.grades[-1]} of ISO 1328-2:1997"
+        raise InputError(f"{words}, got {grade} (R classes of 2020 are not in tol3d: write the limit)")
     means = []
     for word, value, ends in (("module", module, kind.modules), ("diameter", diameter, kind.diameters)):
         if not ends[0] <= value <= ends[-1]:

@@ -22,8 +22,9 @@ from tol3d.cycloid.grammar.tolerances import (
 from tol3d.cycloid.reducer.deviated import Acts, Effect
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.files import Files
+from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
-from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, ToothThicknessSpec
+from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
@@ -42,7 +43,7 @@ OF_THE_STAGE: dict[type, Effect] = {
     CrankPhaseSpec: "crank phase",
     CarrierBearingSpec: "carrier offset",
 }
-OF_GEARS = (ToothThicknessSpec, EccentricitySpec)
+OF_GEARS = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec)
 OF_A_CHOICE = (PinPositionSpec, CrankEccentricitySpec, CarrierHoleSpec, BearingPlaySpec)
 
 
@@ -73,11 +74,11 @@ def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
     raise scene.refuse(("tolerances", name, "kind"), sentence)
 
 
-def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | EccentricitySpec) -> Acts:
+def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | TeethOffAxisSpec) -> Acts:
     first = own.first
     assert first is not None  # other gears take part in no move
     of_sun = spec.of == first.sun
-    if isinstance(spec, EccentricitySpec):
+    if isinstance(spec, TeethOffAxisSpec):
         if isinstance(spec.direction, At):
             words = "expected random: how a gear's teeth are turned on its shaft is not stated, got {at: ...}"
             raise scene.refuse(("tolerances", name, "direction"), words)

@@ -82,9 +82,9 @@ def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[Row]:
 
 def _measures(gear: SpurGear | InternalGear, stated: Sequence[ToothMeasure]) -> Iterable[ToothMeasure]:
     """Spans, then pins: those of the scene, or what would do."""
-    spans = [own for own in stated if isinstance(own, Span)]
-    pins = [own for own in stated if not isinstance(own, Span)]
-    found = (*(spans or [span_of(gear)]), *(pins or [pins_of(gear)]))
+    spans: list[ToothMeasure | None] = [own for own in stated if isinstance(own, Span)]
+    pins: list[ToothMeasure | None] = [own for own in stated if not isinstance(own, Span)]
+    found = [*(spans or [span_of(gear)]), *(pins or [pins_of(gear)])]
     return dict.fromkeys(own for own in found if own is not None)
 
 

@@ -13,8 +13,9 @@ from tol3d.assembly.zones.catalogue import axis_section
 from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
+from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
-from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
+from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
@@ -105,7 +106,7 @@ class EachJudgedZone(EachZone):
         return np.asarray(np.any(outside, axis=0))
 
 
-KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
+KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingSpec, PlanetPinSpec, BorePositionSpec)
 """Tolerances of planetary sets; those of gears are shared with trains."""
 
 
@@ -169,7 +170,7 @@ def _of_distribution(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
         else spec.distribution.resolve(scene.files)
     )
     of_planets = isinstance(spec, PlanetPinSpec) or spec.of in {gear.name for gear in own.gears}
-    if isinstance(spec, EccentricitySpec):
+    if isinstance(spec, TeethOffAxisSpec):
         direction = spec.direction.at.internal if isinstance(spec.direction, At) else None
         return EachPlanar(law, names, direction) if of_planets else Planar(law, direction)
     if isinstance(spec, PlanetPinSpec) and spec.direction == "random":

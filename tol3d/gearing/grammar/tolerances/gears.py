@@ -83,10 +83,9 @@ class ClockingSpec(GearToleranceSpec):
         return "arcmin"
 
 
-class EccentricitySpec(GearToleranceSpec):
-    """e, a length: the teeth's centre lies off the rotation axis by e (cos phi, sin phi) and turns with the gear."""
+class TeethOffAxisSpec(GearToleranceSpec):
+    """Teeth whose centre lies off the rotation axis and turns with the gear."""
 
-    kind: Literal["eccentricity"]
     direction: RandomOrFixed = Field(
         default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
     )
@@ -94,6 +93,12 @@ class EccentricitySpec(GearToleranceSpec):
     def meaning(self, nominal: "Nominal") -> Meaning:
         """The gear's centre lies off its axis."""
         return in_direction([TurningOffset(self.of)], self.direction)
+
+
+class EccentricitySpec(TeethOffAxisSpec):
+    """e, a length: the teeth's centre lies off the rotation axis by e (cos phi, sin phi) and turns with the gear."""
+
+    kind: Literal["eccentricity"]
 
 
 class RunOutSpec(GearToleranceSpec):
