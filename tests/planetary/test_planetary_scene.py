@@ -93,7 +93,8 @@ REFUSED = {
     ),
     "another tolerance": (
         ("{kind: eccentricity, of: sun,", "{kind: run_out, of: sun,"),
-        "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, tooth_run_out, clocking, "
+        "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, "
+        "tooth_run_out, clocking, "
         "planet_pin, bore_position, got run_out",
     ),
     "single flanks": (
@@ -102,7 +103,8 @@ REFUSED = {
             "  sun pitch: {kind: pitch_deviation, of: sun, flanks: each, limits: {iso_class: 6}, "
             "law: {kind: random_walk, fill: [0.7, 1]}}\n  sun eccentricity:",
         ),
-        "tolerances.sun pitch.kind: expected of planetary sets tooth_thickness, eccentricity, tooth_run_out, clocking, planet_pin, "
+        "tolerances.sun pitch.kind: expected of planetary sets tooth_thickness, eccentricity, "
+        "tooth_run_out, clocking, planet_pin, "
         "bore_position, got pitch_deviation",
     ),
     "one mesh": (

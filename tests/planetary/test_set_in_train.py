@@ -283,7 +283,8 @@ REFUSED = {
     ),
     "flanks of the sun": (
         ("sun eccentricity: {kind: eccentricity,", "sun eccentricity: {kind: run_out,"),
-        "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, tooth_run_out, clocking, "
+        "tolerances.sun eccentricity.kind: expected of planetary sets tooth_thickness, eccentricity, "
+        "tooth_run_out, clocking, "
         "planet_pin, bore_position, got run_out",
     ),
     "an idle carrier": (

@@ -110,7 +110,9 @@ class ToothToToothSpec(FlankToleranceSpec):
 
     kind: Literal["tooth_to_tooth"]
     flanks: Literal["together"] = Field(default="together", description="together: both flanks of a tooth alike")
-    limits: Annotated[CompositeLimitsSpec, no_word("limits such as {grade: 7} or {size: 14 um}")]
+    limits: Annotated[CompositeLimitsSpec, no_word("limits such as {grade: 7} or {size: 14 um}")] = Field(
+        description="f_i'' of the gear, by a grade or stated"
+    )
     law: Annotated[
         UniformShapeSpec | NormalShapeSpec,
         Field(discriminator="kind", description="how teeth fill the limits"),
