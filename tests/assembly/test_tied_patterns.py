@@ -17,7 +17,7 @@ from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.centring import Cones, centred
-from tol3d.assembly.torsors.room import pushed
+from tol3d.assembly.torsors.room import support_point
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def by_torsors(offsets: Array, clearances: Array, rows: Array, push: Array | Non
     cones = Cones(offsets[:, :, None], clearances[:, None], rows)
     q = centred(cones)
     slack = float(cones.slack(q)[0])
-    return (q if push is None else pushed(cones, q, push / np.linalg.norm(push)))[:, 0], slack
+    return (q if push is None else support_point(cones, q, push / np.linalg.norm(push)))[:, 0], slack
 
 
 SOLVERS = {"exact": exact, "analytic": by_torsors}

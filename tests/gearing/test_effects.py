@@ -21,10 +21,10 @@ from tol3d.gearing.effects import (
     AxisOffset,
     AxisTilt,
     Clocking,
+    CombinedEffect,
     Effect,
     LinkDeviation,
     Temperature,
-    Together,
     ToothThickness,
     TurningOffset,
 )
@@ -37,7 +37,7 @@ from tol3d.gears import RIGHT, SpurGear, SpurPair
 SINGLE = [
     value
     for value in vars(effects).values()
-    if isinstance(value, type) and issubclass(value, Effect) and value not in (Effect, Together)
+    if isinstance(value, type) and issubclass(value, Effect) and value not in (Effect, CombinedEffect)
 ]
 
 ALL: tuple[Effect, ...] = (
@@ -92,7 +92,7 @@ def test_both_methods_know_every_effect_of_every_kind_of_pair(effect: Effect, pa
         (Temperature(("a", "box")), True, True),
         (LinkDeviation("r"), False, False),
         (Clocking("b"), False, False),
-        (Together((ToothThickness("a", 0.02), AxisOffset("c"))), True, True),
+        (CombinedEffect((ToothThickness("a", 0.02), AxisOffset("c"))), True, True),
     ],
 )
 def test_an_effect_acts_in_the_meshes_of_its_parts_or_in_the_one_that_it_names(
@@ -110,7 +110,7 @@ def test_clocking_turns_the_driven_shaft_by_the_ratio_for_the_driver_and_back_fo
     assert Clocking("b").clocking(mesh) == -1.0
     assert Clocking("c").clocking(mesh) == 0.0
     assert ToothThickness("a", 0.02).clocking(mesh) == 0.0
-    both = Together((Clocking("a"), Clocking("b")))
+    both = CombinedEffect((Clocking("a"), Clocking("b")))
     assert both.clocking(mesh) == pytest.approx(-5 / 3)
 
 
@@ -148,7 +148,7 @@ def test_compiled_builds_of_the_shipped_scenes_are_numpy_s(scene: str) -> None:
 
 def test_two_effects_of_one_deviation_on_one_seat_add_up() -> None:
     model, _ = far_model("spur", RIGHT)
-    twice = Together((AxisOffset("wheel"), AxisOffset("wheel", (0.0, 1.0, 0.0), 0.5), AxisOffset("wheel")))
+    twice = CombinedEffect((AxisOffset("wheel"), AxisOffset("wheel", (0.0, 1.0, 0.0), 0.5), AxisOffset("wheel")))
     law = model.contributors[0].distribution
     assert isinstance(law, Distribution)
     model = replace(model, contributors=(Contributor("c", "", twice, Scalar(law), "um"),))

@@ -56,7 +56,7 @@ def convex_half(gear: CylindricalGear) -> Callable[[float], float]:
     return lambda radius: at_reference + inv(r) - inv(radius)
 
 
-def farthest(gear: CylindricalGear, azimuth: float, direction: float) -> float:
+def support(gear: CylindricalGear, azimuth: float, direction: float) -> float:
     """Reach of the left flank of what bulges at an azimuth in a direction [mm]; inside the involute alone."""
     half, base = convex_half(gear), gear.base_radius
 
@@ -70,7 +70,7 @@ def farthest(gear: CylindricalGear, azimuth: float, direction: float) -> float:
 def span_by_search(gear: CylindricalGear, teeth: int) -> float:
     """Distance of parallel tangents of the outer flanks of so many teeth, or spaces."""
     spread = math.pi * (teeth - 1) / gear.teeth
-    return 2 * farthest(gear, spread, math.pi / 2)
+    return 2 * support(gear, spread, math.pi / 2)
 
 
 def over_pins_by_search(gear: CylindricalGear, diameter: float) -> float:

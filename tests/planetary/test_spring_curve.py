@@ -128,7 +128,7 @@ class AllContacts:
         upper = 1e3 * np.concatenate([found.upper, -found.lower])
         return cls(np.vstack([rows, -rows]), upper, free.index(own.shafts.index("sun")))
 
-    def farthest(self, price: dict[int, float], before: float, at: float | None = None) -> Array:
+    def solve_lp(self, price: dict[int, float], before: float, at: float | None = None) -> Array:
         """Unknowns [rad, mm] with the largest work, of displacements that were `before`, or are held."""
         count = self.matrix.shape[1]
         objective, moved = np.zeros(count), np.zeros((1, count))
@@ -151,8 +151,8 @@ class AllContacts:
             middle = (low + high) / 2
             force = spring.force - spring.stiffness * (middle - closed)
             price = {self.sun: torque, -3: force, -2: -spring.friction, -1: -spring.friction}
-            low, high = (middle, high) if self.farthest(price, before)[-3] > middle else (low, middle)
-        found = self.farthest({self.sun: torque}, before, at=low)
+            low, high = (middle, high) if self.solve_lp(price, before)[-3] > middle else (low, middle)
+        found = self.solve_lp({self.sun: torque}, before, at=low)
         return float(found[self.sun]), low
 
 
@@ -164,7 +164,7 @@ def test_the_loop_is_that_of_all_contacts_and_the_spring_together(seed: int) -> 
     contacts = AllContacts.of(own, deviated, 0.3)
     torques = np.array([6.0, 25.0, 45.0, 33.0, 12.0, -8.0, -40.0, -25.0])
     turns = turns_under(own, deviated, torques, "sun", spring, 0.3)
-    closed = at = float(contacts.farthest({-3: 1.0}, 0.0)[-3])
+    closed = at = float(contacts.solve_lp({-3: 1.0}, 0.0)[-3])
     for torque, turn in zip(torques, turns, strict=True):
         wanted, at = contacts.step(torque, spring, closed, at)
         assert turn == pytest.approx(wanted, abs=1e-7)

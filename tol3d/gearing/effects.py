@@ -56,7 +56,7 @@ class Effect(ABC):
 
 
 @dataclass(frozen=True)
-class Together(Effect):
+class CombinedEffect(Effect):
     """Several effects of one deviation, such as a shaft that moves with all that it carries."""
 
     effects: tuple[Effect, ...]
@@ -93,7 +93,7 @@ class Together(Effect):
         return self.effects[0].mirrored if self.effects else False
 
 
-NOTHING = Together(())
+NOTHING = CombinedEffect(())
 
 
 Vector = tuple[float, float, float]

@@ -69,7 +69,7 @@ class Solved:
     round: Array
 
 
-def farthest_between(given: ConeProgramme, sense: float) -> Solved:
+def solve_cone_programme(given: ConeProgramme, sense: float) -> Solved:
     """Make the first coordinate as large as gaps let it (1), or as small (-1)."""
     trials, unknowns = len(given.gaps), given.rows.shape[2]
     y, weight = np.zeros((trials, unknowns)), np.empty(trials)

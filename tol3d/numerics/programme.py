@@ -111,10 +111,10 @@ def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float, first
 
 
 @part
-def farthest(
+def solve_lp(
     rows: Any, lower: Any, upper: Any, objective: Any, basis: Any, rooms: Any, x: Any
 ) -> tuple[int, int, float]:
-    """Write the point that goes farthest along an objective.
+    """Write the point with the largest objective.
 
     Args:
         rows, lower, upper: of the contacts.
@@ -196,7 +196,7 @@ def ranges(
         for end in range(2):
             for j in range(count):
                 basis[j], rooms[2][j] = begun[j], 1.0
-            found, row, lacking = farthest(rows, lower[i], upper[i], wanted[end], basis, rooms, x)
+            found, row, lacking = solve_lp(rows, lower[i], upper[i], wanted[end], basis, rooms, x)
             if found != OK:
                 status[i], decided[i], amount[i] = found, row, lacking
                 ends[i, 0] = ends[i, 1] = np.nan

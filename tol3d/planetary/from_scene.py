@@ -25,7 +25,7 @@ from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
 from tol3d.planetary.trials import PlanetaryMeasure, Reading
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, farthest, warned
+from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
@@ -76,14 +76,14 @@ def _of_pins(scene: Scene, own: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetP
 
 
 def _reach(scene: Scene, spec: PlanetPinSpec | BorePositionSpec) -> tuple[float, float]:
-    """The displacement that is farthest from 0, and the least one [mm]."""
+    """The displacement that is larger_end from 0, and the least one [mm]."""
     if isinstance(spec, BorePositionSpec):
         if not isinstance(spec.law, ProcessLawSpec):
             return spec.zone.diameter.internal / 2, -spec.zone.diameter.internal / 2
         law = spec.law.distribution.resolve(scene.files)
     else:
         law = spec.distribution.resolve(scene.files)
-    return farthest(law), law.extremes[0]
+    return larger_end(law), law.extremes[0]
 
 
 def planetary_system(scene: Scene) -> PlanetarySystem:

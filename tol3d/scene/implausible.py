@@ -35,7 +35,7 @@ class Implausible:
         return f"expected at most {self.share * 100:g} % of {of} ({nominal:.4g} mm), {came}; {self.advice}"
 
 
-def farthest(law: Distribution) -> float:
+def larger_end(law: Distribution) -> float:
     """The end of a law that is farther from 0, with its sign [mm, rad or K]."""
     return max(law.extremes, key=abs)
 

@@ -16,7 +16,7 @@ def any_of(specs: Collection[Spec]) -> str:
 
 
 @dataclass(frozen=True)
-class Taken:
+class Unusable:
     """Why an entry of the right kind will not do.
 
     Args:
@@ -48,7 +48,7 @@ class Reference:
         return any_of(self.specs)
 
     @classmethod
-    def taken(cls, parts: Mapping[str, Any]) -> Mapping[str, Taken]:
+    def unusable(cls, parts: Mapping[str, Any]) -> Mapping[str, Unusable]:
         """PartSpecs that such a reference may not name though their kind would do."""
         return {}
 

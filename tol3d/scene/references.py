@@ -12,7 +12,7 @@ from tol3d.scene.problems import first_few
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.figures import quantities_in
 from tol3d.scene.published.whole import PublishedWhole
-from tol3d.scene.reference import Reference, Taken
+from tol3d.scene.reference import Reference, Unusable
 from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.units import expectation, shown
 
@@ -75,11 +75,11 @@ def _references(scene: Scene) -> Iterator[tuple[KeyPath, Reference]]:
 
 def _unknown(scene: Scene) -> Iterator[Problem]:
     entries = scene.of(Entry)
-    taken: dict[type[Reference], Mapping[str, Taken]] = {}
+    unusable: dict[type[Reference], Mapping[str, Unusable]] = {}
     for path, reference in _references(scene):
-        if type(reference) not in taken:
-            taken[type(reference)] = reference.taken(scene.parts)
-        unfit = taken[type(reference)]
+        if type(reference) not in unusable:
+            unusable[type(reference)] = reference.unusable(scene.parts)
+        unfit = unusable[type(reference)]
         if isinstance(entries.get(reference.name), reference.specs) and reference.name not in unfit:
             continue
         fitting = [name for name, entry in entries.items() if isinstance(entry, reference.specs) and name not in unfit]

@@ -70,7 +70,7 @@ class Member:
         arms = self.place - centre + self.judged
         return np.cross(arms[:, None, :], self.directions[None])
 
-    def farthest(self, centre: Array, turns: Array) -> float:
+    def largest_displacement(self, centre: Array, turns: Array) -> float:
         """The largest displacement by a turn of length 1 among turns (3, turns); of a disc a bound."""
         if isinstance(self.feature.shape, RoundPlane):
             middle = np.cross(self.place - centre, self.directions[0]) @ turns
@@ -122,7 +122,7 @@ def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tupl
     if turns.size:
         sizes, axes = np.linalg.eigh(turns.T @ square @ turns)
         turns = turns @ axes @ np.diag(1.0 / np.sqrt(sizes)) @ axes.T  # scaled so that all of them move features alike
-        turns /= max(own.farthest(centre, turns) for own in members)
+        turns /= max(own.largest_displacement(centre, turns) for own in members)
     zone = catalogue.pattern_motion(spec.zone.size - spec.lower_segment.zone.size, shifts.shape[1], turns.shape[1])
     moved = {own.name: own.moved(centre, shifts, turns) for own in members}
     return drawn_by(spec.law, zone, scene.files), moved, "shift and turn" if turns.size else "shift"

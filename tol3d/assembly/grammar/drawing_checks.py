@@ -27,7 +27,7 @@ from tol3d.assembly.model import RoundPlane
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, farthest
+from tol3d.scene.implausible import Implausible, larger_end
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
@@ -317,10 +317,10 @@ def implausible_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 def _deviations(spec: FeatureTolerance, files: Files) -> Iterator[tuple[KeyPath, float]]:
     """Each length that a tolerance states of its feature [mm], with its field."""
     if isinstance(spec, SizeSpec | PlusMinusSpec):
-        yield ("distribution",), farthest(spec.distribution.resolve(files))
+        yield ("distribution",), larger_end(spec.distribution.resolve(files))
     if isinstance(spec, SizeSpec) and spec.limits is not None:
         yield ("limits",), max((limit.internal for limit in spec.limits), key=abs)
     if isinstance(spec, LocationSpec | OrientationSpec | FormSpec):
         yield ("zone",), spec.zone.size
         if isinstance(spec.law, ProcessLawSpec):
-            yield ("law", "distribution"), farthest(spec.law.distribution.resolve(files))
+            yield ("law", "distribution"), larger_end(spec.law.distribution.resolve(files))

@@ -50,7 +50,7 @@ def crossed(a: Any, b: Any, out: Any) -> None:
 
 
 @nested
-def pushed(row: Any, normal: Any, arm: Any, factor: float) -> None:
+def add_point_motion(row: Any, normal: Any, arm: Any, factor: float) -> None:
     """Add to a row the motion of a point along a normal, at an arm from the middle of the part's turn."""
     for k in range(3):
         row[k] += factor * normal[k]
@@ -86,13 +86,13 @@ def on_plane(kind: int, sides: Any, errors: Any, rows: Any, e: int, length: floa
     if kind in (POINT_PLANE, LINE_PLANE):
         normal, lying = other, along
         height = dot(apart, normal)
-        pushed(rows[e], normal, arm, 1.0)
+        add_point_motion(rows[e], normal, arm, 1.0)
     else:
         normal, lying = along, other
         height = -dot(apart, normal)
         for k in range(3):
             room[k] = arm[k] - apart[k]  # to the target, which the plane of the part touches there
-        pushed(rows[e], normal, room, -1.0)
+        add_point_motion(rows[e], normal, room, -1.0)
     if kind in (LINE_PLANE, PLANE_LINE):
         errors[e + 1] = length * dot(normal, lying)
         tilted(rows[e + 1], along, other, length)
@@ -107,23 +107,23 @@ def off_line(kind: int, sides: Any, normal: Any, errors: Any, rows: Any, e: int,
         distance = np.sqrt(dot(apart, apart))
         for k in range(3):
             normal[k] = apart[k] / distance
-        pushed(rows[e], normal, arm, 1.0)
+        add_point_motion(rows[e], normal, arm, 1.0)
     elif kind == LINE_POINT:
         distance = aside(apart, along, normal)
         back = dot(apart, along)
         for k in range(3):
             room[k] = arm[k] - back * along[k]
-        pushed(rows[e], normal, room, 1.0)
+        add_point_motion(rows[e], normal, room, 1.0)
     else:
         distance = aside(apart, other, normal)
-        pushed(rows[e], normal, arm, 1.0)
+        add_point_motion(rows[e], normal, arm, 1.0)
     if kind == ALONG:
         rise, lies = dot(along, normal), dot(along, other)
         errors[e + 1] = length * rise
         tilted(rows[e + 1], along, normal, length)
         for k in range(3):
             room[k] = along[k] - rise * normal[k] - lies * other[k]
-        pushed(rows[e + 1], room, arm, length / distance)
+        add_point_motion(rows[e + 1], room, arm, length / distance)
     return distance
 
 
@@ -136,7 +136,7 @@ def at_crossing(sides: Any, normal: Any, rows: Any, e: int, sign: float) -> Any:
     for k in range(3):
         normal[k] = sign * normal[k] / sine
     distance = dot(apart, normal)
-    pushed(rows[e], normal, arm, 1.0)
+    add_point_motion(rows[e], normal, arm, 1.0)
     for k in range(3):
         room[k] = sign * (apart[k] - distance * normal[k]) / sine
     crossed(other, room, room)

@@ -63,9 +63,9 @@ class Engaging:
     undo: Array
     nudge: Array | None = None
 
-    def pushed(self, push: Array) -> "Engaging":
+    def at_support_point(self, push: Array) -> "Engaging":
         """The move with the part pushed to the limit along a direction of its freedoms (freedoms,); centred along 0."""
-        return replace(self, floats=self.floats.pushed(push))
+        return replace(self, floats=self.floats.at_support_point(push))
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and status codes (n,)."""

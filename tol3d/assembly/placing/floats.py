@@ -37,7 +37,7 @@ class Floats:
     push: Array | None = None
     by_pairs: "Discs | None" = None
 
-    def pushed(self, push: Array) -> "Floats":
+    def at_support_point(self, push: Array) -> "Floats":
         """The float pushed to the limit along a direction of the freedoms (freedoms,); centred along 0."""
         return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push))
 

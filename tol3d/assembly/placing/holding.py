@@ -52,7 +52,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class Taken:
+class HeldFreedoms:
     """Freedoms taken by a constraint.
 
     Args:
@@ -83,8 +83,8 @@ class Freedoms:
         where: place of the axis of a single remaining turn, such as "through (0, 40, 0)"; else "".
     """
 
-    taken: tuple[Taken, ...]
-    left: Taken
+    taken: tuple[HeldFreedoms, ...]
+    left: HeldFreedoms
     where: str
 
 
@@ -105,10 +105,10 @@ def taken(asked: Sequence[Asked], middle: Array, reach: float) -> Freedoms:
         after = left @ right[int(np.sum(sizes > HELD * size)) :].T
         pairs = zip(_parts(left), _parts(after), strict=True)
         shifts, turns = (_without(before, rest) for before, rest in pairs)
-        found.append(Taken(own.words, shifts, turns, own.is_room))
+        found.append(HeldFreedoms(own.words, shifts, turns, own.is_room))
         left = after
     return Freedoms(
-        tuple(found), Taken("", *_parts(left)), _place(left[:, 0] * scale, middle) if left.size == 6 else ""
+        tuple(found), HeldFreedoms("", *_parts(left)), _place(left[:, 0] * scale, middle) if left.size == 6 else ""
     )
 
 
@@ -136,7 +136,7 @@ def _without(directions: Array, others: Array) -> Array:
     return np.linalg.svd(inside)[2][: len(directions) - len(others)]
 
 
-def in_words(taken: Taken) -> str:
+def in_words(taken: HeldFreedoms) -> str:
     """Freedoms, such as "z, turns x, y": a shift along z, turns about x and y."""
     if taken.count == 6:
         return "all six"

@@ -267,7 +267,7 @@ def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, Engaging]:
                 blocks = [_placed(plan, rest, {index: own}) for own in nudged]
                 read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
             slope = np.subtract(*np.array(read)) / (2 * NUDGE)
-            found[index] = move.pushed(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
+            found[index] = move.at_support_point(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
     return found
 
 

@@ -63,7 +63,7 @@ def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
 
 
 @nested
-def farthest(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: Any, pivots: int) -> int:
+def solve_lp(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: Any, pivots: int) -> int:
     """Motion z, into the first room, that goes farthest with rows z + gaps >= 0; the exchanges made, or below 0.
 
     Returns:
@@ -126,7 +126,7 @@ def settled(
             gaps[k] = gap_of(pose, contacts, k, i, on_part)
             for r in range(6):
                 gaps[k] += all_rows[k, r] * step[r]
-        pivots = farthest(rows, gaps, basis, inverse, loads, moves, pivots)
+        pivots = solve_lp(rows, gaps, basis, inverse, loads, moves, pivots)
         if pivots < 0:
             return CLASHES if pivots == -1 and n == 0 else LOST
         for r in range(6):

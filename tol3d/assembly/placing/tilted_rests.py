@@ -13,7 +13,7 @@ import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at, restored, rows_at, tangents_at
 from tol3d.assembly.placing.pose_steps import stepped
-from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIED, TIPS, begin, farthest, note
+from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIED, TIPS, begin, note, solve_lp
 from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import copy_matrix
 
@@ -99,7 +99,7 @@ def boxed_rows(rows: Any, contacts: int) -> None:
 
 @nested
 def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: Any) -> int:
-    """The best motion in a box, into the room of `farthest`; the exchanges made, below 0 if it is not found."""
+    """The best motion in a box, into the room of `solve_lp`; the exchanges made, below 0 if it is not found."""
     rows, all_rows, _, pull = programme
     basis, inverse, loads = begun
     all_gaps, moves = own
@@ -118,7 +118,7 @@ def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: A
         loads[0, j], loads[1, j] = abs(pull[j]), 1.0 + j
     basis[motions], inverse[motions, motions] = count + 2 * motions, 1.0
     loads[0, motions], loads[1, motions] = dear, 1.0
-    return int(farthest(rows, all_gaps, basis, inverse, loads, moves, 0))
+    return int(solve_lp(rows, all_gaps, basis, inverse, loads, moves, 0))
 
 
 @nested

@@ -28,7 +28,7 @@ from tol3d.assembly.model import (
 )
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.placing.engaging import Engaging
-from tol3d.assembly.placing.holding import Freedoms, Taken, held_by, held_by_datums, in_words
+from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
 from tol3d.assembly.placing.plan import Placing, planned
 from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.presenting.parts_tree import parts_tree
@@ -80,7 +80,7 @@ def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
     return (*titled("freedoms that moves hold, along the axes of the world", table), note(SIGNS))
 
 
-def _by(taken: Taken) -> str:
+def _by(taken: HeldFreedoms) -> str:
     return f"{taken.words}, within clearance" if taken.is_room else taken.words
 
 

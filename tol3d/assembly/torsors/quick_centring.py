@@ -174,7 +174,7 @@ NEAR: Final = 1e-3
 
 
 @nested
-def way_out(w: float, length: float, a: float, b: float, up: float, u: float, v: float) -> Any:
+def max_step(w: float, length: float, a: float, b: float, up: float, u: float, v: float) -> Any:
     """The share of a step after which |y + t (u, v)| = w + |y| + t up, that has w to go at first."""
     inside, slope = w * (w + 2.0 * length), (w + length) * up - a * u - b * v
     bend = up * up - u * u - v * v
@@ -201,7 +201,7 @@ def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
                 v += rows[k, 1, i] * step[i]
                 along += pulls[k, i] * step[i]
             length = np.sqrt(y[k, 0] * y[k, 0] + y[k, 1] * y[k, 1])
-            ahead = min(ahead, way_out(w[k], length, y[k, 0], y[k, 1], -step[size], u, v))
+            ahead = min(ahead, max_step(w[k], length, y[k, 0], y[k, 1], -step[size], u, v))
             back[k] += stiff[k] * along - z[k]
             if back[k] < 0.0:
                 behind = min(behind, -z[k] / back[k])
@@ -213,7 +213,7 @@ def moved(trial: Any, state: Any, step: Any, near: float) -> Any:
 
 
 @nested
-def sought(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
+def try_solve(place: Any, trial: Any, goal: Any, under: float, q: Any, state: Any, system: Any, step: Any) -> bool:
     """Find the largest slack, q and multipliers in the state, from a feasible one below it, goal 0; True if found."""
     offsets, clearances = place
     rows, counts, _ = trial
@@ -319,7 +319,7 @@ def quickly_centred(
             found[n] = improved(place, trial, way, lifts, q, state, system, step)
         else:
             for under in UNDER:
-                found[n] = sought(place, trial, way, under, q, state, system, step)
+                found[n] = try_solve(place, trial, way, under, q, state, system, step)
                 if found[n]:
                     break
         if found[n]:

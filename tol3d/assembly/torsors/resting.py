@@ -80,10 +80,10 @@ class OneSided:
         """z (unknowns, trials) from g (contacts, trials)."""
         found = np.zeros((self.count, read.shape[1]))
         for groups in self._groups:
-            found += self._farthest(groups, read) / len(self._groups)
+            found += self._largest_motion(groups, read) / len(self._groups)
         return found
 
-    def _farthest(self, groups: list[tuple[Array, list[Corner]]], read: Array) -> Array:
+    def _largest_motion(self, groups: list[tuple[Array, list[Corner]]], read: Array) -> Array:
         chosen = np.argmin(ordered_product(np.array([loads for loads, _ in groups]), read), axis=0)
         found = np.empty((self.count, read.shape[1]))
         for k, (_, corners) in enumerate(groups):

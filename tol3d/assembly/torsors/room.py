@@ -24,7 +24,7 @@ NONE: Final = 1e-9
 """Change of an offset per unit freedom that counts as none."""
 
 
-def pushed(cones: Cones, q: Array, push: Array) -> Array:
+def support_point(cones: Cones, q: Array, push: Array) -> Array:
     """Pushed to the limit along a direction of the freedoms (freedoms,); the remaining freedoms are centred."""
     trials = q.shape[1]
     rows = cones.rows[..., None] * np.ones(trials)
@@ -202,7 +202,7 @@ class Room:
         if inside.any() and self.floating.kind != "centred":
             own = cones.of(inside)
             if self.floating.kind == "toward":
-                q[:, inside] = pushed(own, q[:, inside], self.push)
+                q[:, inside] = support_point(own, q[:, inside], self.push)
             elif self.floating.by_pairs:
                 q[:, inside] = by_pairs(own, q[:, inside], read[3 * places :, inside])
             else:

@@ -18,7 +18,7 @@ from tol3d.cycloid.exact.pin_contact import ContactShape
 from tol3d.cycloid.exact.rest_rows import ARM, ROOM, TURNS, based, bearing_at, mesh_written, pins_written, working_pins
 from tol3d.numerics.compiled import kernel, part
 from tol3d.numerics.loops import fill
-from tol3d.numerics.programme import NO_ROOM, OK, STALLED, farthest
+from tol3d.numerics.programme import NO_ROOM, OK, STALLED, solve_lp
 
 NOT_HELD: Final = 3
 """A body leaves by the end of the room that it is given: nothing stops it."""
@@ -167,7 +167,7 @@ def rested(
         near = 2.0 * ROOM if step < WILD else min(more * (max(deepest, abs(x[0])) + MET), 2.0 * ROOM)
         room_written(count, discs, near, z, lower, upper)
         used = first + cuts
-        found, _, _ = farthest(rows[:used], lower[:used], upper[:used], across[2], basis, solving, x)
+        found, _, _ = solve_lp(rows[:used], lower[:used], upper[:used], across[2], basis, solving, x)
         if found == NO_ROOM and near >= ROOM:
             return NO_ROOM, np.nan
         if found != OK:  # too little room, or tangents that nearly coincide

@@ -25,7 +25,7 @@ import numpy as np
 from tol3d.cycloid.first_order.linear import LinearStage, Sense
 from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.arrays import Array, Complex, Places
-from tol3d.numerics.cone_programme import ConeProgramme, Solved, farthest_between
+from tol3d.numerics.cone_programme import ConeProgramme, Solved, solve_cone_programme
 from tol3d.numerics.plane import as_complex
 
 LEAST_PLAY: Final = 1e-6  # mm on the radius; of a bearing without, so that logarithms have room
@@ -88,7 +88,7 @@ class LinearRest(LinearStage):
             np.stack([off.real, off.imag], axis=2),
             np.maximum(radial / 2, LEAST_PLAY),
         )
-        solved = farthest_between(given, sense)
+        solved = solve_cone_programme(given, sense)
         return self._forces(solved, pin_places, sense)
 
     def _pins(self, deviated: Deviated, phis: Array, sense: Sense, aside: Array | None) -> tuple[Array, Array, Places]:

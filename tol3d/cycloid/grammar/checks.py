@@ -21,7 +21,7 @@ from tol3d.cycloid.grammar.tolerances import (
     PinRingOffsetSpec,
 )
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, farthest
+from tol3d.scene.implausible import Implausible, larger_end
 from tol3d.scene.place import KeyPath
 
 Problem = tuple[KeyPath, str]
@@ -93,7 +93,7 @@ def implausible_discs(scene: Scene) -> Iterator[Problem]:
         ring = move.parts_among(scene.parts).ring
         for name, spec in scene.distributed.items():
             if isinstance(spec, OF_DISCS_AND_CRANKS) and spec.of in (move.disc, move.crankshaft, move.carrier):
-                far = farthest(spec.distribution.resolve(scene.files))
+                far = larger_end(spec.distribution.resolve(scene.files))
                 words = f"the pin radius of {move.pin_ring!r}"
                 if sentence := HALF.sentence(words, ring.pin_radius.internal, far):
                     yield ("tolerances", name, "distribution"), sentence

@@ -10,7 +10,7 @@ from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceS
 from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
 from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec, EccentricitySpec, RunOutSpec
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, farthest
+from tol3d.scene.implausible import Implausible, larger_end
 from tol3d.scene.place import KeyPath
 
 
@@ -45,7 +45,7 @@ def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         if not gears:
             continue
         gear, part = min(gears.items(), key=lambda own: own[1].module.internal)
-        far = farthest(spec.distribution.resolve(scene.files))
+        far = larger_end(spec.distribution.resolve(scene.files))
         if sentence := HALF.sentence(f"the module of {gear!r}", part.module.internal, far):
             yield ("tolerances", name, "distribution"), sentence
 
@@ -56,7 +56,7 @@ def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         if gear.face_width.internal > WIDEST_FACE + ROUNDING:
             yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; look at the unit"
     for name, spec in scene.of(AxialShiftSpec).items():
-        far, of = farthest(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
+        far, of = larger_end(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
         assert isinstance(of, GearSpec)
         if sentence := WHOLE.sentence(f"the face width of {spec.of!r}", of.face_width.internal, far):
             yield ("tolerances", name, "distribution"), sentence

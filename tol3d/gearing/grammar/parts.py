@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from tol3d.scene.entry import Entry
 from tol3d.scene.name import Name
 from tol3d.scene.part import GrowingSpec, Length, PartSpec
-from tol3d.scene.reference import Reference, Taken
+from tol3d.scene.reference import Reference, Unusable
 from tol3d.scene.vector import Coordinate, Vector
 from tol3d.strict import Strict, refused
 from tol3d.units import Of, Positive, Quantity
@@ -163,9 +163,9 @@ class ShaftReference(Reference):
         return "a shaft, or of a gear that none carries"
 
     @classmethod
-    def taken(cls, parts: Mapping[str, PartSpec]) -> Mapping[str, Taken]:
+    def unusable(cls, parts: Mapping[str, PartSpec]) -> Mapping[str, Unusable]:
         """Gears that a shaft carries."""
-        return {gear: Taken(f"which {shaft!r} carries", shaft) for shaft, gear in carried(parts)}
+        return {gear: Unusable(f"which {shaft!r} carries", shaft) for shaft, gear in carried(parts)}
 
 
 class BearingSpec(PartSpec):

@@ -36,7 +36,7 @@ from tol3d.gearing.model.trains import (
 )
 from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, farthest, warned
+from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
 
 THICKNESS: Final = Implausible(0.1, "write how much thicker than nominal the tooth is, and look at the unit")
@@ -69,7 +69,7 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
         if sentence := _other_nominal(spec, gear):
             yield warned(path, sentence)
-        if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, farthest(law) * arc):
+        if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, larger_end(law) * arc):
             yield warned(path, sentence)
 
 

@@ -20,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.programme import OK, STALLED, farthest
+from tol3d.numerics.programme import OK, STALLED, solve_lp
 
 STILL: Final = 1e-11  # rad; turns change by less: at 100 mm that is 1e-9 mm
 MOST_STEPS: Final = 25
@@ -91,14 +91,14 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
 def seated(
     shape: Any, given: Any, pushed: Any, unknowns: Any, objective: Any, basis: Any, rooms: Any, turns: Any
 ) -> tuple[int, int, float]:  # fmt: skip
-    """Turn as far along an objective as contacts let; like programme.farthest, again and again from where that leads.
+    """Turn as far along an objective as contacts let; like programme.solve_lp, again and again from where that leads.
 
     Args:
         shape, given: see gaps_at.
         pushed: least and largest displacement by each spring (2, springs) [mm].
         unknowns: places of the programme's unknowns among the turns.
-        objective, basis: see programme.farthest.
-        rooms: those of programme.farthest; slopes, rows, lower, upper and x to write in.
+        objective, basis: see programme.solve_lp.
+        rooms: those of programme.solve_lp; slopes, rows, lower, upper and x to write in.
         turns: zeros; written.
     """
     solving, slopes, rows, lower, upper, x = rooms
@@ -117,7 +117,7 @@ def seated(
                 rows[contacts + spring, j] = 1.0 if unknowns[j] == place else 0.0
             lower[contacts + spring] = pushed[0, spring] - turns[place]
             upper[contacts + spring] = pushed[1, spring] - turns[place]
-        found, row, lacking = farthest(rows, lower, upper, objective, basis, solving, x)
+        found, row, lacking = solve_lp(rows, lower, upper, objective, basis, solving, x)
         if found != OK:
             return found, row, lacking
         moved = 0.0

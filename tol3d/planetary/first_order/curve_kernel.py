@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.programme import OK, farthest
+from tol3d.numerics.programme import OK, solve_lp
 
 
 @part
@@ -78,7 +78,7 @@ def pull(
     coefficient: Any, turn: Any, basis: Any, rooms: Any,
     across: Any, places: Any, directions: Any, phases: Any, turned: Any, slopes: Any,
 ) -> None:  # fmt: skip
-    """Add the derivatives of an end by the contacts met, times its coefficient; see pulled and programme.farthest."""
+    """Add the derivatives of an end by the contacts met, times its coefficient; see pulled and programme.solve_lp."""
     for j in range(basis.shape[0]):
         weight = 0.0
         for u in range(basis.shape[0]):
@@ -136,7 +136,7 @@ def first_order_curve(
                 if afresh or attempt == 1:
                     for j in range(count):
                         basis[j], rooms[2][j] = begun[j], 1.0
-                found, row, lacking = farthest(rows, low, high, wanted, basis, rooms, x)
+                found, row, lacking = solve_lp(rows, low, high, wanted, basis, rooms, x)
                 if found == OK or afresh:
                     break
             ends[i, p] = 0.0

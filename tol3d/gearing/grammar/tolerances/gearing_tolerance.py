@@ -10,7 +10,7 @@ from pydantic import Field
 from tol3d.distributions import Distribution
 from tol3d.distributions.derived import Derived, Scale
 from tol3d.files import Files
-from tol3d.gearing.effects import Effect, LinkDeviation, Together
+from tol3d.gearing.effects import CombinedEffect, Effect, LinkDeviation
 from tol3d.gearing.grammar.moves import LinkSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gears import Gear
@@ -76,7 +76,7 @@ def in_direction(effects: Sequence[Effect], direction: object) -> Meaning:
 
 def together(effects: Sequence[Effect]) -> Effect:
     """Several effects of one deviation as one."""
-    return effects[0] if len(effects) == 1 else Together(tuple(effects))
+    return effects[0] if len(effects) == 1 else CombinedEffect(tuple(effects))
 
 
 class GearToleranceSpec(GearingToleranceSpec):
