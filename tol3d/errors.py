@@ -58,5 +58,5 @@ def unwritable(path: Path, error: OSError, advice: str) -> RunError:
     """
     why = f"{path}: cannot be written ({error.strerror or error})"
     if refused_by_disk(error):
-        return DiskError(f"{why}; nothing is wrong with the input: mend the disk or its limits")
+        return DiskError(f"{why}; the input is not at fault: mend the disk or its limits")
     return RunError(f"{why}; {advice}" if advice else why)

@@ -334,11 +334,11 @@ def keep_report(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> Path:
     """Write a run's report into its own folder, in place of an older one, as `tol3d run --report` does.
 
     Raises:
-        RunError: a file of that name is none of the run's own, or the folder cannot be written.
+        RunError: a file of that name is not the run's own, or the folder cannot be written.
     """
     path, manifest = run.path / REPORT, run.manifest
     if path.exists() and REPORT not in manifest.sums:
-        raise RunError(f"{path}: expected no such file, for it is none of the run's own; move it elsewhere")
+        raise RunError(f"{path}: this file is not the run's own; move it elsewhere")
     write_report(run, path, accepted_ppm=accepted_ppm, force=True)
     manifest.adding(REPORT).write()
     return path

@@ -50,7 +50,7 @@ def test_an_interrupted_analysis_goes_on(
     with pytest.raises(KeyboardInterrupt):
         found()
     assert len(files()) == SOME
-    assert "the same command goes on from there" in capsys.readouterr().err
+    assert "the same command resumes from there" in capsys.readouterr().err
     files()[0].write_bytes(b"torn")
     asked.clear()
     most = 10**6

@@ -231,7 +231,7 @@ def test_an_interrupted_question_ends_in_one_line(tol3d: Command, monkeypatch: p
     monkeypatch.setattr("tol3d.analyses.rare.searched", lambda *_: signal.raise_signal(signal.SIGINT))
     code, out, err = tol3d("rare", "spur_pair")
     assert (code, out) == (130, "")
-    assert err.removeprefix("what was evaluated is kept: the same command goes on from there\n") == "stopped\n"
+    assert err.removeprefix("evaluations are kept: the same command resumes from there\n") == "stopped\n"
 
 
 def test_an_export_is_of_one_measure(tol3d: Command) -> None:

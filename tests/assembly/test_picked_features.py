@@ -259,7 +259,7 @@ FAILING = {
     ),
     "a tag of a face that was cut since": (
         PROGRAM.replace("    for k", '    plate.faces(">Z").tag("top")\n    for k'),
-        "the face 'top' is none of the solid that build returns; tag it after all cuts",
+        "the face 'top' is not on the solid that build returns; tag it after all cuts",
     ),
 }
 

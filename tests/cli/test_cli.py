@@ -83,7 +83,7 @@ def test_too_little_memory_is_a_line_and_no_fault(
     monkeypatch.setattr("tol3d.simulate.load", refused)
     code, _, err = tol3d("run", SPUR, *PLAIN)
     assert code == 2
-    assert err.startswith(f"out of memory ({error}): nothing is wrong with the input; give it more")
+    assert err.startswith(f"out of memory ({error}): the input is not at fault; allow more")
     assert err.count("\n") == 1
 
 

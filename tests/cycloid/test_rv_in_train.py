@@ -552,7 +552,7 @@ REFUSED = {
     "an idle disc": (
         THREE,
         ("  disc:", "  idle: {kind: cycloid_disc, lobes: 11}\n  disc:"),
-        "parts.idle: 'idle' takes part in no move; name it in an RV reducer or take it out",
+        "parts.idle: 'idle' is used by no move; name it in an RV reducer or take it out",
     ),
     "a bearing of the carrier's shaft": (
         THREE,

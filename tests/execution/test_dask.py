@@ -183,7 +183,7 @@ def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster: Cluster, tmp_path:
         if len(told) == 10:
             os.kill(scheduler, signal.SIGKILL)
 
-    with pytest.raises(InputError, match=r"the scheduler was lost .*the same command goes on"):
+    with pytest.raises(InputError, match=r"the scheduler was lost .*the same command resumes the run"):
         run_scene(
             SPUR_PAIR,
             overrides=study,

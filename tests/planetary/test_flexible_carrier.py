@@ -215,7 +215,7 @@ REFUSED = {
     ),
     "adjusted too far": (
         (PRESSED, "springs: one, adjustment: 80 um, displacement: 0.54"),
-        "parts.carrier.adjustment: the planets cannot be displaced so far at the mean build: each contact that stops "
+        "parts.carrier.adjustment: the planets cannot be displaced that far at the mean build: each contact that stops "
         "them lacks",
     ),
 }

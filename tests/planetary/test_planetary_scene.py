@@ -129,7 +129,7 @@ REFUSED = {
     ),
     "an idle part": (
         ("  carrier: {kind: planet_carrier}", "  carrier: {kind: planet_carrier}\n  other: {kind: planet_carrier}"),
-        "parts.other: 'other' takes part in no move; name it in 'reducer' or take it out",
+        "parts.other: 'other' is used by no move; name it in 'reducer' or take it out",
     ),
 }
 

@@ -289,7 +289,7 @@ REFUSED = {
     ),
     "an idle carrier": (
         ("  carrier: {kind: planet_carrier}", "  carrier: {kind: planet_carrier}\n  other: {kind: planet_carrier}"),
-        "parts.other: 'other' takes part in no move; name it in a set or take it out",
+        "parts.other: 'other' is used by no move; name it in a set or take it out",
     ),
     "thick teeth": (
         (

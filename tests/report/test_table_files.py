@@ -158,7 +158,7 @@ def test_what_is_there_stays_without_force(run: Run, tmp_path: Path) -> None:
 def test_a_run_keeps_its_report_and_one_of_somebody_else_stays(run: Run, tmp_path: Path) -> None:
     own = run_scene("cover_on_base", overrides=Overrides(trials=20), out=tmp_path / "own")
     (own.path / "report.html").write_text("mine")
-    with pytest.raises(RunError, match="it is none of the run's own; move it elsewhere"):
+    with pytest.raises(RunError, match="this file is not the run's own; move it elsewhere"):
         keep_report(own)
     (own.path / "report.html").unlink()
     path = keep_report(own)

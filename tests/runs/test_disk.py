@@ -69,7 +69,7 @@ def test_a_refused_picture_or_export_names_its_file_and_exits_with_2(
     ):
         code, _, err = tol3d(*command)
         assert code == 2, err
-        assert err.startswith(f"{place}: cannot be written ({os.strerror(number)}); nothing is wrong with the input")
+        assert err.startswith(f"{place}: cannot be written ({os.strerror(number)}); the input is not at fault")
 
 
 @pytest.mark.slow

@@ -339,7 +339,7 @@ def test_a_full_disk_is_told_and_loses_nothing(tiny_disk: Path, tmp_path: Path) 
     assert told.returncode == 2, told.stderr
     kept = list((tiny_disk / "run.partial" / "trials").glob("*.parquet"))
     words = f"no space left on the disk: {len(kept) * BLOCK} of {10 * BLOCK} trials are kept in {tiny_disk}/run.partial"
-    assert f"{words}; make room, then the same command goes on" in told.stderr
+    assert f"{words}; make room, then the same command resumes" in told.stderr
     assert 1 <= len(kept) < 10
     before = {path: path.read_bytes() for path in kept}
     subprocess.run(["mount", "-o", "remount,size=20m", str(tiny_disk)], check=True)

@@ -99,7 +99,7 @@ def test_what_a_user_keeps_in_a_run_is_never_lost(added: str, tmp_path: Path) ->
     a_run(tmp_path / "run")
     ADDED[added](tmp_path / "run")
     before = files_in(tmp_path / "run")
-    with pytest.raises(RunError, match=r"run: holds what is not of the run.*choose another --out, or --force"):
+    with pytest.raises(RunError, match=r"run: holds files that are not of the run.*choose another --out, or --force"):
         a_run(tmp_path / "run")
     assert files_in(tmp_path / "run") == before
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
@@ -220,7 +220,7 @@ def test_a_picture_painted_over_while_a_run_is_mended_is_not_of_the_run(tmp_path
             watch=Watch(finisher=paint),
         )
     assert open_run(tmp_path / "run").manifest.foreign() == ["histogram.png"]
-    with pytest.raises(RunError, match=r"holds what is not of the run \(histogram\.png\)"):
+    with pytest.raises(RunError, match=r"holds files that are not of the run \(histogram\.png\)"):
         run_scene(SPUR_PAIR, overrides=FEW, out=tmp_path / "run")
 
 

@@ -503,7 +503,7 @@ TRAINS = {
         "three_stage_train",
         (OTHER[0], ("  b: {kind: spur_gear, teeth: 30, module: 1 mm, face_width: 5 mm}\n", "")),
         "  a: {kind: spur_gear",
-        "parts.a: 'a' takes part in no move; put it into a mesh or take it out",
+        "parts.a: 'a' is used by no move; put it into a mesh or take it out",
     ),
     "a bevel gear with mates that are not alike": (
         "robot_shoulder",

@@ -170,7 +170,7 @@ def test_a_unit_that_is_said_by_itself_ends() -> None:
         for each in range(9)
     )
     found = read(f"#100=FLATNESS_TOLERANCE('','',#300,#21);{links}#409=SI_UNIT(*,.MILLI.,.METRE.);")
-    assert "expected a unit said by at most 4 others" in found.remarks[0].why
+    assert "expected a unit defined by at most 4 others" in found.remarks[0].why
 
 
 def test_a_datum_may_have_its_faces_itself() -> None:

@@ -152,7 +152,7 @@ def pasted(line: str) -> Selector:
         (Selector(kind="round", count=3), "count", "expected exactly 3 features, found 4"),
         (Selector(kind="round", near=(0.0, 0.0, 0.0)), "near", "at least twice as far"),
         (Selector(kind="pin", near=(0.0, 0.0, 0.0), within=1.0), "within", "expected it within 1 mm"),
-        (Selector(face=1), "face", "got #1, which is none of it"),
+        (Selector(face=1), "face", "got #1 of something else"),
         (Selector(name="datum A"), "face", "expected the name of a face"),
     ],
 )

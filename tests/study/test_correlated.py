@@ -219,7 +219,7 @@ REFUSED = {
     f"  - {{between: [{UPPER}, {DOOR_HINGE}]}}": "expected rho or matrix, got neither",
     f"  - {{between: [{UPPER}, upper hinge], rho: 0.5}}": "expected the name of a contributor, got 'upper hinge'",
     f"  - {{between: [{UPPER}, {DOOR_HINGE}, {BODY_HINGE}], rho: -0.6}}": (
-        "expected correlations that can hold together, a positive definite matrix, got one with the eigenvalue -0.2"
+        "expected correlations that are consistent, a positive definite matrix, got one with the eigenvalue -0.2"
     ),
     f"  - {{between: [{UPPER}, {DOOR_HINGE}], matrix: [[1, 0.5], [0.4, 1]]}}": (
         "expected one correlation of 'upper edge x' and 'door upper hinge x', got 0.5 and 0.4"
@@ -228,7 +228,7 @@ REFUSED = {
         "expected one correlation of 'door upper hinge x' and 'upper edge x', got a second one"
     ),
     f"  - {{between: [{UPPER}, {DOOR_HINGE}], rho: 0.9}}\n  - {{between: [{DOOR_HINGE}, {BODY_HINGE}], rho: 0.9}}": (
-        "got one with the eigenvalue -0.273; of 'body upper hinge x' and 'upper edge x' none is said, which is 0"
+        "got one with the eigenvalue -0.273; that of 'body upper hinge x' and 'upper edge x' is not stated, so 0"
     ),
 }
 

@@ -103,7 +103,7 @@ def keep(run: Run, name: str, found: Section) -> Path:
     file = f"{FOLDER}/{name}.json"
     path, manifest = run.path / file, run.manifest
     if file not in manifest.sums and path.exists():
-        raise RunError(f"{path}: expected no such file, for it is none of the run's own; move it elsewhere")
+        raise RunError(f"{path}: this file is not the run's own; move it elsewhere")
     try:
         path.parent.mkdir(exist_ok=True)
         write_whole(path, text_of_section(found).encode())

@@ -178,9 +178,9 @@ def _out_of_memory(error: Exception) -> str:
         return ""
     why = " ".join(str(error).split())
     return (
-        f"out of memory{f' ({why})' if why else ''}: nothing is wrong with the input; give it more (a run takes 1 to 2 "
-        "GB of address space and some for each worker), or take fewer --workers; what a run has done is kept, and the "
-        "same command goes on"
+        f"out of memory{f' ({why})' if why else ''}: the input is not at fault; allow more (a run takes 1 to 2 GB of "
+        "address space and some for each worker), or use fewer --workers; finished blocks are kept, and the same "
+        "command resumes the run"
     )
 
 

@@ -38,7 +38,7 @@ def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
             yield status
         except KeyboardInterrupt:
             if subject.batches.written:
-                err_console.print("what was evaluated is kept: the same command goes on from there")
+                err_console.print("evaluations are kept: the same command resumes from there")
             raise
     subject.batches.clear()
 

@@ -134,5 +134,5 @@ def _stopping(folder: Path, count: int) -> "Iterator[Callable[[int, int, str], N
 
             yield done
     except KeyboardInterrupt:
-        err_console.print(f"stopped; {finished} of {count} variants are kept in {folder}, the same command goes on")
+        err_console.print(f"stopped; {finished} of {count} variants are kept in {folder}; the same command resumes")
         raise typer.Exit(INTERRUPTED) from None

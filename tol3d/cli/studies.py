@@ -74,7 +74,7 @@ def run(
     run_builders: RunBuilders = False,
 ) -> None:
     """Simulate a scene: analytic model and 3D simulation side by side."""
-    _refuse(force and resume, "--resume goes on with what --force would replace; leave out one of them")
+    _refuse(force and resume, "--resume continues the run that --force would replace; leave out one of them")
     _refuse(workers is not None and scheduler is not None, "--scheduler has its own workers; leave out --workers")
     _refuse(quiet and verbose, "--quiet says less and --verbose more; leave out one of them")
     _refuse(no_picture and pictures is not None, "--no-picture draws nothing; leave out --pictures")
@@ -198,7 +198,8 @@ def _how_to_resume(folder: Path) -> str:
     if not partial.exists():
         return "stopped before anything was kept"
     arguments = [argument for argument in sys.argv[1:] if argument != "--resume"]
-    return f"stopped; what was done is kept in {partial}. To go on:\n{shlex.join(['tol3d', *arguments, '--resume'])}"
+    command = shlex.join(["tol3d", *arguments, "--resume"])
+    return f"stopped; finished blocks are kept in {partial}. To resume:\n{command}"
 
 
 @contextmanager
@@ -271,7 +272,7 @@ def _what_to_change(run: "Run", simulation: "Simulation", accepted_ppm: float) -
             return page()
         keep(run, "changes", told)
     except InputError as error:
-        warn(f"what to change is not known: {error}")
+        warn(f"no changes are proposed: {error}")
         return page()
     return page(*changes_lines(told, str(run.path)))
 

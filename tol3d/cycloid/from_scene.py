@@ -46,7 +46,7 @@ def rv_set(scene: Scene) -> RVSet:
     ((name, spec),) = reducers.items()
     for part in scene.parts:
         if part not in parts_of(spec):
-            raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+            raise scene.refuse(("parts", part), f"{part!r} is used by no move; name it in {name!r} or take it out")
     return reducer_of(scene, name, spec)
 
 

@@ -33,7 +33,7 @@ class FormulaTotals(StageTotals):
     """The same by the published formula, with the law that it has."""
 
     cycloid_half_range_arcsec: Number = Field(description="even about 0, 99.73 % of all: its law is not normal")
-    cycloid_coverage_percent: Number = Field(description="what three standard deviations cover")
+    cycloid_coverage_percent: Number = Field(description="coverage of three standard deviations")
 
 
 class CycloidStageSummary(Section):

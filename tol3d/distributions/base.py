@@ -136,7 +136,7 @@ class Distribution(ABC):
         Raises:
             InputError: a kind of law that cannot be scaled, or not so.
         """
-        raise InputError(f"expected a law that can be scaled, got {type(self).__name__}, which says nothing of it")
+        raise InputError(f"expected a law that can be scaled, got {type(self).__name__}, which defines no scaling")
 
     def scaled(self, factor: float, about: float | None = None) -> Self:
         """A law as many times as wide.

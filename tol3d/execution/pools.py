@@ -180,8 +180,8 @@ def pool_of(workers: int, scheduler: str | None, concurrency: Concurrency) -> It
                 yield pool
     except BrokenExecutor as error:
         raise RunError(
-            f"a worker process ended by itself, of too little memory perhaps ({type(error).__name__}); what was done "
-            "is kept: the same command goes on, with fewer --workers if need be"
+            f"a worker process ended by itself, perhaps for lack of memory ({type(error).__name__}); finished "
+            "blocks are kept: the same command resumes the run, with fewer --workers if need be"
         ) from None
 
 
@@ -235,11 +235,11 @@ def _cluster(address: str) -> Iterator[Pool]:
     try:
         yield OnCluster(client, _threads_of(client, address))
     except distributed.scheduler.KilledWorker as error:
-        raise RunError(f"--scheduler {address}: workers die of this study ({error}); what was done is kept") from None
+        raise RunError(f"--scheduler {address}: this study kills workers ({error}); finished blocks are kept") from None
     except (CancelledError, distributed.comm.CommClosedError) as error:
         raise RunError(
-            f"--scheduler {address}: the scheduler was lost ({' '.join(str(error).split())}); what was done is kept: "
-            "the same command goes on"
+            f"--scheduler {address}: the scheduler was lost ({' '.join(str(error).split())}); finished blocks are "
+            "kept: the same command resumes the run"
         ) from None
     finally:
         client.close(timeout=ANSWER_S)

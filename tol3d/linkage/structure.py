@@ -347,11 +347,11 @@ def structured(
         tree.append((own, reverse))
     for own in left:
         if any(own.name == joint for joint, _ in given):
-            words = "expected a loop with a joint of which nothing is given, got an input of each of its joints"
+            words = "expected a loop with a joint without an input, got an input of each of its joints"
             raise InputError(f"moves.{name}.joints.{own.name}: {words}")
         if own.kind == ROLLING:
             words = f"expected no other joint that leads to {own.of.partition('.')[0]!r} than this one"
-            raise InputError(f"moves.{name}.joints.{own.name}: {words}, got one; let what it drives follow it")
+            raise InputError(f"moves.{name}.joints.{own.name}: {words}, got one; let its driven parts follow it")
 
     def body(feature: str) -> int:
         return reached.get(feature.partition(".")[0], ROOT)

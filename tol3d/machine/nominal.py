@@ -214,8 +214,8 @@ def _with_distances(gears: Scene, lines: Mapping[str, tuple[str, tuple[Bore, Bor
         if not any(own in lines for own in shafts):
             continue
         if not isinstance(move, MeshSpec):
-            words = f"expected a mesh of spur gears on a shaft in bores, got {move.words}: nothing says where a bevel "
-            raise gears.refuse(("moves", name), f"{words}gear lies along its axis")
+            words = f"expected a mesh of spur gears on a shaft in bores, got {move.words}: the place of a bevel "
+            raise gears.refuse(("moves", name), f"{words}gear along its axis is unknown")
         if outside := [own for own in shafts if own not in lines]:
             inside = next(own for own in shafts if own in lines)
             words = f"expected both shafts in bores, got {outside[0]!r} in none, while {inside!r} lies in bores"

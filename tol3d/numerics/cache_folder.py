@@ -54,17 +54,17 @@ def _refuse_others(folder: Path) -> None:
         return
     if not stat.S_ISDIR(found.st_mode):
         return
-    way_out = f"{FOLDER_VARIABLE} names another folder"
+    remedy = f"{FOLDER_VARIABLE} names another folder"
     if found.st_uid not in (os.getuid(), ROOT):
         raise CacheError(
             f"{folder}: this folder of cached kernels belongs to user {found.st_uid}, who could have you run anything; "
-            f"expected one of your own: {way_out}"
+            f"expected one of your own: {remedy}"
         )
     if found.st_mode & OTHERS_WRITE:
         raise CacheError(
             f"{folder}: others may write to this folder of cached kernels (mode {stat.S_IMODE(found.st_mode):o}) and "
             f"could have you run anything; expected mode 700: delete it, or `chmod 700` it if you know all that is in "
-            f"it; {way_out}"
+            f"it; {remedy}"
         )
 
 

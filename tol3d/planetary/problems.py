@@ -44,7 +44,7 @@ def _bound(own: PlanetarySet, deviated: Deviated, shaft: str) -> Iterator[tuple[
             words = f"each contact that stops them lacks {1e3 * free.lacking[0]:.3f} um. Lessen the adjustment"
             yield (
                 ("parts", own.carrier, "adjustment"),
-                f"the planets cannot be displaced so far at the mean build: {words}",
+                f"the planets cannot be displaced that far at the mean build: {words}",
             )
             return
         yield (

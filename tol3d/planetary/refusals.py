@@ -32,7 +32,7 @@ def planetary_set(scene: Scene) -> PlanetarySet:
     own = set_of(scene, name, spec)
     for part in scene.parts:
         if part not in parts_of(own, spec):
-            raise scene.refuse(("parts", part), f"{part!r} takes part in no move; name it in {name!r} or take it out")
+            raise scene.refuse(("parts", part), f"{part!r} is used by no move; name it in {name!r} or take it out")
     return own
 
 
@@ -111,7 +111,7 @@ def _refuse_misnamed(scene: Scene, name: str, spec: PlanetarySpec, planet: Plane
             words = f"expected a gear of {spec.planet!r}: {', '.join(planet.gears)}, got {gear!r}"
             raise scene.refuse(("moves", name, "meshes", central), words)
         if central in planet.gears or scene.parts[central].kind not in ("spur_gear", "internal_gear"):
-            words = f"expected a spur gear or an internal gear that is none of the planet's, got {central!r}"
+            words = f"expected a spur gear or an internal gear outside the planet, got {central!r}"
             raise scene.refuse(("moves", name, "meshes", central), words)
     for gear in planet.gears:
         if gear not in spec.meshes.values():

@@ -64,7 +64,7 @@ class PassSummary(Kept):
     """One pass of a file."""
 
     file: str
-    repeat: int = Field(description="0 where the file has no such column")
+    repeat: int = Field(description="0 if the file has no such column")
     rows: int
     turns: float = Field(description="of the driver")
     shifted_by_turns: int = Field(description="of the driver, to lie where it belongs in the long period")

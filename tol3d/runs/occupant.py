@@ -54,7 +54,7 @@ class Occupant:
         """Reason why it is not simply replaced; empty if it is."""
         if self.others:
             return f"holds another study ({'; '.join(self.others)})"
-        return f"holds what is not of the run ({_some(self.foreign)})" if self.foreign else ""
+        return f"holds files that are not of the run ({_some(self.foreign)})" if self.foreign else ""
 
 
 @dataclass(frozen=True)

@@ -178,7 +178,7 @@ class RunWriter:
         drawn.rmdir()
 
     def finish(self, summary: Mapping[str, Any]) -> Run:
-        """Write the summary and put the run in its place; killed before that, the same command goes on."""
+        """Write the summary and put the run in its place; killed before that, the same command resumes."""
         text = written(summary, self._kinds)
         if self._keep_trials:
             self._blocks.settle()
@@ -231,7 +231,7 @@ def refusals_explained(writer: RunWriter, kept: Callable[[], str]) -> Iterator[N
     except OSError as error:
         if refused_by_disk(error):
             why, way = _why(error, writer)
-            raise DiskError(f"{why}: {kept()} kept in {writer.partial}; {way}, then the same command goes on") from None
+            raise DiskError(f"{why}: {kept()} kept in {writer.partial}; {way}, then the same command resumes") from None
         if str(error.filename or "").startswith(str(writer.partial)):
             raise RunError(f"{error.filename}: cannot be written ({error.strerror})") from None
         raise

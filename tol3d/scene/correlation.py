@@ -48,7 +48,7 @@ class CorrelationSpec(Strict):
             self._refuse_no_correlations()
         if (least := least_eigenvalue(self.correlation)) < LEAST_EIGENVALUE:
             field = "rho" if self.matrix is None else "matrix"
-            raise refused(field, "correlations that can hold together, a positive definite matrix", eigenvalue(least))
+            raise refused(field, "correlations that are consistent, a positive definite matrix", eigenvalue(least))
         return self
 
     def _refuse_no_correlations(self) -> None:

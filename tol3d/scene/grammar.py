@@ -33,10 +33,10 @@ Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
 
 SECTIONS_MEAN: Final[Mapping[str, str]] = {
-    "parts": "what is assembled, by name",
-    "tolerances": "what deviates, by name",
-    "moves": "how parts are placed, by name and in this order",
-    "measures": "what is read of each build, by name",
+    "parts": "parts, by name",
+    "tolerances": "deviations of parts, by name",
+    "moves": "placement of parts, by name and in this order",
+    "measures": "quantities read from each build, by name",
 }
 
 BASES: Final[Mapping[str, type[Entry]]] = {
@@ -315,7 +315,7 @@ def _scene_class(grammar: Grammar, required: frozenset[str] = REQUIRED) -> type[
         field = Field(min_length=1, description=means) if given else Field(default_factory=dict, description=means)
         sections[section] = (Mapping[Name, union], field)  # type: ignore[valid-type]  # made at run time
     study = study_spec_class(grammar.engines, tuple(each.options for each in grammar.vocabularies if each.options))
-    sections["study"] = (study, Field(default_factory=study, description="how many builds, and how they are drawn"))
+    sections["study"] = (study, Field(default_factory=study, description="number of builds, and their draws"))
     column: Any = published_column_class(tuple(each.published for each in grammar.vocabularies if each.published))
     sections["published"] = (Mapping[Name, column], Field(default_factory=dict, description=PUBLISHED_MEANS))
     made = create_model("Scene", __base__=Scene, __module__=Scene.__module__, __doc__=Scene.__doc__, **sections)

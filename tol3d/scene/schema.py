@@ -110,9 +110,9 @@ class StudySpec(Strict):
     until: Mapping[Name, StandardErrors] = Field(
         default_factory=dict, description="standard errors at which automatic trials stop, by measure"
     )
-    at_most: int = Field(default=10_000_000, ge=1, le=MOST_TRIALS, description="automatic trials stop there anyway")
+    at_most: int = Field(default=10_000_000, ge=1, le=MOST_TRIALS, description="largest number of automatic trials")
     seed: int = Field(default=1, ge=0, le=MOST_SEED, description="the same seed gives the same trials")
-    sampler: SamplerKind = Field(default="monte_carlo", description="how deviations are drawn")
+    sampler: SamplerKind = Field(default="monte_carlo", description="sampling of deviations")
     replicates: int | None = Field(
         default=None,
         ge=FEWEST_REPLICATES,
@@ -120,7 +120,7 @@ class StudySpec(Strict):
         description="parts of equal size, each randomised anew, whose spread gives the errors of sobol and "
         f"latin_hypercube; {REPLICATES} if not given",
     )
-    engine: str = Field(default="exact", description="what the 3D simulation measures with; analytic: none of it")
+    engine: str = Field(default="exact", description="engine of the 3D simulation; analytic: no 3D simulation")
     witness: int = Field(
         default=0, ge=0, le=MOST_WITNESSED, description="trials, at random, that another engine measures again"
     )

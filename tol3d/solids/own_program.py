@@ -74,7 +74,7 @@ def run_program(file: FileContent, function: str, dimensions: Mapping[str, float
         for number, face in enumerate(faces, 1)
     )
     if missing := [name for name in named if name not in called]:
-        words = f"the face {missing[0]!r} is none of the solid that {function} returns"
+        words = f"the face {missing[0]!r} is not on the solid that {function} returns"
         raise GeometryError(f"{file.path}: {words}; tag it after all cuts")
     stream = io.BytesIO()
     solid.exportBrep(stream)

@@ -253,7 +253,7 @@ def read_step(content: FileContent) -> StepFile:
     try:
         return StepFile(content, READ.validate_json(arrays["read"].tobytes()))
     except (KeyError, ValidationError):
-        raise StepError(f"{cache_folder()}: an entry of the cache is not what it was; delete the folder") from None
+        raise StepError(f"{cache_folder()}: a cache entry was changed; delete the folder") from None
 
 
 def _read_part(text: Part21, body: Body, faces: Faces, mesh: FaceMesh, named: Sequence[Named]) -> ReadPart:
@@ -485,5 +485,5 @@ def _cached(name: str, make: Any) -> Arrays:
         write_entry(name, buffer.getvalue())
     except OSError as error:
         advice = f"set {FOLDER_VARIABLE} to a folder that can be written"
-        warnings.warn(f"{cache_folder()}: cannot keep what was read ({error.strerror}); {advice}", CacheWarning, 3)
+        warnings.warn(f"{cache_folder()}: cannot cache the read file ({error.strerror}); {advice}", CacheWarning, 3)
     return arrays

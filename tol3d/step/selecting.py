@@ -95,7 +95,7 @@ def _of_faces(part: StepPart, selector: Selector) -> FoundFeature:
     """The feature that exactly these faces are."""
     for number in selector.faces:
         if number not in part.shell.faces:
-            raise SelectionError(f"expected faces of {shown(part.name)!r}, got #{number}, which is none of it", "faces")
+            raise SelectionError(f"expected faces of {shown(part.name)!r}, got #{number} of something else", "faces")
     if not part.shell.is_one(selector.faces):
         raise SelectionError("expected faces that lie on one surface, got faces of several", "faces")
     made = part.shell.made_of(selector.faces)
@@ -111,7 +111,7 @@ def _fitting(part: StepPart, selector: Selector) -> list[FoundFeature]:
         found = [own for own in part.features if selector.face in (*own.faces, *own.repeated)]
         if not found:
             raise SelectionError(
-                f"expected a face of {shown(part.name)!r}, got #{selector.face}, which is none of it", "face"
+                f"expected a face of {shown(part.name)!r}, got #{selector.face} of something else", "face"
             )
     if selector.name is not None:
         found = [own for own in part.features if selector.name in own.names]
@@ -161,7 +161,7 @@ def _named(part: StepPart, selector: Selector, field: str) -> list[FoundFeature]
             found.append(own)
     if not found:
         words = "; ".join(shown(own.words) for own in fitting[:MOST_SHOWN])
-        raise SelectionError(f"expected what has faces, got {words}, which the file gives none of this part", field)
+        raise SelectionError(f"expected an item with faces, got {words} without faces on this part", field)
     return found
 
 

@@ -92,7 +92,7 @@ def unit_of(file: Part21, identifier: int, depth: int = 0) -> Unit:
     converted = instance.record("CONVERSION_BASED_UNIT", "CONVERSION_BASED_UNIT_WITH_OFFSET")
     if converted is not None:
         if depth >= DEEPEST_CONVERSION:
-            raise StepError(f"{instance.place}: expected a unit said by at most {DEEPEST_CONVERSION} others")
+            raise StepError(f"{instance.place}: expected a unit defined by at most {DEEPEST_CONVERSION} others")
         name_at = 1 if len(instance.records) == 1 else 0  # a simple instance has NAMED_UNIT's dimensions first
         basis = measure_of(file, converted.reference(name_at + 1), depth + 1)
         if not basis.value > 0:

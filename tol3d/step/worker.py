@@ -147,7 +147,7 @@ class Transferred:
         """The `#id` of the entity that a shape was made of."""
         entity = self._transfer.EntityFromShapeResult(shape, -1)
         if entity is None or id(entity) not in self._ids:
-            raise UnreadError("Open CASCADE makes a solid that none of the file is")
+            raise UnreadError("Open CASCADE makes a solid that is not in the file")
         return self._ids[id(entity)]
 
     def _root(self, number: int, shape: TopoDS_Shape) -> dict[str, Any]:

@@ -101,8 +101,8 @@ def _block(scene: Scene, names: tuple[str, ...], said: Mapping[frozenset[str], f
         matrix[i, j] = matrix[j, i] = said.get(pair, 0.0)
         unsaid += [] if pair in said else [f"{names[i]!r} and {names[j]!r}"]
     if (least := least_eigenvalue(matrix)) < LEAST_EIGENVALUE:
-        open_ones = f"; of {unsaid[0]} none is said, which is 0" if unsaid else ""
-        words = f"expected correlations of {', '.join(map(repr, names))} that can hold together, a positive definite"
+        open_ones = f"; that of {unsaid[0]} is not stated, so 0" if unsaid else ""
+        words = f"expected correlations of {', '.join(map(repr, names))} that are consistent, a positive definite"
         raise scene.refuse((CORRELATIONS,), f"{words} matrix, got {eigenvalue(least)}{open_ones}")
     return Block(names, tuple(tuple(row) for row in matrix.tolist()))
 
@@ -206,4 +206,4 @@ def correlation_warnings(simulation: Simulation) -> Iterator[str]:
         and closed_form_of(simulation, measure) is None
     ]
     if lost:
-        yield f"no closed form of {', '.join(lost)}: what is correlated acts otherwise than by a slope"
+        yield f"no closed form of {', '.join(lost)}: a correlated contributor acts otherwise than by a slope"

@@ -33,13 +33,11 @@ class RVReducerSpec(MoveSpec):
     kind: Literal["rv_reducer"]
     pin_ring: Name = Field(description="the ring of pins, which is fixed")
     disc: Name = Field(description="the cycloid disc, of which there may be several")
-    discs: int = Field(default=2, ge=1, le=4, description="how many")
+    discs: int = Field(default=2, ge=1, le=4, description="number of discs")
     crankshaft: Name = Field(description="the crankshaft, of which there are several")
-    cranks: int = Field(default=3, ge=2, le=8, description="how many")
-    carrier: Name = Field(description="what holds the crankshafts: the output")
-    sun: Name | None = Field(
-        default=None, description="the gear of the input; none where the crankshafts are the input"
-    )
+    cranks: int = Field(default=3, ge=2, le=8, description="number of crankshafts")
+    carrier: Name = Field(description="the part that holds the crankshafts: the output")
+    sun: Name | None = Field(default=None, description="the gear of the input; none if the crankshafts are the input")
     planet: Name | None = Field(default=None, description="the gear on each crankshaft that meshes with the sun")
     window: float = Field(
         default=0.7,

@@ -49,7 +49,7 @@ class PublishedCycloidStage(Strict):
     by_formula: PublishedFormulaTotals | None = Field(default=None, description="by the paper's own formula")
     first_principles: PublishedTotals | None = Field(default=None, description="of the pin with the largest lever")
     sun_held: NotNegative | None = Field(default=None, description="turn of the output per turn of a disc")
-    description: Remark = Field(default="", description="what must be known of these numbers")
+    description: Remark = Field(default="", description="remark on these numbers")
 
 
 class PublishedCycloidStages(PublishedFigures):

@@ -26,8 +26,8 @@ def problems_at(
         if acts[contributor.name].effect in NOT_NEGATIVE and mean < 0.0:
             yield (
                 ("tolerances", contributor.name, "distribution"),
-                f"expected a mean clearance of at least 0 um, got {1e3 * mean:g} um: a bearing that is pressed "
-                "together has none, '{kind: constant, value: 0 um}'",
+                f"expected a mean clearance of at least 0 um, got {1e3 * mean:g} um: a preloaded "
+                "bearing has no clearance, '{kind: constant, value: 0 um}'",
             )
     stage = deviated.stage
     circle, radius = float(stage.pins[..., 0].mean()), float(stage.pin_radii.mean())

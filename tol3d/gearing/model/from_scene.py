@@ -115,7 +115,7 @@ def model_from_scene(scene: Scene) -> Model:
     """
     brought = brought_into(scene)
     for gear in (name for name in loose_gears(scene) if name not in brought.owners):
-        raise scene.refuse(("parts", gear), f"{gear!r} takes part in no move; put it into a mesh or take it out")
+        raise scene.refuse(("parts", gear), f"{gear!r} is used by no move; put it into a mesh or take it out")
     refuse_bearings(scene)
     refuse_second_laws(scene)
     shafts, arms = shafts_of(scene), arms_of(scene)

@@ -94,4 +94,4 @@ def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Mapping
     """Refuse parts of mechanisms that no move names."""
     for name, part in scene.parts.items():
         if isinstance(part, kinds) and name not in used:
-            raise scene.refuse(("parts", name), f"{name!r} takes part in no move; name it in {words} or take it out")
+            raise scene.refuse(("parts", name), f"{name!r} is used by no move; name it in {words} or take it out")

@@ -56,7 +56,7 @@ class CloseLoopSpec(StatedMoveSpec):
     bodies: Annotated[tuple[Name, ...], listed("bodies")] = Field(description="the parts that it places")
     joints: Mapping[Name, JointUnion] = Field(min_length=1, description="by name: between them, and to placed parts")
     inputs: Mapping[Name, InputSpec] = Field(default_factory=dict, description="by name: freedoms that are given")
-    output: OutputSpec | None = Field(default=None, description="what poses may name instead of inputs")
+    output: OutputSpec | None = Field(default=None, description="output that poses may name instead of inputs")
     poses: Mapping[Name, PoseSpec] = Field(
         default_factory=dict, description="by name: inputs, or the output, or a path; as parts are `placed` if none"
     )

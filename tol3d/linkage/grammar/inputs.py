@@ -29,7 +29,7 @@ class InputDeviationSpec(Strict):
         description="its law: as the input is measured, or an angle of the screw or gears that drive it, by `lead`"
     )
     per: Annotated[Quantity, Of("length", "angle"), Positive()] | None = Field(
-        default=None, description="of how far the input goes, such as 300 mm of a lead error; of none if not given"
+        default=None, description="travel to which it refers, such as 300 mm of a lead error; none if not given"
     )
     description: str = Field(default="", description="the user's own words, shown in reports")
 
@@ -58,17 +58,15 @@ class InputSpec(Strict):
         description="of a joint with several freedoms: turn or slide, first or second axis, tilt x or y",
     )
     as_placed: Amount | None = Field(
-        default=None, description="what it is as parts are `placed`, such as the length of a leg; 0 if not given"
+        default=None, description="its value as parts are `placed`, such as the length of a leg; default: 0"
     )
     range: Annotated[tuple[Amount, Amount], listed("limits", 2, 2)] | None = Field(
-        default=None, description="from where to where it may go; poses beyond are refused"
+        default=None, description="ends of its travel; poses beyond are refused"
     )
     lead: Annotated[Quantity, Of("length")] | None = Field(
-        default=None, description="how far a slide goes a turn of what drives it, for deviations that are angles"
+        default=None, description="travel of a slide per turn of its drive, for deviations that are angles"
     )
-    deviations: Mapping[Name, InputDeviationSpec] = Field(
-        default_factory=dict, description="by how much it is off, by name"
-    )
+    deviations: Mapping[Name, InputDeviationSpec] = Field(default_factory=dict, description="its deviations, by name")
 
 
 class OutputSpec(Strict):
@@ -76,8 +74,8 @@ class OutputSpec(Strict):
 
     words: ClassVar[str] = "an output"
 
-    tilt: FeatureName | None = Field(default=None, description="whose z tilts, such as ring.axis")
-    place: FeatureName | None = Field(default=None, description="or what is placed, such as platform.centre")
+    tilt: FeatureName | None = Field(default=None, description="feature whose z tilts, such as ring.axis")
+    place: FeatureName | None = Field(default=None, description="or feature that is placed, such as platform.centre")
     from_: FeatureName = Field(alias="from", description="of a placed part: z is no tilt, azimuths count from x")
 
     @model_validator(mode="after")
@@ -104,7 +102,7 @@ class PlacePoseSpec(Strict):
 
     at: Vector = Field(description="place of the output [x, y, z], in the frame from which it is read")
     turned: Annotated[tuple[Angle, Angle, Angle], three("three angles: a rotation vector")] | None = Field(
-        default=None, description="a rotation vector, from the frame from which it is read; none turned if not given"
+        default=None, description="a rotation vector, from the frame from which it is read; default: no turn"
     )
 
 
@@ -112,7 +110,7 @@ class PathSpec(Strict):
     """Several poses, one after the other."""
 
     path: Annotated[tuple[Name, ...], listed("poses", 2)] = Field(description="poses that it goes through, in order")
-    steps: int = Field(ge=1, le=20_000, description="in which it does, alike between all of them")
+    steps: int = Field(ge=1, le=20_000, description="number of steps between each two of them")
 
     @model_validator(mode="after")
     def _refuse_few(self) -> Self:

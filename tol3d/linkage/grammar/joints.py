@@ -33,7 +33,7 @@ class TowardFloatSpec(Strict):
     """Float at the end of the clearance."""
 
     kind: Literal["toward"]
-    along: Direction = Field(description="which way the part after lies, in the frame of the joint's first feature")
+    along: Direction = Field(description="direction of the part after, in the frame of the joint's first feature")
 
 
 BallFloat = Annotated[CentredFloatSpec | RandomFloatSpec | TowardFloatSpec, Field(discriminator="kind")]
@@ -45,9 +45,9 @@ class ClearanceSpec(Strict):
 
     words: ClassVar[str] = "a clearance"
 
-    diameter: Annotated[Quantity, Of("length")] = Field(description="by how much the socket is larger, nominally")
+    diameter: Annotated[Quantity, Of("length")] = Field(description="nominal diametral clearance in the socket")
     distribution: StatedDistribution | None = Field(default=None, description="the law of its deviation")
-    floating: BallFloat = Field(alias="float", description="where in it the part after lies")
+    floating: BallFloat = Field(alias="float", description="position of the part after in it")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:
@@ -60,10 +60,10 @@ class PlaySpec(Strict):
 
     words: ClassVar[str] = "a play"
 
-    diameter: Annotated[Quantity, Of("length")] = Field(description="by how much the bore is larger, nominally")
+    diameter: Annotated[Quantity, Of("length")] = Field(description="nominal diametral clearance in the bore")
     length: Length = Field(description="between the two ends, evenly about the middle of the joint's first feature")
     distribution: StatedDistribution | None = Field(default=None, description="the law of the diameter's deviation")
-    floating: AxisFloat = Field(alias="float", description="where in it the part after lies")
+    floating: AxisFloat = Field(alias="float", description="position of the part after in it")
 
     @model_validator(mode="after")
     def _refuse_nonsense(self) -> Self:

@@ -26,7 +26,7 @@ class CarrierPinsSpec(MoveSpec):
 
     kind: Literal["carrier_pins"]
     carrier: Name = Field(description="the carrier of a planetary set or an RV reducer")
-    axis: FeatureName = Field(description="about which it turns, such as plate.bearing; z as that of the train")
+    axis: FeatureName = Field(description="axis about which it turns, such as plate.bearing; z as that of the train")
     pins: Annotated[tuple[FeatureName, ...], listed("pins", 1, 12)] = Field(
         description="of all planets or cranks in their order, counter-clockwise about that z, such as plate.pin 1"
     )

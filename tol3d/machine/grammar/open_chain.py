@@ -73,7 +73,7 @@ class MassSpec(Strict):
 
     of: Name = Field(description="the link")
     mass: Annotated[Quantity, Of("mass")] = Field(description="such as 30 kg")
-    at: Vector = Field(description="where it is, in the frame of that part")
+    at: Vector = Field(description="its place, in the frame of that part")
 
 
 class OpenChainSpec(StatedMoveSpec):
@@ -92,7 +92,7 @@ class OpenChainSpec(StatedMoveSpec):
     )
     gravity: Direction | None = Field(default=None, description="its direction in the world; none loads no joint")
     masses: Annotated[tuple[MassSpec, ...], listed("masses", 0, 100)] = Field(
-        default=(), description="what it pulls at; a payload counts to the last link"
+        default=(), description="masses that it pulls at; a payload belongs to the last link"
     )
 
     @property

@@ -24,8 +24,8 @@ class PlanetarySpec(MoveSpec):
 
     kind: Literal["planetary"]
     planet: Name = Field(description="the planet, of which there are several")
-    planets: int = Field(ge=1, le=12, description="how many")
-    carrier: Name = Field(description="what holds their pins")
+    planets: int = Field(ge=1, le=12, description="number of planets")
+    carrier: Name = Field(description="the part that holds their pins")
     meshes: Mapping[Name, Name] = Field(
         min_length=2, description="each central gear, a sun or a ring, with the gear of the planets that it meshes with"
     )

@@ -50,7 +50,7 @@ class FlexibleCarrierSpec(CarrierSpec):
         default=None, description="of the screw; the springs push as far as they can if not given"
     )
     displacement: float = Field(
-        default=1.0, gt=0.0, description="how far each planet moves a unit of the adjustment, such as 0.54"
+        default=1.0, gt=0.0, description="travel of each planet per unit of the adjustment, such as 0.54"
     )
 
     force: Force | None = Field(

@@ -30,7 +30,7 @@ class PublishedPlanetarySet(Strict):
     )
     efficiency: PublishedEfficiency | None = Field(default=None, description="measured, or by a balance of torques")
     efficiency_by_formula: PublishedEfficiency | None = Field(default=None, description="by a closed form")
-    description: Remark = Field(default="", description="what must be known of these numbers")
+    description: Remark = Field(default="", description="remark on these numbers")
 
 
 class PublishedPlanetarySets(PublishedFigures):

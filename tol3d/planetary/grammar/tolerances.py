@@ -38,7 +38,7 @@ class BorePositionSpec(ToleranceEntry):
     kind: Literal["bore_position"]
     of: Name = Field(description="the carrier")
     each: Literal["planet"] = Field(default="planet", description="planet: every bore deviates by itself")
-    zone: RoundZoneSpec = Field(description="how much room the drawing leaves: a diameter")
+    zone: RoundZoneSpec = Field(description="zone of the drawing: a diameter")
     law: LawUnion
 
     def references(self) -> tuple[Reference, ...]:

@@ -61,8 +61,8 @@ class Witnessed(Section):
     rms_difference: Known
     trial_of_the_largest: Count | None
     compared: Count
-    expected_at_most: NotNegative = Field(description="what chord errors explain")
-    allowance: NotNegative = Field(description="what else the witness may be off")
+    expected_at_most: NotNegative = Field(description="largest part explained by chord errors")
+    allowance: NotNegative = Field(description="further allowed error of the witness")
 
 
 class WitnessSummary(Section):

@@ -41,7 +41,7 @@ class Correlations(Section):
     r: Matrix = Field(description="Pearson's; null where a measure does not vary or fewer than two trials have both")
     r_low_95: Matrix | None = Field(description="bounds of the true correlation, 95 % confidence, by Fisher's artanh r")
     r_high_95: Matrix | None = Field(description="null where trials are not independent")
-    trials: CountMatrix = Field(description="how many have both values; on the diagonal, one")
+    trials: CountMatrix = Field(description="number with both values; on the diagonal, with one")
 
 
 class Joint(Section):
@@ -51,7 +51,7 @@ class Joint(Section):
     yields: Maybe[Mapping[Method, JointYield]] = LEFT_OUT
     correlated: Names = Field(description="the measures of the matrices, in the order of their rows and columns")
     correlated_of: Maybe[Count] = Field(
-        default=LEFT_OUT, description="how many measures have correlations in correlations.csv, where that is more"
+        default=LEFT_OUT, description="number of measures with correlations in correlations.csv, if that is more"
     )
     correlations: Maybe[Mapping[Method, Correlations]] = LEFT_OUT
 

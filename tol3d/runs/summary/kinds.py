@@ -104,9 +104,7 @@ class SummaryKinds:
     def _columns(self) -> Any:
         """Published figures beside measures, by column."""
         bases: Any = tuple(in_summary(each) for each in (*self.published, PublishedWhole))
-        column: Any = create_model(
-            "PublishedOfTheWhole", __base__=bases, __doc__="What somebody else found of the whole."
-        )
+        column: Any = create_model("PublishedOfTheWhole", __base__=bases, __doc__="Published figures of the whole.")
         return Annotated[Mapping[Label, column], Field(max_length=MOST_ENTRIES)]
 
     def _with_options(self, section: type[Section]) -> Any:

@@ -91,12 +91,12 @@ class MeasureSummary(Section):
     over: Label
     take: Literal["value", "min", "max", "range", "harmonic", "curve"]
     unit: Unit
-    worse: Worse = Field(description="which end is the worse where no limit says so")
+    worse: Worse = Field(description="worse end without limits")
     lower_limit: Known
     upper_limit: Known
-    status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    status: Mapping[Label, Count] = Field(description="number of trials by status")
     reasons: Maybe[Mapping[Label, Count]] = Field(
-        default=LEFT_OUT, description="what decided how many trials that failed, in words of the system; the most first"
+        default=LEFT_OUT, description="number of failed trials by cause, in words of the system; the most first"
     )
     laws: Maybe[Mapping[Label, Label]] = Field(
         default=LEFT_OUT, description="laws of the zones that act on it, by tolerance"

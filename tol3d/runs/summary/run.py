@@ -35,7 +35,7 @@ class MechanismSummary(Section):
     name: Label
     module: Label = Field(description="the Python module of its system")
     beside: Maybe[Annotated[list[Label], Field(min_length=1, max_length=MOST_ENTRIES)]] = Field(
-        default=LEFT_OUT, description="names of other mechanisms that brought something into it"
+        default=LEFT_OUT, description="names of other mechanisms that added to it"
     )
 
 
@@ -51,7 +51,7 @@ class StudySummary(Section):
     )
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
-    ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="by what Ppk was asked for")
+    ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="requested basis of Ppk")
 
 
 class Blocks(Section):
@@ -84,18 +84,18 @@ class Findings(Section):
     trials: Positive
     engine: Label
     study: StudySummary
-    status: Mapping[Label, Count] = Field(description="how many trials ended how")
+    status: Mapping[Label, Count] = Field(description="number of trials by status")
     statuses: Mapping[Label, Meaning] = Field(
         description="of each status: values count; less than nothing of what is measured; nothing is known but that"
     )
     status_words: Maybe[Mapping[Label, Label]] = Field(
-        default=LEFT_OUT, description="what trials of a status are, where its own text is no word for them"
+        default=LEFT_OUT, description="adjective of trials of a status, if its own text is none"
     )
     chord_error_um: NotNegative | None
     measures: Annotated[Mapping[Label, MeasureSummary], Field(min_length=1, max_length=MOST_ENTRIES)]
     joint: Maybe[Joint] = LEFT_OUT
     published: Maybe[Mapping[Label, Section]] = Field(
-        default=LEFT_OUT, description="what others found beside measures, by column and by the keys of this file"
+        default=LEFT_OUT, description="published figures beside measures, by column and by the keys of this file"
     )
     warnings: list[Sentence]
     witness: Maybe[WitnessSummary] = LEFT_OUT
@@ -110,7 +110,7 @@ class RunSummary(Findings):
     blocks: Blocks
     files: Mapping[Label, Sha256] = Field(description="SHA-256 of the scene and of every file that it names")
     timing: Timing
-    versions: Mapping[Label, Sentence] = Field(description="of what decides a result's last bit")
+    versions: Mapping[Label, Sentence] = Field(description="of packages that decide a result's last bit")
 
     @property
     def methods(self) -> tuple[Method, ...]:

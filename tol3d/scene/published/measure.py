@@ -60,7 +60,7 @@ class PublishedMeasure(Strict):
     contributors: Mapping[Name, Share] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
-    description: Remark = Field(default="", description="what must be known of these numbers, shown below the table")
+    description: Remark = Field(default="", description="remark on these numbers, shown below the table")
     skewness: Figure | None = Field(default=None, description="skewness")
     kurtosis: Figure | None = Field(default=None, description="excess kurtosis")
     pp: Figure | None = Field(default=None, description="Pp")
@@ -72,7 +72,7 @@ class PublishedMeasure(Strict):
 
     count: Count | None = Field(default=None, description="trials with a value")
     trials: Count | None = Field(default=None, description="all of them, failed ones too")
-    status: Mapping[Name, Count] = Field(default_factory=dict, description="how many trials ended how")
+    status: Mapping[Name, Count] = Field(default_factory=dict, description="number of trials by status")
     nominal: Quantity | None = Field(default=None, description="of the build without deviations")
     mean_build: Quantity | None = Field(default=None, description="of the build with all deviations at their means")
     below_limit_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence")

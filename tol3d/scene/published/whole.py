@@ -62,7 +62,7 @@ class PublishedJoint(Strict):
     correlations: Mapping[Name, Mapping[Name, Correlation]] = Field(
         default_factory=dict, description="Pearson's r by both measures, each pair once"
     )
-    description: Remark = Field(default="", description="what must be known of these numbers")
+    description: Remark = Field(default="", description="remark on these numbers")
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -107,10 +107,10 @@ class PublishedWhole(PublishedFigures):
     seed: Count | None = Field(default=None, description="seed of the draws")
     trials: Count | None = Field(default=None, description="number of trials")
     chord_error_um: NotNegative | None = Field(default=None, description="error of facets at curved faces [um]")
-    status: Mapping[Name, Count] = Field(default_factory=dict, description="how many trials ended how")
-    joint: PublishedJoint | None = Field(default=None, description="what measures do together")
-    study: PublishedStudy | None = Field(default=None, description="how it was simulated")
-    timing: PublishedTiming | None = Field(default=None, description="how long it took")
+    status: Mapping[Name, Count] = Field(default_factory=dict, description="number of trials by status")
+    joint: PublishedJoint | None = Field(default=None, description="joint results of measures")
+    study: PublishedStudy | None = Field(default=None, description="settings of the study")
+    timing: PublishedTiming | None = Field(default=None, description="durations")
 
     def problems(self, scene: Any) -> Iterator[Problem]:
         """Correlations of unknown measures, or of a curve."""
