@@ -1,6 +1,6 @@
 """The one registration: kinds of scenes, and the mechanisms that understand them.
 
-A mechanism that tol3d brings along is a line of SHIPPED. Others come with packages, by an entry point of the group
+A bundled mechanism is a line of SHIPPED. Others come with packages, by an entry point of the group
 `tol3d.mechanisms`, or are registered by the program that uses them:
 
     tol3d.register(mechanism)

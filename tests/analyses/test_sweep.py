@@ -140,7 +140,8 @@ def test_a_variant_that_cannot_be_built_is_a_row_with_its_reason(found: Sweep) -
     assert [own.values[1] for own in failed] == ["30"] * 3
     assert all("the teeth interfere" in str(own.reason) and not own.measures for own in failed)
     text = as_text(sweep_report(found), 160)
-    assert text.count("not built") == 3 * 2 + 1  # a row in each of two measures, and a title
+    assert text.count("not assembled") == 3 * 2  # a row in each of two measures
+    assert text.count("could not be assembled") == 1
     assert "the teeth interfere" in text
 
 
@@ -149,7 +150,7 @@ def test_its_table_has_a_row_a_variant_with_all_digits(found: Sweep) -> None:
     assert [row[f"{UPPER} [um]"] for row in rows] == ["10.0", "10.0", "20.0", "20.0", "30.0", "30.0"]
     assert float(rows[0]["normal backlash: mean [um]"]) == found.variants[0].measures["normal backlash"].mean
     assert rows[1]["normal backlash: mean [um]"] == ""
-    assert rows[1]["not built"]
+    assert rows[1]["could not be assembled"]
 
 
 def trials_of(*vary: str, out: Path, stop_at: int = -1) -> tuple[Sweep | None, int]:

@@ -68,7 +68,7 @@ def test_deviations_are_magnified_as_far_as_parts_go_together(run: Run) -> None:
     most = 0.1 / -size  # no room is left
     used = float(note.split()[1])
     assert most * (1 - 0.06) < used < most * 1.01
-    assert "not 50: beyond that they are not built" in note
+    assert "not 50: beyond that they cannot be assembled" in note
 
 
 def test_the_worst_trial_that_builds_is_shown(run: Run) -> None:

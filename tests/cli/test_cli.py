@@ -35,12 +35,12 @@ PLAIN = ("--no-picture",)  # where no picture is asked about: drawing one takes 
 
 
 def test_run_prints_the_table_and_writes_the_run(tol3d: Command, tmp_path: Path) -> None:
-    code, out, _ = tol3d("run", SPUR, "--trials", "100", "--out", str(tmp_path / "spur"))
+    code, out, _ = tol3d("run", SPUR, "--trials", "100", "-v", "--out", str(tmp_path / "spur"))
     assert code == 0
     # 53.397: the closed form by the paper's tables; 53.398: the mean build with the squares that it leaves out
     for words in ("normal backlash", "3D simulation", "paper, 3DCS", "centre distance", "53.397", "53.398"):
         assert words in out
-    assert "witness: FCL measured 20 of these trials again: at most 0.0" in out
+    assert "witness: FCL measured 20 of these trials again: within ±0.0" in out
     written = {path.name for path in (tmp_path / "spur").iterdir()}
     assert written == {"SHA256SUMS", "trials", "scene.yaml", "histogram.png", *TABLES}
 
@@ -256,12 +256,12 @@ def test_a_name_that_is_no_scene_is_refused(tol3d: Command, tmp_path: Path) -> N
     assert "nowhere.yaml" in err
 
 
-def test_a_name_near_a_scene_that_tol3d_brings_along_is_guessed(tol3d: Command) -> None:
+def test_a_name_near_a_bundled_scene_is_guessed(tol3d: Command) -> None:
     code, _, err = tol3d("run", "spur_pairs")
     assert code == 2
     assert err == 'spur_pairs: no such file, and no scene of that name; did you mean "spur_pair"?\n'
     _, _, err = tol3d("run", "xyz")
-    assert "no such file, and no scene of that name (tol3d brings along: bevel_pair, " in err
+    assert "no such file, and no scene of that name (bundled scenes: bevel_pair, " in err
 
 
 @pytest.mark.parametrize(

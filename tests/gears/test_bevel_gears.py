@@ -815,7 +815,7 @@ def test_gears_that_do_not_belong_together_are_refused(changed: dict[str, Any], 
 def test_tips_in_roots_are_refused_with_the_depth() -> None:
     text = pair_refusal(replace(PAPER_GEAR, dedendum=0.9), PAPER_GEAR)
     depth = 76.721086 * math.sin(math.atan(3.5 / 76.721086) - math.atan(0.9 * 3.5 / 76.721086))
-    assert f"the driven gear's tip digs {depth:.4f} mm into the root of the driver gear" in text
+    assert f"the tip of the driven gear and the root of the driver gear interfere by {depth:.4f} mm" in text
 
 
 def test_undercut_that_reaches_the_flank_in_use_is_refused_with_the_shift_that_mends_it() -> None:

@@ -38,8 +38,8 @@ REFUSED = {
     ),
     "a ring whose tips dig in": (
         ("teeth: 79, module: 1 mm,", "teeth: 79, module: 1 mm, addendum: 1.6,"),
-        "moves.reducer.meshes.ring 1: tip interference at centre distance 26 mm: the internal gear's tip circle digs "
-        "0.3500 mm into the root of the inner gear",
+        "moves.reducer.meshes.ring 1: tip interference at centre distance 26 mm: the tip circle of the internal "
+        "gear and the root of the inner gear interfere by 0.3500 mm",
     ),
     "planets whose tips dig in": (
         ("teeth: 27, module: 1 mm,", "teeth: 27, module: 1 mm, addendum: 1.5,"),

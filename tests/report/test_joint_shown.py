@@ -48,7 +48,7 @@ def test_the_yield_is_a_line_below_the_verdict_of_every_run(run: Run) -> None:
         f"analytic {shares['analytic']}"
     )
     for detail in Detail:
-        assert expected in printed(run_report(run.found, detail), 160).splitlines()
+        assert expected in map(str.rstrip, printed(run_report(run.found, detail), 160).splitlines())
 
 
 def test_correlations_are_printed_with_the_tables_of_every_measure(run: Run) -> None:

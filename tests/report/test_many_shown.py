@@ -103,8 +103,16 @@ def test_what_check_leaves_out_is_in_its_file(tol3d: Command, scene: Path, tmp_p
 
 
 def test_a_run_has_the_worst_measures_and_the_verdict_of_all(run: Run) -> None:
-    words = printed(run_report(run.found, Detail.SECTIONS), 200)
+    words = printed(run_report(run.found, Detail.SHORT), 200)
     shown = [line.split()[0] for line in words.splitlines() if line.startswith("m") and "µm" in line]
+    named = [line.split() for line in words.partition("largest contributors")[2].splitlines() if line.startswith("m")]
+    (share,) = {
+        own["geometric_percent"]
+        for measure in run.summary["measures"].values()
+        for own in measure["contributors"]
+        if own["name"] == f"t{TOLERANCES - 1}"
+    }
+    assert named == [[f"m{k}", f"t{TOLERANCES - 1}", f"{share:.0f}", "%"] for k in range(MOST_MEASURES)]
     assert shown == [f"m{k}" for k in range(MOST_MEASURES)]
     assert f"and {MEASURES - MOST_MEASURES} more, all in summary.json" in words
     verdicts = words.partition(f"all {MEASURES} measures: ")[2].partition("\n")[0]
@@ -127,7 +135,7 @@ def test_a_run_of_many_measures_says_which_are_in_its_picture(run: Run) -> None:
 
 
 def test_seconds_of_a_run_add_up_to_all_of_them(tol3d: Command, scene: Path, tmp_path: Path) -> None:
-    out = tol3d("run", str(scene), "--trials", "40", "--no-picture", "--out", str(tmp_path / "run"))[1]
+    out = tol3d("run", str(scene), "--trials", "40", "--no-picture", "-v", "--out", str(tmp_path / "run"))[1]
     whole, _, parts = out.replace("\n", " ").partition("time: ")[2].partition(" in all: ")
     seconds = [
         float(word.split()[0]) for word in parts.partition("what to change")[0].partition(" run:")[0].split(", ")

@@ -341,10 +341,10 @@ def test_what_failed_is_missing_in_the_bars_and_makes_the_others_no_more() -> No
 def test_a_picture_says_how_many_seated_and_what_is_out_of_all() -> None:
     figure = histogram_figure(typed_summary_of({"play": jammed()}, 3000))
     texts = texts_of(figure)
-    assert any("of2000of3000thatseated,outinall40%" in text for text in texts)
+    assert any("ofthe2000of3000thatwereassembled,outinall40%" in text for text in texts)
     assert any("LSL49µm40%below" in text for text in texts)
     many = overview_figure(typed_summary_of({f"play {k}": jammed() for k in range(5)}, 3000))
-    assert sum("40%below" in text and "of2000of3000thatseated" in text for text in texts_of(many)) == 5
+    assert sum("40%below" in text and "ofthe2000of3000thatwereassembled" in text for text in texts_of(many)) == 5
     assert_apart(figure)
     assert_apart(many)
 

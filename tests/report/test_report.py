@@ -50,6 +50,7 @@ from tol3d.report.curve import draw_curve
 from tol3d.report.distribution import column_colours, draw_distribution
 from tol3d.report.export import Exported, file_words
 from tol3d.report.page import Heading, Row, Table
+from tol3d.report.table import Detail
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
 from tol3d.solids import display_mesh
@@ -109,8 +110,8 @@ def test_the_witness_is_told_below_each_measure_with_what_its_chords_explain(run
     for name, to_text in (("free play", "{:.3f} µm".format), ("shape", "{:.3f} µm".format)):
         largest, chords = (to_text(measures[name][key]) for key in ("max_abs_difference", "expected_at_most"))
         assert (
-            f"witness: FCL measured 6 of these trials again: at most {largest} more or less "
-            f"(up to {chords} of that is the chord error of its triangles)"
+            f"witness: FCL measured 6 of these trials again: within ±{largest} "
+            f"(chord error of its triangles: up to {chords})"
         ) in text
     assert text.count("witness: FCL") == 3
 
@@ -200,7 +201,7 @@ def test_what_no_contributor_explains_is_told_and_explained(run: Run) -> None:
     ]
     assert "not attributed" not in texts[0]
     assert row_of(texts[1], "not attributed") == ["0.0", "10.0", "–", "–"]  # nobody knows what a colleague left out
-    assert "that the regression on the contributors leaves unexplained" in texts[1]
+    assert "that a linear regression on the contributors does not explain" in texts[1]
 
 
 def test_no_zero_has_a_sign(run: Run) -> None:
@@ -235,7 +236,9 @@ def test_a_curve_says_how_many_of_its_positions_are_shown(run: Run) -> None:
 
 def test_failed_trials_are_told_in_per_cent(run: Run) -> None:
     summary = dict(run.summary) | {"status": {"ok": 21, "interferes": 3, "no contact": 0}}
-    assert "21 seated, 3 jammed (12.5 %)" in printed(run_report(typed_run(summary)), 120)
+    for detail in (Detail.SHORT, Detail.MEASURES):
+        text = printed(run_report(typed_run(summary), detail), 120)
+        assert "trials: 21 assembled, 3 could not be assembled (12.5 %): 3 jammed" in text
 
 
 def test_report_of_the_analytic_engine_has_no_column_of_a_simulation(run: Run) -> None:

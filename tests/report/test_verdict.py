@@ -13,7 +13,8 @@ from rich.console import RenderableType
 from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
-from tol3d.report.table import MOST_TABLES, Detail, run_report
+from tol3d.report.sheet import as_text
+from tol3d.report.table import Detail, run_report
 from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, all_ok, verdict_table
 
 
@@ -87,10 +88,13 @@ def test_a_row_has_what_is_counted_of_the_trials(tmp_path: Path) -> None:
     mean, sigma = values.mean(), values.std(ddof=1)
     ends = "  ".join(f"{value:.1f} µm" for value in (mean, mean - 3 * sigma, mean + 3 * sigma))
     shares = [f"{100 * share:.4g} %" for share in (out / 4000, ci.low, ci.high)]
+    told = f"{shares[0]} (95 %: {shares[1]} to {shares[2]})"
     ppk = min(mean - 45, 70 - mean) / 3 / sigma
-    assert row.split("  ", 1)[1].strip() == (
-        f"NOT OK   {ends}  45 to 70 µm  {shares[0]} ({shares[1]} to {shares[2]})  {ppk:.2f}  mean, sigma"
-    )
+    assert row.split("  ", 1)[1].strip() == f"NOT OK   {ends}  45 to 70 µm  {told}  {ppk:.2f}  mean, sigma"
+    narrow = as_text(verdict_table(run.found), 80).splitlines()
+    assert [line.strip() for line in narrow if "fraction out" in line] == [
+        f"normal backlash: fraction out of limits · {told}"  # in a line of its own
+    ]
     (other,) = [line for line in lines_of(verdict_table(run.found)) if line.startswith("lost motion")]
     assert other.split()[2] == "–"  # no limits, no verdict
 
@@ -131,17 +135,35 @@ def test_a_curve_and_a_bounded_measure_say_what_their_ends_are(tmp_path: Path) -
 def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path: Path) -> None:
     study = Overrides(trials=200, witness=0)
     run = run_scene(SCENES / "robot_shoulder.yaml", overrides=study, out=tmp_path / "run")
-    assert len(run.summary["measures"]) > MOST_TABLES
-    assert Detail.fitting(run.found) is Detail.SECTIONS
-    short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.SECTIONS, Detail.MEASURES))
-    assert len(short) < 60 < 200 < len(whole)
-    for name in run.summary["measures"]:
-        assert any(line.startswith(name) for line in short), name
-    assert any("train shoulder swing" in line for line in short)
-    assert any("tables of every measure: -v" in line for line in short)
+    short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.SHORT, Detail.MEASURES))
+    assert len(short) < 40 < 200 < len(whole)
+    for name, own in run.summary["measures"].items():
+        row, named = (line for line in short if line.startswith(name))
+        shares = [each["geometric_percent"] for each in own["contributors"]]
+        assert named.endswith(f" {max(shares):.0f} %"), name
+    assert any("train shoulder swing" in line for line in whole)
+    assert any("more with -v: all tables" in line for line in short)
     shares = "squares of the ranges that each contributor alone"
     assert sum(shares in line for line in whole) == 1  # once for all measures
     assert not any(shares in line for line in short)
+
+
+def test_the_screen_of_two_measures_has_its_verdict_first_and_thirty_lines(tmp_path: Path) -> None:
+    """At 80 columns, two lines kept for the folder and its pictures; each limit is missed, or no difference explained."""
+    run = spur(tmp_path, "    lower_limit: 45 um\n", trials=200)
+    lines = as_text(run_report(run.found, Detail.SHORT), 80).splitlines()
+    assert len(lines) <= 28
+    assert max(map(len, lines)) <= 80
+    assert any(line.startswith("verdict: NOT OK · accepted: 0.27 % out of limits") for line in lines[:5])
+    summary = dict(run.summary)
+    measure = dict(summary["measures"]["lost motion"])
+    fault = "part of wheel eccentricity"
+    explanation = measure["agreement"]["explanation"] | {"faults": [fault]}
+    measure["agreement"] = measure["agreement"] | {"explanation": explanation}
+    summary |= {"measures": summary["measures"] | {"lost motion": measure}, "warnings": ["too warm"]}
+    told = lines_of(run_report(typed_run(summary), Detail.SHORT), 80)
+    assert f"lost motion: NOT EXPLAINED: {fault}" in told
+    assert told[-1] == "warning: too warm"
 
 
 @pytest.mark.slow

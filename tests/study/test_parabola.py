@@ -451,7 +451,7 @@ def test_a_published_column_stands_beside_ours(run: Run) -> None:
 def test_a_system_from_outside_has_figures_of_its_own_sections_published(run: Run, tmp_path: Path) -> None:
     """0.002 mm are 2 um; ours beside them is found under the same keys."""
     assert run.summary["published"] == {"theirs": {"terms": {"height": {"bow": {"mean": 2.0, "share_percent": 3.0}}}}}
-    rows = [line.split() for line in printed(run_report(run.found, Detail.SECTIONS), 120).splitlines()]
+    rows = [line.split() for line in printed(run_report(run.found, Detail.MEASURES), 120).splitlines()]
     own = run.summary["terms"]["height"]
     row = next(row for row in rows if row[:5] == ["terms", "·", "height", "·", "bow"] and "mean" in row)
     assert [float(cell) for cell in row[-3:]] == pytest.approx(

@@ -84,7 +84,7 @@ def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
     _title(axes, own, f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.method]}")
     samples = [*_samples(own, unit, edges)]
     if not samples:
-        say_instead(axes, "no robot could be seated", VERMILLION)
+        say_instead(axes, "no robot could be assembled", VERMILLION)
         return
     width = float(edges[1] - edges[0])
     draw_samples(axes, samples, per=width)

@@ -123,7 +123,7 @@ def _title(own: Compensation) -> Line:
 
 
 def _words(own: Compensation) -> str:
-    failed = f", {own.failed} of them not seated and left out" if own.failed else ""
+    failed = f", {own.failed} of them could not be assembled and are left out" if own.failed else ""
     return (
         f"{own.robots} robots{failed}, seed {own.simulation.study.seed}; "
         f"each robot's own mean at {own.positions} positions "

@@ -106,7 +106,7 @@ def _warnings(plan: ShimPlan) -> Iterator[str]:
         if own.failed:
             yield (
                 f"{own.failed} of {own.trials} builds {words} jam or find no contact; the numbers above are of the "
-                f"{own.trials - own.failed} that seated"
+                f"{own.trials - own.failed} that were assembled"
             )
     if plan.chosen.minimum < plan.question.target - plan.chosen.resolution:
         short = UM * (plan.question.target - plan.chosen.minimum)

@@ -74,7 +74,9 @@ class MeasureEffects(Section):
     base: Count = Field(description="pairs of builds")
     pairs: Count = Field(description="of them with a value each")
     builds: Count = Field(description="that the pairs have")
-    not_seated: Count = Field(description="of these builds; left out of indices of the value, failures otherwise")
+    not_seated: Count = Field(
+        description="builds that could not be assembled; left out of indices of the value, failures otherwise"
+    )
     sum_of_first: Index | None
     sum_of_total: Index | None
     position: ContributorEffects | None = Field(description="where the position is an input")

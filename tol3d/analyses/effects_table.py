@@ -78,7 +78,9 @@ def _words(own: MeasureEffects) -> Sequence[str]:
         together = "; ".join(", ".join(group) for group in groups)
         told.append(f"indices of correlated contributors are those of all together: {together}")
     if own.not_seated:
-        told.append(f"{own.not_seated} of {own.builds} builds do not seat: left out of indices, counted as failures")
+        told.append(
+            f"{own.not_seated} of {own.builds} builds could not be assembled: left out of indices, counted as failures"
+        )
     if own.failing_ppm is not None:
         by = "shares by " if own.failures_by else ""
         told.append(f"failures: {share_text(own.failing_ppm)} of {own.builds} builds; {by}{own.failures_words}")

@@ -10,7 +10,7 @@ from tol3d.runs.summary.values import Count, Known, Label, MethodSection, NotNeg
 class BuildFound(Section):
     """A build."""
 
-    measured: Known = Field(description="of the measure, in its unit; null where it does not seat")
+    measured: Known = Field(description="of the measure, in its unit; null where it cannot be assembled")
     status: Label
     deviations: Mapping[Label, list[Number]] = Field(description="of each contributor that acts, in its unit")
     positions: Mapping[Label, Number] = Field(description="at which it is read")
@@ -21,7 +21,7 @@ class WorstFound(Section):
 
     low: BuildFound | None
     high: BuildFound | None
-    unseated: BuildFound | None = Field(description="a build within the tolerances that does not seat")
+    unseated: BuildFound | None = Field(description="a build within the tolerances that cannot be assembled")
     met: Count = Field(description="how many such builds were met")
     evaluations: Count
 

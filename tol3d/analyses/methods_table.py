@@ -110,7 +110,9 @@ def _told(own: MeasureMethods) -> Iterator[PageItem]:
         yield note("worst case: not looked for" + (", it would take too many builds" if own.contributors else ""))
     elif own.worst.unseated is not None:
         status = own.worst.unseated.status
-        yield warning(f"builds within the tolerances do not seat: {status}; {own.worst.met} were met in the search")
+        yield warning(
+            f"builds within the tolerances cannot be assembled ({status}); {own.worst.met} were met in the search"
+        )
 
 
 REJECTED: Final = 0.05
@@ -121,7 +123,7 @@ def _builds(own: MeasureMethods, contributors: Sequence[Contributor]) -> Iterato
     assert own.worst is not None
     builds = {word: build for word, build in (("lowest", own.worst.low), ("highest", own.worst.high)) if build}
     if own.worst.unseated is not None and own.worst.unseated.measured is None:
-        builds["does not seat"] = own.worst.unseated
+        builds["cannot be assembled"] = own.worst.unseated
     if not builds:
         return
     rows = [

@@ -150,7 +150,7 @@ def _unsure(points: Sequence[Sequence[DesignPoint]], more: tuple[str, ...]) -> t
         several = max(map(len, lists))
         notes.append(f"up to {several} design points at a position, of which the nearest alone counts here")
     if any(not own[0].smooth for own in lists):
-        notes.append("a design point lies at an edge, or where builds do not seat: of first order in name only")
+        notes.append("a design point lies at an edge, or where builds cannot be assembled: first order in name only")
     return tuple(notes)
 
 

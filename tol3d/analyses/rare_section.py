@@ -45,7 +45,7 @@ class LimitLeft(Section):
     first_order_ppm: Ppm | None
     second_order_ppm: Ppm | None = Field(description="by Hohenbichler and Rackwitz")
     breitung_ppm: Ppm | None = Field(description="second order by Breitung")
-    unseated_percent: Number = Field(description="share of the failing builds that do not seat")
+    unseated_percent: Number = Field(description="share of the failing builds that cannot be assembled")
     design_points: Count = Field(description="of all positions together")
     design_point: DesignBuild | None = Field(description="the nearest one")
     draws: Count

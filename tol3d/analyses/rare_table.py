@@ -66,13 +66,14 @@ def _cell(ppm: float | None) -> Shown:
 
 def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
     methods = dict.fromkeys(own.method for own in limits)
-    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that do not seat fail"
+    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that cannot be assembled fail"
     yield SUBSET_WORDS if set(methods) == {"subset"} else BETA_WORDS
     if any(own.second_order_ppm is not None for own in limits):
         yield "second order: with the curvatures of the limit, by Hohenbichler and Rackwitz"
     for own in limits:
         if own.unseated_percent > 0.0:
-            yield f"{own.measure}, {limit_words(own)}: {own.unseated_percent:.1f} % of what fails does not seat"
+            share = f"{own.unseated_percent:.1f} % of the failing builds"
+            yield f"{own.measure}, {limit_words(own)}: {share} cannot be assembled"
 
 
 def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:

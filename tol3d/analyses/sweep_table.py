@@ -9,7 +9,7 @@ from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, 
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
-NUMBERS: Final = ("mean", "sigma", "low", "high", "out of limits", "Ppk", "failed")
+NUMBERS: Final = ("mean", "sigma", "low", "high", "out of limits", "Ppk", "not assembled")
 SPAN: Final = "low, high: as in the verdict of a run, mean ∓ 3 sigma or 0.135 % and 99.865 % of what ends before"
 
 
@@ -59,7 +59,7 @@ def _values(own: Variant) -> list[Shown]:
 
 def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
     if own is None:
-        return ["not built", *[NOTHING] * (len(NUMBERS) - 1)]
+        return ["not assembled", *[NOTHING] * (len(NUMBERS) - 1)]
     numbers = [value_cell(value, own.unit) for value in (own.mean, own.sigma, own.low, own.high)]
     ppk = Shown(NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}"), own.ppk)
     return [*numbers, share_cell(own.out_ppm), ppk, Shown(str(own.failed), own.failed)]
@@ -68,7 +68,7 @@ def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
 def _not_built(found: Sweep) -> Iterator[PageItem]:
     rows = [Row(str(k + 1), [str(own.reason)]) for k, own in enumerate(found.variants) if own.reason is not None]
     if rows:
-        yield title("not built")
+        yield title("could not be assembled")
         yield BLANK
         yield Table("variant", [Heading("why", words=True)], rows)
 
@@ -81,8 +81,8 @@ def whole_table(found: Sweep) -> Table:
     for name in names:
         unit = units[name]
         heads += [f"{name}: {word} [{unit}]" for word in ("mean", "sigma", "low", "high")]
-        heads += [f"{name}: {word}" for word in ("out of limits [ppm]", "Ppk", "failed")]
-    heads.append("not built")
+        heads += [f"{name}: {word}" for word in ("out of limits [ppm]", "Ppk", "could not be assembled")]
+    heads.append("could not be assembled")
     rows = []
     for k, own in enumerate(found.variants):
         cells: list[str] = [*_values(own)]

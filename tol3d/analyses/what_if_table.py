@@ -18,7 +18,7 @@ ROWS: Final = (
 WORDS: Final = (
     "by rates: slopes at the mean build and the spreads of the tolerances; first order: Φ(−β), β the distance of the "
     "most likely build beyond the limit; by sampling: importance sampling about it, with its interval of 95 %; builds "
-    "that do not seat fail; trials are drawn from the same numbers before and after"
+    "that cannot be assembled fail; trials are drawn from the same numbers before and after"
 )
 
 

@@ -8,6 +8,7 @@ from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, 
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
+    bounded_share_text,
     limit_text,
     percent_cell,
     share_text,
@@ -34,7 +35,7 @@ BY: Final = {
         "tol3d changes simulates each"
     ),
 }
-AFTER: Final = (Heading("mean"), Heading("sigma"), Heading("out of limits (95 %)", words=True), Heading("Ppk"))
+AFTER: Final = (Heading("mean"), Heading("sigma"), Heading("fraction out of limits", words=True), Heading("Ppk"))
 
 
 def changes_report(name: str, found: Changes) -> Page:
@@ -105,14 +106,12 @@ def _off(value: float | None, unit: str) -> Shown | str:
 def _after(own: Spread, unit: str) -> Sequence[Shown | str]:
     ppk = NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}")
     sigma = value_cell(own.sigma, unit)
-    return [value_cell(own.mean, unit), sigma, Shown(_out(own), own.out_ppm), Shown(ppk, own.ppk)]
-
-
-def _out(own: Spread) -> str:
-    if own.out_ppm is None or own.out_ppm_95 is None:
-        return share_text(own.out_ppm)
-    low, high = map(share_text, own.out_ppm_95)
-    return f"{share_text(own.out_ppm)} ({low} to {high})" if own.out_ppm else f"0 (< {high})"
+    return [
+        value_cell(own.mean, unit),
+        sigma,
+        Shown(bounded_share_text(own.out_ppm, own.out_ppm_95), own.out_ppm),
+        Shown(ppk, own.ppk),
+    ]
 
 
 def _half(percent: float | None) -> Shown:

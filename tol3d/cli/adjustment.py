@@ -70,9 +70,7 @@ def shim(
 
 
 def compensate(
-    scenes: Annotated[
-        list[str], typer.Argument(metavar="SCENE...", help="Scene files, or names of those that tol3d brings along.")
-    ],
+    scenes: Annotated[list[str], typer.Argument(metavar="SCENE...", help="Scene files, or names of bundled ones.")],
     train: Annotated[str | None, typer.Option(help="Whose motor; the first train of each scene.")] = None,
     trials: Annotated[
         Any,

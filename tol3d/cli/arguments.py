@@ -24,7 +24,7 @@ app = typer.Typer(
 )
 
 SceneArgument = Annotated[
-    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of one that tol3d brings along (spur_pair).")
+    str, typer.Argument(metavar="SCENE", help="A scene file, or the name of a bundled one (spur_pair).")
 ]
 EngineOption = Annotated[
     str | None, typer.Option(metavar="NAME", help="Engine instead of the scene's: exact, analytic, fcl of gears.")
@@ -90,7 +90,7 @@ def accepted_ppm(text: str) -> float:
 
 
 def scene_path(text: str) -> Path:
-    """A scene's file: the path itself, or the scene of that name that tol3d brings along.
+    """A scene's file: the path itself, or the bundled scene of that name.
 
     Raises:
         SceneError: a bare name, and there is neither.
@@ -112,7 +112,7 @@ WitnessOption = Annotated[
     typer.Option(parser=whole(0), metavar="N", help="Trials that another engine measures again, of gears FCL."),
 ]
 OutOption = Annotated[
-    Path | None, typer.Option(help="The run's folder; by default runs/<scene>, or -2, -3 … of another study.")
+    Path | None, typer.Option(help="The run's folder; default: runs/<scene>, or -2, -3 … of another study.")
 ]
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Replace a run of another study; what else lies there is moved aside.")
@@ -120,7 +120,7 @@ ForceOption = Annotated[
 WorkersOption = Annotated[
     Any,
     typer.Option(
-        parser=whole(1), metavar="N", help="Threads or processes; by default one, or all cores for a long study."
+        parser=whole(1), metavar="N", help="Threads or processes; default: one, or all cores for a long study."
     ),
 ]
 SchedulerOption = Annotated[
@@ -152,5 +152,5 @@ FailOnLimits = Annotated[
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict and warnings only.")]
 VerboseOption = Annotated[
-    bool, typer.Option("--verbose", "-v", help="Print the tables of every measure, of more than 20 the worst.")
+    bool, typer.Option("--verbose", "-v", help="Print everything: agreement, witness, sampling errors, all tables.")
 ]

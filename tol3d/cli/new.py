@@ -41,7 +41,7 @@ def new(
         _draft([str(start), *words], seat or [], on or [], out, force)
         return
     if seat or on:
-        raise InputError("--seat: expected --from and STEP files beside it, whose parts are seated")
+        raise InputError("--seat: expected --from and STEP files beside it, whose parts are placed")
     if not words:
         if out is not None:
             raise InputError("--out: expected a kind of system before it; `tol3d new` lists them")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 SceneOption = Annotated[
-    str, typer.Option(metavar="SCENE", help="The pair's scene: a file, or the name of one that tol3d brings along.")
+    str, typer.Option(metavar="SCENE", help="The pair's scene: a file, or the name of a bundled one.")
 ]
 MeshOption = Annotated[str | None, typer.Option(metavar="NAME", help="Which mesh was on the rig; the only one.")]
 
@@ -38,7 +38,7 @@ EngineOption = Annotated[
 ]
 TrialOption = Annotated[
     int | None,
-    typer.Option(metavar="N", min=0, help="Trial of the scene's study that is measured; the mean build if not given."),
+    typer.Option(metavar="N", min=0, help="Trial of the scene's study that is measured; default: the mean build."),
 ]
 TurnsOption = Annotated[float, typer.Option(min=0.1, max=1e4, help="Of the driver on each side.")]
 SamplesOption = Annotated[int, typer.Option(min=4, max=10**7, help="Rows per turn of the driver.")]

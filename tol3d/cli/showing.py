@@ -107,7 +107,7 @@ def scenes(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder to copy into.")] = Path(),
 ) -> None:
-    """List the scenes that tol3d brings along, or copy one to start your own from."""
+    """List the bundled scenes, or copy one to start your own from."""
     from tol3d.kinds import all_kinds
     from tol3d.scene.collection import copy_scene, scene_lines
 
@@ -169,7 +169,7 @@ def report(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN...", help="Folders of finished runs.")],
     out: Annotated[
         Path | None,
-        typer.Option(help="The file to write; by default report.html, .xlsx or .json, of csv the folder report-csv."),
+        typer.Option(help="The file to write; default: report.html, .xlsx or .json, of csv the folder report-csv."),
     ] = None,
     format: Annotated[
         ReportFormatWord,
@@ -211,7 +211,7 @@ TrialOption = Annotated[Any, typer.Option(parser=whole(0), metavar="N", help="Th
 WorstOption = Annotated[bool, typer.Option("--worst", help="The trial nearest to a limit, or furthest beyond it.")]
 NominalOption = Annotated[bool, typer.Option("--nominal", help="The build without deviations.")]
 MeanOption = Annotated[bool, typer.Option("--mean", help="The build with every contributor at its mean.")]
-MagnifyOption = Annotated[float, typer.Option(min=0.0, help="Scale the deviations and seat again.")]
+MagnifyOption = Annotated[float, typer.Option(min=0.0, help="Scale the deviations and assemble again.")]
 
 
 def export(
@@ -247,14 +247,14 @@ def view(
     mean: MeanOption = False,
     magnify: MagnifyOption = 1.0,
     mesh: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Which mesh is shown close up; by default the first.")
+        str | None, typer.Option(metavar="NAME", help="Which mesh is shown close up; default: the first.")
     ] = None,
     screenshot: Annotated[Path | None, typer.Option(help="Write a picture instead of opening a window.")] = None,
     animate: Annotated[
         Path | None, typer.Option(help="Write moving pictures instead: .gif, .webp or .png (animated).")
     ] = None,
     motion: Annotated[
-        str | None, typer.Option(metavar="NAME", help="What moves, with --animate; by default the first there is.")
+        str | None, typer.Option(metavar="NAME", help="What moves, with --animate; default: the first there is.")
     ] = None,
     frames: Annotated[int | None, typer.Option(help="How many frames, with --animate.")] = None,
 ) -> None:

@@ -113,7 +113,7 @@ def run(
     loading = seconds()
     with _watched(simulation, folder, draw) as watch:
         finished = run_simulation(loaded, simulation, folder, execution=execution, force=force, watch=watch)
-    shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.fitting(finished.found)
+    shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.SHORT
     accepted, found = ACCEPTED_PPM if accept is None else accept, finished.found
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
     if not quiet and not all_ok(found, accepted):

@@ -44,7 +44,7 @@ class FitSpec(Strict):
 
     fit: str = Field(description="tolerance class of ISO 286, such as H7 of a hole or g6 of a shaft")
     of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
-    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
 
 
 class GeneralSpec(Strict):
@@ -52,7 +52,7 @@ class GeneralSpec(Strict):
 
     general: str = Field(description="class f, m, c or v of ISO 2768-1")
     of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
-    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
 
 
 class GradeSpec(Strict):
@@ -68,7 +68,7 @@ class LimitsSpec(Strict):
     """`{limits: ±0.1 mm, law: {kind: uniform}}`: limits with a law of their own."""
 
     limits: str | list[str] = Field(description=WRITTEN.replace('"', ""))
-    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
 
 
 DRAWN: Final[TypeAdapter[Any]] = TypeAdapter(

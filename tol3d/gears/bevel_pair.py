@@ -121,15 +121,16 @@ class BevelPair(RollingPair):
         for pair, name, mate in ((self, "driver", "driven"), (mirrored, "driven", "driver")):
             pair._refuse_interference_of_pinion(name, mate)
         if self.contact_ratio < 1.0:
-            raise GeometryError(f"contact ratio {self.contact_ratio:.4f} is below 1: the teeth lose touch")
+            raise GeometryError(f"contact ratio {self.contact_ratio:.4f} is below 1: the teeth lose contact")
 
     def _refuse_interference_of_pinion(self, name: str, mate: str) -> None:
         gear = self.pinion
         clearance = gear.outer_cone_distance * math.sin(self.shaft_angle - gear.root_angle - self.wheel.tip_angle)
         if clearance <= 0.0:
             raise GeometryError(
-                f"the teeth interfere: the {mate} gear's tip digs {-clearance:.4f} mm into the root of the "
-                f"{name} gear at the outer end; raise the {name} gear's dedendum or lower the {mate} gear's addendum"
+                f"the teeth interfere: the tip of the {mate} gear and the root of the {name} gear interfere by "
+                f"{-clearance:.4f} mm at the outer end; raise the {name} gear's dedendum or lower the {mate} gear's "
+                "addendum"
             )
         at = math.acos(math.cos(max(self.start_q, 0.0)) * math.cos(gear.base_angle))
         where = f"at {math.degrees(at):.4f} deg" if self.start_q > 0.0 else "below the base cone"

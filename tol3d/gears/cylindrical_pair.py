@@ -158,7 +158,7 @@ class CylindricalPair(RollingPair):
         if self.contact_ratio < 1.0:
             raise GeometryError(
                 f"contact ratio {self.contact_ratio:.4f} is below 1 at centre distance "
-                f"{self.centre_distance:g} mm: the teeth lose touch"
+                f"{self.centre_distance:g} mm: the teeth lose contact"
             )
 
     def _along(self, working: Array, displaced: Displaced) -> Array:

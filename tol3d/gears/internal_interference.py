@@ -63,9 +63,9 @@ def _tips(mesh: InternalMesh) -> Iterator[str]:
     for clearance, tip, root in names:
         if clearance <= 0.0:
             yield (
-                f"tip interference at centre distance {mesh.centre_distance:g} mm: the {tip} gear's tip circle digs "
-                f"{-clearance:.4f} mm into the root of the {root} gear; close the centre distance or deepen the {root} "
-                f"gear's dedendum{_advice(mesh, tip)}"
+                f"tip interference at centre distance {mesh.centre_distance:g} mm: the tip circle of the {tip} gear "
+                f"and the root of the {root} gear interfere by {-clearance:.4f} mm; close the "
+                f"centre distance or deepen the {root} gear's dedendum{_advice(mesh, tip)}"
             )
 
 

@@ -86,8 +86,8 @@ class SpurPair(CylindricalPair):
             clearance = self.centre_distance - gear.root_radius - other.tip_radius
             if clearance <= 0.0:
                 raise GeometryError(
-                    f"the teeth interfere at centre distance {self.centre_distance:g} mm: the {mate} gear's tip "
-                    f"digs {-clearance:.4f} mm into the root of the {name} gear"
+                    f"the teeth interfere at centre distance {self.centre_distance:g} mm: the tip of the {mate} "
+                    f"gear and the root of the {name} gear interfere by {-clearance:.4f} mm"
                 )
             start = gear.base_radius * math.hypot(1.0, max(pair.start_roll, 0.0))
             where = f"at {2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"

@@ -54,8 +54,10 @@ def columns_of(measure: MeasureSummary) -> list[Column]:
 
 
 def seated_text(measure: MeasureSummary) -> str:
-    """Words for the number of trials behind mean and sigma, if some trials failed; else ""."""
-    return f"of {measure.seated} of {measure.trials} that seated" if measure.seated != measure.trials else ""
+    """Words for the number of trials behind mean and sigma, if some could not be assembled; else ""."""
+    return (
+        f"of the {measure.seated} of {measure.trials} that were assembled" if measure.seated != measure.trials else ""
+    )
 
 
 def best_method(measure: MeasureSummary) -> Literal["analytic", "geometric"]:

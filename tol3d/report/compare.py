@@ -180,7 +180,9 @@ def comparison_report(runs: Sequence[Run]) -> Page:
     blocks += joint_comparison([(label, run.found) for label, run in labelled(runs)])
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += (
-        "; means and sigmas are of the trials that seated, out of limits is of all of them" if _any_failed(runs) else ""
+        "; means and sigmas are of the assembled trials, the fraction out of limits is of all"
+        if _any_failed(runs)
+        else ""
     )
     words += "; shift: of the mean against the first run" if len(runs) > 1 else ""
     return page(*blocks, line(f"\n{words}", "dim"))

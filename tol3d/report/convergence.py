@@ -52,7 +52,7 @@ def convergence_of(run: Run, name: str, points: int) -> Convergence:
         raise RunError(f"{run.path}: this run kept its statistics only (--no-trials); run the scene again with them")
     total = measure.seated if measure.best_method == GEOMETRIC else run.trials
     if total < FEWEST:
-        raise InputError(f"{name}: expected {FEWEST} trials that seated, got {total}")
+        raise InputError(f"{name}: expected {FEWEST} assembled trials, got {total}")
     counts = np.unique(np.geomspace(FEWEST, total, points).round().astype(int))
     return running(_known(run, name), counts)
 

@@ -34,7 +34,8 @@ def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
 
 def _numbers(law: DistributionSpec) -> tuple[str, str]:
     given = law.quantities()
-    return str(given["lower"]), str(given["upper"])
+    lower, upper = (str(given[key]).replace(" um", " µm") for key in ("lower", "upper"))
+    return lower, upper
 
 
 def _told(written: Any) -> str:

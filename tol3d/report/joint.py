@@ -6,7 +6,7 @@ from itertools import combinations
 from typing import Final
 
 from tol3d.report.number import NOTHING, unsigned_zero
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, line, note, title
+from tol3d.report.page import Heading, Line, PageItem, Row, Shown, Table, note, title
 from tol3d.runs.summary.joint import Correlations, Joint
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.values import Method
@@ -38,7 +38,7 @@ def yield_lines(run: RunSummary) -> list[PageItem]:
     others = {name: column.get("joint") for name, column in (run.published or {}).items()}
     known = {name: its["yields"].value("yield_ppm") for name, its in others.items() if its and "yields" in its}
     text += "".join(f"; {name} {yield_text(ppm)}" for name, ppm in known.items() if ppm is not None)
-    return [line(f" {text}", "bold")]
+    return [Line(((text, "bold"),), note=True)]
 
 
 def yield_text(ppm: float | None) -> str:

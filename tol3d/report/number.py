@@ -1,6 +1,7 @@
 """Numbers as a reader wants them: lengths in um, those at an arm's tip in mm, angles in minutes and seconds of arc."""
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 from tol3d.report.page import Shown
@@ -12,6 +13,7 @@ COUNTED: Final = frozenset(FACTORS["count"])
 MANY_UM: Final = 1000.0  # um; from there on a nanometre says nothing
 MANY_MM: Final = 100.0  # mm; from there on six digits are too few for a tenth of a um
 UM_PER_MM: Final = 1000.0
+LEAST_PPM: Final = 0.001  # of a share; how many of a billion builds fail is beyond any law of a tolerance
 LEAST_PERCENT: Final = 1000.0  # ppm; smaller shares are given in ppm, as quality people do
 ALMOST_ALL: Final = 999_999.0  # ppm
 
@@ -152,12 +154,37 @@ def share_text(ppm: float | None) -> str:
 
     >>> share_text(306500.0), share_text(2700.0), share_text(999.0), share_text(0.0519), share_text(0.0)
     ('30.65 %', '0.27 %', '999 ppm', '0.0519 ppm', '0')
+    >>> share_text(1.66e-20)
+    '< 0.001 ppm'
     """
     if not ppm:
         return NOTHING if ppm is None else "0"
+    if ppm < LEAST_PPM:
+        return f"< {LEAST_PPM} ppm"
     if ppm < LEAST_PERCENT:
         return f"{ppm_text(ppm)} ppm"
     return f"{f'{ppm / 1e4:.4g}' if ppm < ALMOST_ALL else '100'} %"
+
+
+def bounded_share_text(ppm: float | None, interval: Sequence[float] | None) -> str:
+    """A share of all trials with the interval [ppm] that holds the true one with 95 % confidence, where it is known.
+
+    >>> bounded_share_text(0.0, (0.0, 184.3)), bounded_share_text(31000.0, (26000.0, 37000.0))
+    ('0 (95 % upper bound 184 ppm)', '3.1 % (95 %: 2.6 % to 3.7 %)')
+    """
+    if ppm is None or interval is None:
+        return share_text(ppm)
+    low, high = map(share_text, interval)
+    return f"{share_text(ppm)} (95 %: {low} to {high})" if ppm else f"0 (95 % upper bound {high})"
+
+
+def counted(count: int, word: str) -> str:
+    """How many there are of something whose plural ends in s.
+
+    >>> counted(1, "trial"), counted(2000, "trial")
+    ('1 trial', '2000 trials')
+    """
+    return f"{count} {word}{'' if count == 1 else 's'}"
 
 
 def degrees_text(angle: float) -> str:

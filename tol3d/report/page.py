@@ -32,9 +32,10 @@ class Shown(str):
 
 @dataclass(frozen=True)
 class Heading:
-    """Head of a column; words stand left and wrap, numbers right and whole; an optional one goes where room lacks.
+    """Head of a column; words stand left and wrap, numbers right and whole.
 
-    Numbers below a plain one have no unit, whatever their rows have.
+    In a narrow terminal a column that may stand `below` becomes a line below the table for each row that has a cell
+    there, and an optional one is left out. Numbers below a plain one have no unit, whatever their rows have.
     """
 
     text: str
@@ -42,6 +43,7 @@ class Heading:
     words: bool = False
     optional: bool = False
     plain: bool = False
+    below: bool = False
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """Pages for the terminal in which no number is ever cut: columns that find no room go on in a table below."""
 
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from io import StringIO
 
@@ -11,7 +12,8 @@ from rich.table import Table as RichTable
 from rich.text import Text
 from rich.tree import Tree
 
-from tol3d.report.page import Branch, Heading, Page, PageItem, Table
+from tol3d.report.number import NOTHING
+from tol3d.report.page import Branch, Heading, Page, PageItem, Row, Table
 
 GAP = 2  # blanks between two columns
 TIGHT_LABELS = 14  # characters kept by labels before they wrap, if that saves a table below
@@ -49,24 +51,49 @@ def as_text(shown: Page | PageItem, width: int) -> str:
 class Sheet:
     """A table as it fits a terminal.
 
-    In a narrow one labels, headings and words wrap; where that is not enough, optional columns are left out, and then
-    the columns that are left stand in a table below, beside the labels and the first `repeated` columns.
+    In a narrow one, cells of columns that may stand below become lines there; then labels, headings and words wrap;
+    where that is not enough, optional columns are left out, and then the columns that are left stand in a table below,
+    beside the labels and the first `repeated` columns.
     """
 
     table: Table
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        width = options.max_width
-        sheet = self if len(self._tables(width)) == 1 else self._needed()
+        width, sheet = options.max_width, self
+        below = [index for index, heading in enumerate(self.table.headings) if heading.below]
+        if below and not self._is_whole(width):
+            sheet = sheet._without(below)
+        else:
+            below = []
+        if len(sheet._tables(width)) > 1:
+            sheet = sheet._without([index for index, heading in enumerate(sheet.table.headings) if heading.optional])
         for number, widths in enumerate(sheet._tables(width)):
             if number:
                 yield Text()
             yield sheet._part(widths)
+        for index in below:
+            yield from self._told_below(index)
 
-    def _needed(self) -> "Sheet":
-        """It without its optional columns."""
+    def _told_below(self, index: int) -> Iterator[RenderableType]:
+        """A line for each cell of a column, rows with the same cell together."""
+        alike: dict[str, list[Row]] = {}
+        for row in self.table.rows:
+            if row.cells[index] != NOTHING:
+                alike.setdefault(row.cells[index], []).append(row)
+        for cell, rows in alike.items():
+            told = f"{', '.join(row.label for row in rows)}: {self.table.headings[index].text} · {cell}"
+            yield Padding(Text(told, rows[0].style), (0, 0, 0, 1))
+
+    def _is_whole(self, width: int) -> bool:
+        """True if everything stands in one table, and nothing that may stand below it wraps."""
+        (first, *more) = self._tables(width)
+        headings = enumerate(self.table.headings, 1)
+        return not more and all(first[index] >= self._whole(index) for index, heading in headings if heading.below)
+
+    def _without(self, left: Collection[int]) -> "Sheet":
+        """It without some columns."""
         table = self.table
-        kept = [index for index, heading in enumerate(table.headings) if not heading.optional]
+        kept = [index for index in range(len(table.headings)) if index not in left]
         rows = [replace(row, cells=[row.cells[index] for index in kept]) for row in table.rows]
         return Sheet(replace(table, headings=[table.headings[index] for index in kept], rows=rows))
 

@@ -1,12 +1,12 @@
 """A run's results as tables for the terminal, from its summary alone."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
 from tol3d.report.column import seated_text
 from tol3d.report.ends import is_bounded
-from tol3d.report.heading import MOST_CONTRIBUTORS, MOST_MEASURES, limits_text, shown_measures
+from tol3d.report.heading import MOST_CONTRIBUTORS, limits_text, shown_measures
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_table import (
     NOT_ATTRIBUTED,
@@ -18,13 +18,13 @@ from tol3d.report.measure_table import (
     not_attributed,
     shown_positions,
 )
-from tol3d.report.number import COUNTED, difference_text, limit_text, percent_text, share_text
+from tol3d.report.number import COUNTED, counted, difference_text, limit_text, percent_text, share_text
 from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, some, title, warning
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_blocks, published_notes
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
-from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
+from tol3d.report.verdict import ACCEPTED_PPM, short_verdict, verdict_report
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -57,7 +57,7 @@ def agreement_lines(agreement: Agreement, unit: str, chord_words: str = "") -> I
         yield line
     else:
         why = [_of_first_order(explanation), _of_second_order(explanation, unit), *_neglected(explanation, unit)]
-        yield f"{line}; explained: {'; '.join(why)}"
+        yield f"{line}; difference explained; {'; '.join(why)}"
         yield from _left_out(explanation.linear)
 
 
@@ -70,21 +70,21 @@ def unexplained_lines(agreement: Agreement | None) -> list[str]:
 def _of_first_order(explanation: Explanation) -> str:
     other = "other " if explanation.linear else ""
     largest = explanation.largest_percent
-    if not largest:  # counts contributors beyond chance
-        return f"no {other}contributor has a part in it beyond chance"
-    return f"no {other}contributor's part in it is above {largest:.2g} % of its own effect"
+    if not largest:  # counts what is more than noise
+        return f"no {other}contributor is significant"
+    return f"no {other}contributor explains more of it than {largest:.2g} % of its own effect"
 
 
 def _of_second_order(explanation: Explanation, unit: str) -> str:
     rms = explanation.second_order_rms
     if unit in COUNTED:
-        return "what is near a bound one method counts and the other does not"
+        return "values near a bound are counted by one method and not by the other"
     if rms is None:
-        return "of what order the rest is cannot be told, for nominal builds do not seat"
+        return "the order of the rest is unknown, for the nominal build could not be assembled"
     named = ", ".join(explanation.second_order_of)
     shift = difference_text(explanation.second_order_mean, unit)
-    terms = f"terms of second order have rms {difference_text(rms, unit)}, mean {shift}"
-    return f"{terms}, the most by {named}" if named else terms
+    terms = f"second-order terms: rms {difference_text(rms, unit)}, mean {shift}"
+    return f"{terms}, mainly from {named}" if named else terms
 
 
 def _neglected(explanation: Explanation, unit: str) -> Iterator[str]:
@@ -106,15 +106,14 @@ def _left_out(linear: Sequence[LinearPart]) -> Iterator[str]:
 
 
 NOT_ATTRIBUTED_MEANS = (
-    f"{NOT_ATTRIBUTED}: the share of the variance that the regression on the contributors leaves unexplained: "
-    "interactions and what is not linear"
+    f"{NOT_ATTRIBUTED}: the share of the variance that a linear regression on the contributors does not explain "
+    "(interactions, nonlinear effects)"
 )
 SHARES_MEAN = (
-    "shares of the variance; high–low–mean: squares of the ranges that each contributor alone gives between its ends, "
-    "the others at their means"
+    "shares of the variance; high–low–mean: squared range of each contributor alone, from one of its limits to the "
+    "other, with the others at their means"
 )
-MOST_TABLES = 4  # measures whose tables are shown unasked; of 6 they took 288 lines
-MORE_TABLES = "tables of every measure: -v, and how they are correlated"
+MORE = "more with -v: all tables, agreement of the methods, sampling errors"
 MORE_CONTRIBUTORS = f"shares: the {MOST_CONTRIBUTORS} largest of each measure and the sum of the others"
 SAMPLER_WORDS = {"sobol": "scrambled Sobol' points", "latin_hypercube": "Latin hypercubes"}
 
@@ -127,16 +126,11 @@ class Elapsed(NamedTuple):
 
 
 class Detail(Enum):
-    """Detail shown of a run: one row per measure, that with its system's sections, or full tables of every measure."""
+    """Detail shown of a run: the verdict, a first look with the largest contributors, or everything."""
 
     VERDICT = 0
-    SECTIONS = 1
+    SHORT = 1
     MEASURES = 2
-
-    @classmethod
-    def fitting(cls, run: RunSummary) -> "Detail":
-        """Detail that fits a screen or two: tables of every measure unless there are many."""
-        return cls.MEASURES if len(run.measures) <= MOST_TABLES else cls.SECTIONS
 
 
 def run_report(
@@ -146,7 +140,7 @@ def run_report(
     presenter: str | None = None,
     elapsed: Elapsed | None = None,
 ) -> Page:
-    """A run as tables: measures, contributors, how the methods agree, what failed, the verdict, warnings.
+    """A run as tables: the verdict, measures, contributors, how the methods agree, what failed, warnings.
 
     Args:
         run: what it found.
@@ -155,31 +149,32 @@ def run_report(
         presenter: import path of what shows more of the system; by default that of the run's measures.
         elapsed: what the command took besides what the run tells of itself.
     """
-    own, shown = presenter_of(run, presenter), shown_run(run)
+    shown = shown_run(run)
     warnings = [*map(warning, some(run.warnings, ", all in summary.json"))]
-    verdict = verdict_report(shown, accepted_ppm, blame=detail is not Detail.MEASURES)
     if detail is Detail.VERDICT:
-        return page(*verdict, *warnings)
-    blocks: list[PageItem] = [_run_line(run)]
-    if detail is Detail.MEASURES:
-        for name in shown_measures(shown.measures):
-            blocks += measure_blocks(name, shown.measures[name], shown, own)
-    blocks += own.sections(run)
-    blocks += published_blocks(run)
-    blocks += correlation_blocks(run) if detail is Detail.MEASURES else []
-    if detail is Detail.MEASURES and (words := list(meanings(shown))):
+        return page(*verdict_report(shown, accepted_ppm, blame=True), *warnings)
+    if detail is Detail.SHORT:
+        head = [_run_line(run), *short_verdict(shown, accepted_ppm), *_unexplained(shown)]
+        return page(*head, status_line(run), _time_line(run, elapsed, brief=True), note(MORE), *warnings)
+    own = presenter_of(run, presenter)
+    blocks: list[PageItem] = [_run_line(run), *verdict_report(shown, accepted_ppm)]
+    for name in shown_measures(shown.measures):
+        blocks += measure_blocks(name, shown.measures[name], shown, own)
+    blocks += [*own.sections(run), *published_blocks(run), *correlation_blocks(run)]
+    if words := list(meanings(shown)):
         blocks += [title("notes"), *map(note, words)]
-    blocks += verdict
-    blocks += [] if detail is Detail.MEASURES else [note(_more_tables(run))]
     return page(*blocks, status_line(run), _time_line(run, elapsed), *warnings)
 
 
-def _more_tables(run: RunSummary) -> str:
-    return MORE_TABLES if len(run.measures) <= MOST_MEASURES else MORE_TABLES.replace("every measure", "these measures")
+def _unexplained(run: RunSummary) -> list[PageItem]:
+    """Differences of the methods that are not explained, of the measures that are shown."""
+    names = shown_measures(run.measures)
+    told = [(name, text) for name in names for text in unexplained_lines(run.measures[name].agreement)]
+    return [line(f"{name}: {text}", "bold red") for name, text in told]
 
 
 def _run_line(run: RunSummary) -> Line:
-    trials = f"{run.trials} trial{'' if run.trials == 1 else 's'}"
+    trials = counted(run.trials, "trial")
     return Line(((run.scene, "bold"), (f" · {trials} · seed {run.seed} · engine {run.engine}", "bold dim")))
 
 
@@ -212,17 +207,18 @@ def meanings(run: RunSummary) -> Iterator[str]:
     if any(map(seated_text, limited)):
         yield _failures_count(run)
     if any(measure.analytic_closed_form for measure in limited):
-        yield "out of limits by the closed form: as if the measure were normal"
+        yield "out of limits in the closed form: for a normal distribution"
     yield from dict.fromkeys(other.meaning for measure in scalars for other in measure.conversions)
 
 
 def _failures_count(run: RunSummary) -> str:
     """Words on failed builds among those out of limits."""
     lacking = " or ".join(run.state(status) for status in run.statuses if status in run.lacking)
-    below = f"a build that is {lacking} is below every lower limit, one that failed otherwise" if lacking else ""
+    other = "a build that could not be assembled"
+    below = f"a build that is {lacking} is below every lower limit, and any other that could not be assembled"
     return (
-        f"out of limits is a share of all trials: {below or 'a build that failed'} is out in all; Ppk of such a column "
-        "is Φ⁻¹(1 − share out)/3; its other numbers are of the trials that seated"
+        f"the fraction out of limits is of all trials: {below if lacking else other} counts as out; Ppk of such a "
+        "column is Φ⁻¹(1 − fraction out)/3; its other numbers are of the assembled trials"
     )
 
 
@@ -239,23 +235,23 @@ def _notes(name: str, measure: MeasureSummary, run: RunSummary) -> Iterator[str]
 def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> Iterator[str]:
     """Notes on the sampling errors of mean, sigma, ends and shares."""
     unit = measure.unit
-    seated = " that seated" if seated_text(measure) else ""
+    assembled = "assembled " if seated_text(measure) else ""
     if own.mean_se is not None and own.sigma_se is not None:
         mean, sigma, words = own.mean_se, own.sigma_se, "one standard error"
         if own.error_by == "replicates" and own.mean_95 and own.sigma_95:  # not in runs made before
             mean, sigma = (((high or 0.0) - (low or 0.0)) / 2 for low, high in (own.mean_95, own.sigma_95))
             words = "95 % confidence, Student's t"
         yield (
-            f"sampling error of {own.count} trials{seated}{_by_replicates(own, run)}: "
+            f"sampling error of {own.count} {assembled}trials{_by_replicates(own, run)}: "
             f"mean ±{difference_text(mean, unit)}, sigma ±{difference_text(sigma, unit)} ({words})"
         )
     if is_bounded(measure):
-        yield "trials end before mean ∓ 3 sigma here: the quantiles say more than low and high"
+        yield "the distribution ends before mean ∓ 3 sigma: use the quantiles instead of low and high"
     for key, label in limit_rows(measure).items():
         low_high = getattr(own, f"{key}_95")
         if low_high:
             low, high = map(share_text, low_high)
-            yield f"{label}: the true share lies between {low} and {high} (95 % confidence)"
+            yield f"{label}: 95 % confidence interval of the fraction {low} to {high}"
 
 
 def _by_replicates(sample: Sample, run: RunSummary) -> str:
@@ -272,11 +268,11 @@ def _witness_notes(name: str, measure: MeasureSummary, run: RunSummary) -> Itera
         return
     again = f"witness: {run.witness.engine.upper()} measured {run.witness.trials} of these trials again"
     if not found.compared:
-        yield f"{again}: none of them has a value on both sides"
+        yield f"{again}: none of them has a value by both engines"
         return
     largest = difference_text(found.max_abs_difference, measure.unit)
     chords = difference_text(found.expected_at_most, measure.unit)
-    yield f"{again}: at most {largest} more or less (up to {chords} of that is the chord error of its triangles)"
+    yield f"{again}: within ±{largest} (chord error of its triangles: up to {chords})"
 
 
 def _curve_notes(measure: MeasureSummary, curve: CurveMethods) -> Iterator[str]:
@@ -296,18 +292,29 @@ def _curve_notes(measure: MeasureSummary, curve: CurveMethods) -> Iterator[str]:
 
 
 def status_line(run: RunSummary) -> Line:
-    """Counts of the trials that seated, and of those that failed, by their statuses."""
+    """Counts of the trials that were assembled, and of those that could not be, with the reasons."""
     failed = {text: count for text, count in run.status.items() if text != SEATED and count}
-    pieces = [(f"\ntrials: {run.status.get(SEATED, 0)} seated", "")]
-    for status, count in failed.items():
-        share = share_text(1e6 * count / run.trials)
-        pieces.append((f", {count} {run.state(status)} ({share})", "red"))
-    return Line((*pieces, *(() if failed else ((", none failed", ""),))))
+    good, lost = run.status.get(SEATED, 0), sum(failed.values())
+    if not lost:
+        return line(f"\ntrials: all {good} assembled")
+    ended = ", ".join(f"{count} {run.state(status)}" for status, count in failed.items())
+    by = ", ".join(f"{reason} {count}" for reason, count in [*reasons_of(run).items()][:NAMED])
+    why = f"{ended}; mostly by {by}" if by else ended
+    words = f", {lost} could not be assembled ({share_text(1e6 * lost / run.trials)}): {why}"
+    return Line(((f"\ntrials: {good} assembled", ""), (words, "red")))
 
 
-def _time_line(run: RunSummary, elapsed: Elapsed | None) -> Line:
+def reasons_of(run: RunSummary) -> Mapping[str, int]:
+    """Reasons of the failures of the measure that failed most often, the most frequent first."""
+    worst = max(run.measures.values(), key=lambda own: own.trials - own.seated)
+    return worst.reasons or {}
+
+
+def _time_line(run: RunSummary, elapsed: Elapsed | None, *, brief: bool = False) -> Line:
     """Time by stage, complete if the command's own time is known."""
     timing = run.timing
+    if brief and elapsed is not None:
+        return line(f"time: {elapsed.whole:.1f} s")
     workers = f" by {timing.workers} workers" if timing.workers != 1 else ""
     trials = f"for the trials{workers} ({timing.trials_per_s:.0f} trials/s)"
     spent = {"to set up": timing.setup_s, trials: timing.simulate_s}

@@ -9,8 +9,16 @@ from tol3d.report.column import columns_of, ranked_contributors, seated_text, sh
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
-from tol3d.report.number import NOTHING, given_text, limit_text, share_text, short_text, unsigned_zero
-from tol3d.report.page import BLANK, Heading, PageItem, Row, Shown, Table, line, note, title
+from tol3d.report.number import (
+    NOTHING,
+    bounded_share_text,
+    given_text,
+    limit_text,
+    share_text,
+    short_text,
+    unsigned_zero,
+)
+from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Shown, Table, line, note
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
@@ -28,6 +36,9 @@ PPK_MEANS: Final[Mapping[PpkBy, str]] = {
     "share out of limits": "share out: that of a normal measure with as much out",
     "mean and sigma": "mean, sigma: distance of the nearest limit over 3 sigma",
 }
+FEW_MEASURES: Final = 4  # with so many, a few contributors of each are named
+FEW_NAMED: Final = 3
+LEAST_NAMED: Final = 0.5  # %; a smaller share is 0 in print
 STYLES: Final[Mapping[Verdict, str]] = {"NOT OK": "red", "too few trials": "yellow"}
 
 
@@ -79,9 +90,37 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
         accepted_ppm: share of trials that may be out of a measure's limits.
         blame: name the contributor that most of each measure's variance comes from.
     """
-    head = title("verdict", f" · accepted: {share_text(accepted_ppm)} out of limits")
     table = verdict_table(run, accepted_ppm, blame=blame)
-    return [head, BLANK, table, *_left_out(run, accepted_ppm), *yield_lines(run), *map(note, _notes(run))]
+    below = [*_left_out(run, accepted_ppm), *yield_lines(run), *map(note, _notes(run))]
+    return [_verdict_line(run, accepted_ppm), BLANK, table, *below]
+
+
+def short_verdict(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM) -> list[PageItem]:
+    """The verdict of every measure, and the largest contributors of each: a first look."""
+    table = verdict_table(run, accepted_ppm, brief=True)
+    below = [*_left_out(run, accepted_ppm), *yield_lines(run), note(_ends_note(run))]
+    return [_verdict_line(run, accepted_ppm), BLANK, table, *below, *_largest_contributors(run)]
+
+
+def _verdict_line(run: RunSummary, accepted_ppm: float) -> Line:
+    """The worst verdict of all measures, how many of several have it, and the accepted share."""
+    found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
+    judged = sum(found.values()) - found["no limits"]
+    worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
+    counted = f", {found[worst]} of {judged} measures with limits" if judged > 1 else ""
+    accepted = f"{counted} · accepted: {share_text(accepted_ppm)} out of limits" if judged else ""
+    style = f"bold {STYLES.get(worst, '')}".rstrip()
+    return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, style), (accepted, "dim")))
+
+
+def _largest_contributors(run: RunSummary) -> list[PageItem]:
+    """The largest shares of the variance of each measure that is shown, fewer of each where there are many."""
+    names = shown_measures(run.measures)
+    most = FEW_NAMED if len(names) <= FEW_MEASURES else 1
+    told = {name: _largest(run.measures[name], most) for name in names}
+    rows = [Row(name, [text]) for name, text in told.items() if text != NOTHING]
+    head = Heading("share of the variance", words=True)
+    return [BLANK, Table("largest contributors", [head], rows)] if rows else []
 
 
 def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
@@ -94,26 +133,37 @@ def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
         yield line(f" all {len(run.measures)} measures: {counts}", "bold")
 
 
-def verdict_table(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> Table:
-    """A row a measure, of many the worst, by the 3D simulation where there is one."""
+def verdict_table(
+    run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False, brief: bool = False
+) -> Table:
+    """A row a measure, of many the worst, by the 3D simulation where there is one.
+
+    Args:
+        run: what it found.
+        accepted_ppm: share of trials that may be out of a measure's limits.
+        blame: name the contributor that most of each measure's variance comes from.
+        brief: leave out what a Ppk was taken from.
+    """
     shown = {name: run.measures[name] for name in shown_measures(run.measures)}
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
-    headings += [Heading("limits"), Heading("out of limits (95 %)", words=True), Heading("Ppk", plain=True)]
-    limited = any(measure.has_limits for measure in run.measures.values())
-    headings += [Heading("Ppk by", words=True)] if limited else []
+    headings += [Heading("limits", words=True), Heading("fraction out of limits", words=True, below=True)]
+    headings += [Heading("Ppk", plain=True)]
+    by = not brief and any(measure.has_limits for measure in run.measures.values())
+    headings += [Heading("Ppk by", words=True)] if by else []
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
-    rows = [_row(name, measure, accepted_ppm, blame=blame, limited=limited) for name, measure in shown.items()]
+    rows = [_row(name, measure, accepted_ppm, blame=blame, by=by) for name, measure in shown.items()]
     return Table("measure", headings, rows, repeated=1)
 
 
-def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool, limited: bool) -> Row:
+def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool, by: bool) -> Row:
     judged = JudgedMeasure.of(measure, accepted_ppm)
     low, mean, high = ends_of(measure)
-    verdict = NOTHING if judged.verdict == "no limits" else judged.verdict
-    cells = [verdict, *(_short(value, measure.unit) for value in (mean, low, high)), _limits(measure)]
-    cells += [NOTHING if judged.verdict == "no limits" else _out(judged), _ppk(measure)]
-    cells += [_ppk_by(measure)] if limited else []
-    cells += [_mostly(measure)] if blame else []
+    judges = judged.verdict != "no limits"
+    cells = [judged.verdict if judges else NOTHING, *(_short(value, measure.unit) for value in (mean, low, high))]
+    cells += [_limits(measure), bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING]
+    cells += [_ppk(measure)]
+    cells += [_ppk_by(measure)] if by else []
+    cells += [_largest(measure, 1)] if blame else []
     return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""), measure.unit)
 
 
@@ -155,15 +205,6 @@ def _limits(measure: MeasureSummary) -> str:
     return f"{given_text(lower, unit)} to {limit_text(upper, unit)}"
 
 
-def _out(judged: JudgedMeasure) -> str:
-    if judged.out_ppm is None or judged.interval is None:
-        return share_text(judged.out_ppm)
-    low, high = map(share_text, judged.interval)
-    if not judged.out_ppm:
-        return f"0 (< {high})"
-    return f"{share_text(judged.out_ppm)} ({low} to {high})"
-
-
 def _ppk(measure: MeasureSummary) -> Shown:
     value = measure.shares.ppk
     return Shown(NOTHING if value is None else unsigned_zero(f"{value:.2f}"), value)
@@ -177,29 +218,34 @@ def _ppk_by(measure: MeasureSummary) -> str:
     return f"{PPK_BY[own.ppk_by]} ({own.ppk_reason})" if own.ppk_reason else PPK_BY[own.ppk_by]
 
 
-def _mostly(measure: MeasureSummary) -> str:
-    """The contributor with the largest share of the variance."""
+def _largest(measure: MeasureSummary, most: int) -> str:
+    """The contributors with the largest shares of the variance."""
     columns = shares_of(measure) if measure.take != "curve" else []
     leading = next((column for column in columns if column.method == measure.best_method), None)
     if leading is None:
         return NOTHING
-    name = ranked_contributors(measure)[0]
-    share = leading.percents.get(name)
-    return f"{name} {share:.0f} %" if share else NOTHING
+    shares = {name: leading.percents.get(name) or 0.0 for name in ranked_contributors(measure)[:most]}
+    return ", ".join(f"{name} {share:.0f} %" for name, share in shares.items() if share >= LEAST_NAMED) or NOTHING
 
 
 def _notes(run: RunSummary) -> Iterator[str]:
     measures = run.measures.values()
     yield (
-        "out of limits: share of all trials, failed ones included, and the interval that holds the true share with "
-        "95 % confidence; OK where all of it is accepted, NOT OK where none is, else too few trials to say"
+        "fraction out of limits: of all trials, those included that could not be assembled, with its 95 % confidence "
+        "interval; OK if the whole interval is below the accepted share, NOT OK if it is above, else too few trials"
     )
-    ends = "low, high: mean ∓ 3 sigma"
-    ends += ", * 0.135 % and 99.865 % of the trials, which end before" if any(map(_by_quantiles, measures)) else ""
-    ends += ", of a curve over its positions" if any(own.take == "curve" for own in measures) else ""
-    yield ends + ("; of the trials that seated" if any(map(seated_text, measures)) else "")
+    yield _ends_note(run)
     words = {
         own.shares.ppk_by: PPK_MEANS[own.shares.ppk_by] for own in measures if own.has_limits and own.shares.ppk_by
     }
     if words:
         yield f"Ppk by {'; by '.join(words[key] for key in PPK_BY if key in words)}"
+
+
+def _ends_note(run: RunSummary) -> str:
+    """What low and high are."""
+    measures = run.measures.values()
+    ends = "low, high: mean ∓ 3 sigma"
+    ends += ", * 0.135 % and 99.865 % of the trials, which end before" if any(map(_by_quantiles, measures)) else ""
+    ends += ", of a curve over its positions" if any(own.take == "curve" for own in measures) else ""
+    return ends + ("; of the assembled trials" if any(map(seated_text, measures)) else "")

@@ -24,7 +24,7 @@ def worst_text(simulation: Simulation, measure: Measure, unit: str, found: Worst
     ends = (_end_text(simulation, measure, unit, own) for own in (found.low, found.high))
     unbuilt = found.unseated if found.unseated is not None and not measure.keeps_overlap else None
     texts = simulation.system.statuses.texts
-    told = f"; builds within the tolerances do not seat: {texts[unbuilt.code]}" if unbuilt is not None else ""
+    told = f"; builds within the tolerances cannot be assembled: {texts[unbuilt.code]}" if unbuilt is not None else ""
     return f"worst found {' … '.join(ends)}{told}"
 
 

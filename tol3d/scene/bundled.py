@@ -20,7 +20,7 @@ def bundled_scenes() -> Mapping[str, Path]:
 
 
 def scene_path(scene: Path | str) -> Path:
-    """A scene's file: the path itself, or the scene of that name that tol3d brings along.
+    """A scene's file: the path itself, or the bundled scene of that name.
 
     Raises:
         SceneError: a bare name, and there is neither.
@@ -31,5 +31,5 @@ def scene_path(scene: Path | str) -> Path:
     scenes = bundled_scenes()
     if text in scenes or os.path.exists(path):
         return scenes.get(text, path)
-    listed = nearest(text, scenes) or f" (tol3d brings along: {', '.join(scenes)})"
+    listed = nearest(text, scenes) or f" (bundled scenes: {', '.join(scenes)})"
     raise SceneError(f"{text[:LONGEST_NAME]}: no such file, and no scene of that name{listed}")

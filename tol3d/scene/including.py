@@ -25,7 +25,7 @@ class IncludeSpec(Strict):
     """A file that is included."""
 
     file: str = Field(description="a scene, or parts of one, in the folder of the scene or below it")
-    at: Vector | None = Field(default=None, description="where its origin lies; at that of the scene if not given")
+    at: Vector | None = Field(default=None, description="where its origin lies; default: at that of the scene")
     without: Annotated[tuple[Name, ...], listed("names")] = Field(
         default=(), description="entries of it that are left out, by the names that they have in the file"
     )

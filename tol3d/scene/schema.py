@@ -118,7 +118,7 @@ class StudySpec(Strict):
         ge=FEWEST_REPLICATES,
         le=MOST_REPLICATES,
         description="parts of equal size, each randomised anew, whose spread gives the errors of sobol and "
-        f"latin_hypercube; {REPLICATES} if not given",
+        f"latin_hypercube; default: {REPLICATES}",
     )
     engine: str = Field(default="exact", description="engine of the 3D simulation; analytic: no 3D simulation")
     witness: int = Field(
@@ -126,8 +126,8 @@ class StudySpec(Strict):
     )
     ppk_by: Literal["quantiles", "sigma"] | None = Field(
         default=None,
-        description="Ppk of measures of which all builds seat: by quantiles, or mean and sigma; as distributed if not "
-        "given",
+        description="Ppk of measures of which all builds are assembled: by quantiles, or mean and sigma; default: as the "
+        "values are distributed",
     )
 
     engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them

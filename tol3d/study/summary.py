@@ -142,9 +142,9 @@ def failures(simulation: Simulation, tally: Tally) -> Iterator[str]:
         seated = counts.pop(simulation.system.statuses.seated)
         how = ", ".join(f"{count} {words.get(text, text)}" for text, count in counts.items() if count)
         yield (
-            f"{_named(names)}: of {tally.trials} builds {how}: {100 * sum(counts.values()) / tally.trials:.3g} % "
-            f"failed{mostly}; mean, sigma and shares are of the {seated} that seated, what is out of limits is "
-            "counted of all"
+            f"{_named(names)}: {100 * sum(counts.values()) / tally.trials:.3g} % of {tally.trials} builds could not be "
+            f"assembled ({how}{mostly}); mean, sigma and shares are of the {seated} assembled builds, the fraction out "
+            "of limits is of all"
         )
 
 
@@ -159,7 +159,7 @@ def _mostly(reasons: Mapping[str, int], failed: int) -> str:
     if not reasons:
         return ""
     reason, count = max(reasons.items(), key=lambda own: own[1])
-    return f", {'all' if count == failed else f'{100 * count / failed:.3g} %'} of them by {reason}"
+    return f"; {'all' if count == failed else f'{100 * count / failed:.3g} %'} of them by {reason}"
 
 
 def _reasons(measure: Measure, tally: Tally) -> Mapping[str, int]:

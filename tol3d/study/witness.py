@@ -67,7 +67,7 @@ def witness_warnings(simulation: Simulation, witness: WitnessSummary) -> list[st
     units = {measure.name: measure.unit for measure in simulation.system.measures}
     engine = witness.engine.upper()
     found = [
-        f"witness: {engine} finds {own.max_abs_difference:.3g} {units[name]} more or less {name} of trial "
+        f"witness: {name} by {engine} differs by {own.max_abs_difference:.3g} {units[name]} in trial "
         f"{own.trial_of_the_largest}; its chords explain {own.expected_at_most:.3g} {units[name]}, its other "
         f"errors {own.allowance:.3g} {units[name]}"
         for name, own in witness.measures.items()

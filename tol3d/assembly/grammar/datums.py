@@ -40,7 +40,7 @@ class DatumSpec(Strict):
     mmb: Literal["random", "centred", "least"] | None = Field(
         default=None,
         description="at its maximum material boundary: how the gauge lies in the room that it has there; least, of a "
-        "measure, where it is best; regardless of size if not given",
+        "measure, where it is best; default: regardless of size",
     )
 
     @property

@@ -34,7 +34,7 @@ class ZoneSpec(Strict):
         "where what is screwed in stands out, instead of over the axis itself",
     )
     outward: Annotated[Quantity, Of("length")] | None = Field(
-        default=None, description="how much of a profile's width lies outside the material; half if not given"
+        default=None, description="how much of a profile's width lies outside the material; default: half"
     )
 
     @property

@@ -6,8 +6,19 @@ from tol3d.system.statuses import Statuses
 
 STATUSES: Final = Statuses(
     ("ok", "not unique", "no contact", "no build", "singular", "not held"),
-    words={"no build": "do not build"},
-    states={"no contact": "without contact", "no build": "not built"},
+    words={
+        "not unique": "have no unique pose",
+        "no contact": "have parts that do not touch",
+        "no build": "do not fit together",
+        "singular": "have no pose that could be found",
+        "not held": "tip or slide off their contacts",
+    },
+    states={
+        "not unique": "of no unique pose",
+        "no contact": "without contact",
+        "no build": "not fitting together",
+        "not held": "tipping or sliding off",
+    },
 )
 """In the order of their codes: assembled; the pose is not unique and the measure varies with it; parts that should
 touch do not reach each other; the parts do not fit together; the pose was not found, for the contacts have lost their

@@ -125,7 +125,7 @@ class ShownAssembly:
         chosen = [path[k] for k in np.linspace(0, len(path) - 1, count).round().astype(int)]
         placed = self._in(list(dict.fromkeys(chosen)))
         if not placed:
-            raise InputError(f"--motion: {self.label} is not built anywhere on {name}")
+            raise InputError(f"--motion: {self.label} cannot be assembled anywhere on {name}")
         first = placed[0][1]
         world = self._world(name, first)
         solid = {part.name for part in first.assembly.parts if part.solid is not None}
@@ -140,7 +140,7 @@ class ShownAssembly:
         corners = np.concatenate([body.mesh[0] for body in world.bodies])
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
         look = around(np.concatenate([points, corners]), middle, *corner(np.array(world.up)))
-        notes = () if len(placed) == len(set(chosen)) else ("it is not built in all poses of the path",)
+        notes = () if len(placed) == len(set(chosen)) else ("it cannot be assembled in all poses of the path",)
         return Motion(world, tuple(shown), (Shot(name, (look,)),), back=True, notes=notes)
 
     def view(self, close_up: str | None) -> View:
@@ -163,7 +163,7 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
         if which == "worst" and placed_by(seen) is None:
             failed, trial = trial, worst_trial(run, seated_only=True)
             words = f"trial {failed} is worse, and cannot be shown: {seen.status}"
-            notes = (f"{words}; trial {trial} is the worst of those that are built",)
+            notes = (f"{words}; trial {trial} is the worst of those that could be assembled",)
             seen = replay(run, trial)
     else:
         simulation = simulation_again(run)
@@ -175,7 +175,7 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
     if magnify == 1.0:
         return replayed_display(seen, label, notes)
     large, used = _as_large(seen, magnify)
-    beyond = "" if used == magnify else f", not {magnify:g}: beyond that they are not built"
+    beyond = "" if used == magnify else f", not {magnify:g}: beyond that they cannot be assembled"
     notes += (f"deviations {used:.3g} times as large{beyond}; parts are placed by them",)
     return replayed_display(large, label, notes)
 

@@ -60,7 +60,7 @@ class CycloidPinsNearContactSpec(CycloidMeasureSpec):
     )
     over: Over = Field(default="random", description="position of the output: random, {at: angle}, or turn (one of it)")
     take: Literal["value", "min", "max", "range", "curve"] | None = Field(
-        default=None, description="value at one position; of a turn min (if not given), max, range or curve"
+        default=None, description="value at one position; of a turn min (default), max, range or curve"
     )
     positions: int = Field(
         default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the cranks"
@@ -110,10 +110,10 @@ class CycloidTransmissionErrorSpec(OutputAngleSpec):
     over: Over = Field(default="random", description="position of the output: random, {at: angle}, or turn (one of it)")
     take: Literal["value", "min", "max", "range", "harmonic", "curve"] | None = Field(
         default=None,
-        description="value at one position; of a turn min, max, range (peak to peak; if not given), harmonic or curve",
+        description="value at one position; of a turn min, max, range (peak to peak; default), harmonic or curve",
     )
     order: int | None = Field(
-        default=None, ge=1, description="of the harmonic: cycles a turn of the output; 1 if not given"
+        default=None, ge=1, description="of the harmonic: cycles a turn of the output; default: 1"
     )
     orders: Annotated[tuple[Order, ...], listed("orders")] | None = Field(
         default=None, description="of a curve: orders whose amplitudes are pooled, cycles a turn of the output"

@@ -38,8 +38,8 @@ class FlankMeasureSpec(MeasureSpec, ABC):
 
     read_at: Literal["mean_section", "face_contact", "face"] | None = Field(
         default=None,
-        description="where on the face: contact and gap in the section in its middle (bevel gears if not given), "
-        "contact over the face and the gap in that section, or both over the face (spur gears if not given)",
+        description="where on the face: contact and gap in the section in its middle (default of bevel gears), "
+        "contact over the face and the gap in that section, or both over the face (default of spur gears)",
     )
     tooth: Literal["driver", "driven", "all"] = Field(
         default="all",
@@ -124,7 +124,7 @@ class AngularBacklashSpec(MeshMeasureSpec):
     dimension: ClassVar[Dimension] = "angle"
 
     kind: Literal["angular_backlash"]
-    gear: Name | None = Field(default=None, description="the gear that turns; the driven one if not given")
+    gear: Name | None = Field(default=None, description="the gear that turns; default: the driven one")
     lower_limit: AngleLimit | None = Field(default=None, description="less than this is out of limits")
     upper_limit: AngleLimit | None = Field(default=None, description="more than this is out of limits")
 
@@ -171,7 +171,7 @@ class LostMotionSpec(TrainMeasureSpec):
     dimension: ClassVar[Dimension] = "angle"
 
     kind: Literal["lost_motion"]
-    shaft: Name | None = Field(default=None, description="the shaft that turns; the train's output if not given")
+    shaft: Name | None = Field(default=None, description="the shaft that turns; default: the train's output")
     over: RandomOrFixed = Field(
         default="random", description="position of the train's driven shaft: random or {at: angle}"
     )

@@ -205,7 +205,7 @@ class TrainSpec(MoveSpec):
     driven: Name = Field(description="the shaft, or the gear that is its own, that the motor turns")
     output: Name = Field(description="the shaft, or the gear that is its own, at the end")
     held: Name | None = Field(
-        default=None, description="the shaft that is held while lost motion is read; the driven one if not given"
+        default=None, description="the shaft that is held while lost motion is read; default: the driven one"
     )
     ratio: Ratio | None = Field(
         default=None,

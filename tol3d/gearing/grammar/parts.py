@@ -53,7 +53,7 @@ class GearSpec(TurningSpec):
 class BoredGearSpec(GearSpec):
     """A gear that sits around its shaft."""
 
-    bore: Length | None = Field(default=None, description="diameter of the bore; none if not given")
+    bore: Length | None = Field(default=None, description="diameter of the bore; default: none")
 
 
 class SpurGearSpec(BoredGearSpec, GrowingSpec):
@@ -63,7 +63,7 @@ class SpurGearSpec(BoredGearSpec, GrowingSpec):
 
     kind: Literal["spur_gear"]
     root_fillet: Length | None = Field(
-        default=None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
+        default=None, description="radius between flank and root circle; default: 0.38 m (ISO 53) or the full round"
     )
 
 
@@ -77,10 +77,10 @@ class InternalGearSpec(GearSpec, GrowingSpec):
 
     kind: Literal["internal_gear"]
     root_fillet: Length | None = Field(
-        default=None, description="radius between flank and root circle; 0.38 m (ISO 53) or the full round if not given"
+        default=None, description="radius between flank and root circle; default: 0.38 m (ISO 53) or the full round"
     )
     outer_diameter: Length | None = Field(
-        default=None, description="of the ring; that of the root circle and 5 modules if not given"
+        default=None, description="of the ring; default: that of the root circle and 5 modules"
     )
 
 
@@ -91,7 +91,7 @@ class BevelGearSpec(BoredGearSpec):
 
     kind: Literal["bevel_gear"]
     pitch_angle: Annotated[Quantity, Of("angle"), Positive()] | None = Field(
-        default=None, description="of the pitch cone; follows from the teeth and the shaft angle if not given"
+        default=None, description="of the pitch cone; default: follows from the teeth and the shaft angle"
     )
 
 
@@ -197,7 +197,7 @@ class ArmSpec(PartSpec):
         min_length=1, description="[x, y, z] in the frame of the shaft, the train's first shaft at 0 deg"
     )
     centre_of_mass: Vector | None = Field(
-        default=None, description="[x, y, z] in that frame, where gravity pulls; the last point if not given"
+        default=None, description="[x, y, z] in that frame, where gravity pulls; default: the last point"
     )
     diameter: Length | None = Field(default=None, description="of its tube; for pictures and CAD only")
 

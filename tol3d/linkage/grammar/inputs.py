@@ -29,7 +29,7 @@ class InputDeviationSpec(Strict):
         description="its law: as the input is measured, or an angle of the screw or gears that drive it, by `lead`"
     )
     per: Annotated[Quantity, Of("length", "angle"), Positive()] | None = Field(
-        default=None, description="travel to which it refers, such as 300 mm of a lead error; none if not given"
+        default=None, description="travel to which it refers, such as 300 mm of a lead error; default: none"
     )
     description: str = Field(default="", description="the user's own words, shown in reports")
 

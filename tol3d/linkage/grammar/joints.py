@@ -110,7 +110,7 @@ class BallSpec(JointSpec):
     """Two points that are one; all turns are free."""
 
     kind: Literal["ball"]
-    clearance: ClearanceSpec | None = Field(default=None, description="between ball and socket; none if not given")
+    clearance: ClearanceSpec | None = Field(default=None, description="between ball and socket; default: none")
 
     @property
     def room(self) -> ClearanceSpec | None:
@@ -123,7 +123,7 @@ class _AxialSpec(JointSpec):
 
     feature_kinds: ClassVar[tuple[str, ...]] = AXES
 
-    play: PlaySpec | None = Field(default=None, description="between pin and bore; none if not given")
+    play: PlaySpec | None = Field(default=None, description="between pin and bore; default: none")
 
     @property
     def room(self) -> PlaySpec | None:

@@ -26,7 +26,7 @@ class WorstPositionErrorSpec(MeasureEntry):
     of: FeatureName = Field(description="the feature, such as link 6.flange")
     from_: Name = Field(alias="from", description="the part that sees it, such as base")
     poses: Annotated[tuple[Name, ...], listed("poses")] | None = Field(
-        default=None, description="over which; all that the scene's moves have if not given"
+        default=None, description="over which; default: all that the scene's moves have"
     )
     flanks: Literal["loaded", "any"] = Field(
         default="loaded",

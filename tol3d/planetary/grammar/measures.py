@@ -70,7 +70,7 @@ class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
         description="min, max, range (peak to peak), harmonic (one sine, peak to peak) or curve of these positions",
     )
     order: int | None = Field(
-        default=None, ge=1, description="of the harmonic: cycles a turn of the output; 1 if not given"
+        default=None, ge=1, description="of the harmonic: cycles a turn of the output; default: 1"
     )
     positions: int = Field(
         default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the input"

@@ -31,7 +31,7 @@ class PlanetarySpec(MoveSpec):
     )
     centre_distance: Length | None = Field(
         default=None,
-        description="from the common axis to the pins; that of the first mesh's reference circles if not given",
+        description="from the common axis to the pins; default: that of the first mesh's reference circles",
     )
     held: Name = Field(description="the central gear that is fixed, or the carrier")
     input: Name = Field(description="the central gear that drives, or the carrier")
@@ -40,7 +40,7 @@ class PlanetarySpec(MoveSpec):
         default=None,
         ge=0.0,
         le=0.5,
-        description="coefficient of friction of the teeth, for efficiencies; none are worked out if not given",
+        description="coefficient of friction of the teeth, for efficiencies; default: none are worked out",
     )
 
     def references(self) -> tuple[Reference, ...]:

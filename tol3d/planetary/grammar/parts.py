@@ -47,7 +47,7 @@ class FlexibleCarrierSpec(CarrierSpec):
         default="one", description="one: one spring moves all pairs alike; each: every pair has its own"
     )
     adjustment: Annotated[Quantity, Of("length"), AfterValidator(_not_negative)] | None = Field(
-        default=None, description="of the screw; the springs push as far as they can if not given"
+        default=None, description="of the screw; default: the springs push as far as they can"
     )
     displacement: float = Field(
         default=1.0, gt=0.0, description="travel of each planet per unit of the adjustment, such as 0.54"
@@ -55,7 +55,7 @@ class FlexibleCarrierSpec(CarrierSpec):
 
     force: Force | None = Field(
         default=None,
-        description="of the spring against each planet's displacement where contacts stop it; no torques if not given",
+        description="of the spring against each planet's displacement where contacts stop it; default: no torques",
     )
     stiffness: Stiffness | None = Field(default=None, description="of the spring against that displacement; 0 if none")
     friction: Force | None = Field(

@@ -123,8 +123,8 @@ class RunSummary(Findings):
         return frozenset(text for text, meaning in self.statuses.items() if meaning == "lacking")
 
     def state(self, status: str) -> str:
-        """State of trials with a status, in words: `seated`, or the system's words for another status."""
-        return "seated" if status == SEATED else (self.status_words or {}).get(status, status)
+        """State of trials with a status, in words: `assembled`, or the system's words for another status."""
+        return "assembled" if status == SEATED else (self.status_words or {}).get(status, status)
 
     @property
     def best_method(self) -> Method:

@@ -27,7 +27,7 @@ PpkBy = Literal["quantiles", "share out of limits", "mean and sigma"]
 
 
 class Methods(Section):
-    """A value of both methods for one build; of a curve at each position; null if it does not seat."""
+    """A value of both methods for one build; of a curve at each position; null if it cannot be assembled."""
 
     analytic: Known | KnownNumbers
     geometric: Known | KnownNumbers

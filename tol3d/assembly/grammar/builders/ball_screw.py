@@ -25,7 +25,7 @@ class BallScrewSpec(BuilderSpec):
     kind: Literal["ball_screw"]
     diameter: Length = Field(description="of the thread")
     length: Length = Field(description="from end to end, along z")
-    journal: JournalSpec | None = Field(default=None, description="at either end; none if not given")
+    journal: JournalSpec | None = Field(default=None, description="at either end; default: none")
 
     @property
     def shape(self) -> BallScrew:

@@ -17,7 +17,7 @@ class BallSocketSpec(BuilderSpec):
     kind: Literal["ball_socket"]
     ball_diameter: Length = Field(description="of the seat")
     mouth: Length | None = Field(
-        default=None, description="diameter of the opening; as wide as the ball, a hemisphere, if not given"
+        default=None, description="diameter of the opening; default: as wide as the ball, a hemisphere"
     )
     diameter: Length = Field(description="outside")
     height: Length = Field(description="from the bottom to the centre of the seat, along z")

@@ -51,7 +51,7 @@ class HoleSpec(Strict):
 
     at: Place = Field(description="its axis on the face: x, y and z of the part without the one square to the face")
     diameter: Length = Field(description="of the hole")
-    depth: Length | None = Field(default=None, description="of a blind hole; it goes through if not given")
+    depth: Length | None = Field(default=None, description="of a blind hole; default: it goes through")
 
     def named(self, name: str, face: str = "top") -> Hole:
         """The hole by its name, in a face."""
@@ -66,9 +66,9 @@ class SlotSpec(Strict):
     length: Length = Field(description="from end to end")
     width: Length = Field(description="between its walls")
     turned: Annotated[Quantity, Of("angle")] | None = Field(
-        default=None, description="from the face's first coordinate towards its second; along the first if not given"
+        default=None, description="from the face's first coordinate towards its second; default: along the first"
     )
-    depth: Length | None = Field(default=None, description="of a blind slot; it goes through if not given")
+    depth: Length | None = Field(default=None, description="of a blind slot; default: it goes through")
 
     def named(self, name: str, face: str = "top") -> Slot:
         """The slot by its name, in a face."""

@@ -96,7 +96,7 @@ class BracketSpec(BuilderSpec):
     height: Length = Field(description="of the upright, along z")
     width: Length = Field(description="along y")
     thickness: Length = Field(description="of both legs")
-    fillet: Length | None = Field(default=None, description="radius between the legs inside; none if not given")
+    fillet: Length | None = Field(default=None, description="radius between the legs inside; default: none")
     holes: Mapping[OwnName, BracketHoleSpec] = Field(default_factory=dict, description="in either leg")
 
     @property
@@ -114,7 +114,7 @@ class BracketSpec(BuilderSpec):
 class SpigotSpec(Strict):
     """A rectangular register below the seat."""
 
-    at: Place | None = Field(default=None, description="its middle; that of the seat if not given")
+    at: Place | None = Field(default=None, description="its middle; default: that of the seat")
     length: Length = Field(description="along x")
     width: Length = Field(description="along y")
     height: Length = Field(description="below the seat")
@@ -137,7 +137,7 @@ class CoverSpec(BuilderSpec):
     thickness: Length = Field(description="along z, without the spigot")
     holes: Mapping[OwnName, HoleSpec] = Field(default_factory=dict, description="from its top")
     slots: Mapping[OwnName, SlotSpec] = Field(default_factory=dict, description="from its top")
-    spigot: SpigotSpec | None = Field(default=None, description="none if not given")
+    spigot: SpigotSpec | None = Field(default=None, description="default: none")
 
     @property
     def shape(self) -> Cover:
@@ -191,7 +191,7 @@ class HousingSpec(BuilderSpec):
     )
     opening: Literal["top", "front"] = Field(default="top", description="the top is at +y, the front at +z")
     walls: Length = Field(description="thickness of the four round the opening")
-    floor: Length | None = Field(default=None, description="thickness of the floor; that of the walls if not given")
+    floor: Length | None = Field(default=None, description="thickness of the floor; default: that of the walls")
     bores: Mapping[OwnName, BoreSpec] = Field(default_factory=dict, description="in its end walls")
     bosses: Mapping[OwnName, BossSpec] = Field(default_factory=dict, description="on its end walls")
     holes: Mapping[OwnName, HousingHoleSpec] = Field(default_factory=dict, description="in its rim or its walls")

@@ -32,12 +32,12 @@ class SphericalGearSpec(BuilderSpec):
     module: Length = Field(description="by which the pitch sphere has a diameter of module times teeth")
     pole: Literal["tooth", "space"] = Field(description="what is at the pole; two gears mesh if it differs")
     reach: Angle = Field(description="from the pole to the edge of its flat bottom; what rings end before it are there")
-    pressure_angle: Angle | None = Field(default=None, description="20 deg if not given")
+    pressure_angle: Angle | None = Field(default=None, description="default: 20 deg")
     thinned: Length | None = Field(
         default=None,
-        description="by how much a tooth is thinner than half the pitch, on the pitch sphere; not at all if not given",
+        description="by how much a tooth is thinner than half the pitch, on the pitch sphere; default: not at all",
     )
-    bore: BlindBoreSpec | None = Field(default=None, description="none if not given")
+    bore: BlindBoreSpec | None = Field(default=None, description="default: none")
 
     @property
     def shape(self) -> SphericalGear:

@@ -30,7 +30,7 @@ class FaceSpec(Strict):
     near: Vector | None = Field(
         default=None, description="a point in the frame of the part that no other such face is as near to"
     )
-    kind: FaceKind | None = Field(default=None, description="what it is; whatever the feature may be if not given")
+    kind: FaceKind | None = Field(default=None, description="what it is; default: whatever the feature may be")
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -55,9 +55,9 @@ class FeatureSpec(Strict):
     """Fields required for a feature stated by numbers."""
 
     kind: str
-    at: Vector | None = Field(default=None, description="the middle of it; that of its face if not given")
+    at: Vector | None = Field(default=None, description="the middle of it; default: that of its face")
     pattern: PatternSpec | None = Field(
-        default=None, description="rows and columns of such features, the first of them here; one alone if not given"
+        default=None, description="rows and columns of such features, the first of them here; default: one alone"
     )
 
     @property

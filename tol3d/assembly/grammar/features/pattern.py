@@ -40,9 +40,9 @@ class PatternSpec(Strict):
     rows: Count = Field(default=1, description="how many rows there are")
     columns: Count = Field(default=1, description="how many features a row has")
     pitch: Pitches = Field(description="between neighbours; a list of two: between columns, between rows")
-    along: Direction | None = Field(default=None, description="from column to column; x of the feature if not given")
+    along: Direction | None = Field(default=None, description="from column to column; default: x of the feature")
     across: Direction | None = Field(
-        default=None, description="from row to row; square to `along` in the plane of the feature if not given"
+        default=None, description="from row to row; default: square to `along` in the plane of the feature"
     )
 
     @property

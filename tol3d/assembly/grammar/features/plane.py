@@ -41,7 +41,7 @@ class PlaneSpec(OneFaceSpec):
         default=None, description="along x and y of the face"
     )
     radius: Length | None = Field(default=None, description="of a round face")
-    along: Direction | None = Field(default=None, description="x of the face; the part's x (or y) if not given")
+    along: Direction | None = Field(default=None, description="x of the face; default: the part's x (or y)")
 
     @property
     def shape(self) -> Plane | RoundPlane:
@@ -96,7 +96,7 @@ class SlotSpec(FeatureSpec):
     )
     width: Length | None = Field(default=None, description="nominal")
     along: Direction | None = Field(
-        default=None, description="x of the plane in the middle; the part's x (or y) if not given"
+        default=None, description="x of the plane in the middle; default: the part's x (or y)"
     )
     faces: Annotated[tuple[FaceSpec, FaceSpec], listed("faces", 2, 2)] | None = Field(
         default=None, description="both walls, of the part's solid; numbers stated beside them are checked"

@@ -54,9 +54,9 @@ class SelectorSpec(Strict):
     )
     within: Length | None = Field(default=None, description="how far it may be from that point")
     count: Annotated[int, Field(ge=2, le=1000)] | None = Field(
-        default=None, description="how many there are; one if not given"
+        default=None, description="how many there are; default: one"
     )
-    along: Direction | None = Field(default=None, description="x of a plane; the part's x (or y) if not given")
+    along: Direction | None = Field(default=None, description="x of a plane; default: the part's x (or y)")
 
     pattern: ClassVar[None] = None
 

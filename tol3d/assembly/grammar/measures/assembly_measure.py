@@ -76,9 +76,9 @@ class AssemblyMeasureSpec(MeasureEntry):
 class TimedSpec(AssemblyMeasureSpec):
     """A measure of placed parts."""
 
-    after: Name | None = Field(default=None, description="the move after which it is read; the end if not given")
+    after: Name | None = Field(default=None, description="the move after which it is read; default: the end")
     at: Name | None = Field(
-        default=None, description="the pose in which it is read, of a move that has poses; its first one if not given"
+        default=None, description="the pose in which it is read, of a move that has poses; default: its first one"
     )
     over: Name | None = Field(default=None, description="instead, the path over which it is read")
     take: Take = Field(default="value", description="of a path: min, max, range or curve")
@@ -167,7 +167,7 @@ class BetweenSpec(FeatureMeasureSpec):
     to: FeatureName = Field(description="the feature where it ends")
     datums: Datums | None = Field(
         default=None,
-        description="of the part of `from`, in whose frame the direction is fixed; the part's if not given",
+        description="of the part of `from`, in whose frame the direction is fixed; default: the part's",
     )
 
     @property
@@ -183,7 +183,7 @@ class OverPlaySpec(BetweenSpec):
 
     over_play: OverPlay | None = Field(
         default=None,
-        description="least or largest value over the play of parts in the trial; as `float` says if not given",
+        description="least or largest value over the play of parts in the trial; default: as `float` says",
     )
 
     def measured(self, moves: Sequence[str]) -> Measured:

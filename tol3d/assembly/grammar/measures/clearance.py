@@ -41,7 +41,7 @@ class ClearanceSpec(TimedSpec):
     from_: Name = Field(alias="from", description="a part with a solid")
     to: Name = Field(description="the other one")
     chord_error: Length | None = Field(
-        default=None, description="how far its value may be off, by the meshes of both solids; 2 um if not given"
+        default=None, description="how far its value may be off, by the meshes of both solids; default: 2 um"
     )
 
     @property
@@ -91,7 +91,7 @@ class VirtualClearanceSpec(FeatureMeasureSpec):
         description="in one line; the bolt stands along the nominal axis of the first, as its part carries it"
     )
     datums: Datums | None = Field(
-        default=None, description="of the first hole's part, to which the bolt stands; its part's frame if not given"
+        default=None, description="of the first hole's part, to which the bolt stands; default: its part's frame"
     )
 
     @property

@@ -22,7 +22,7 @@ class InspectedSpec(FeatureMeasureSpec):
     """A measure of one feature in a datum frame."""
 
     of: FeatureName = Field(description="the feature")
-    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="default: the part's frame")
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
@@ -129,7 +129,7 @@ class InspectedPatternSpec(FeatureMeasureSpec):
         alias="of", description="parallel holes or pins of one part"
     )
     free: Gauge = Field(description="how the gauge finds its pose, across the first feature's axis")
-    datums: Datums | None = Field(default=None, description="what orients the gauge; the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="what orients the gauge; default: the part's frame")
     modifier: Modifier | None = Field(
         default=None, description="mmc or lmc: each less the bonus of its size, so that all count against t0"
     )
@@ -168,9 +168,9 @@ class InspectedTogetherSpec(FeatureMeasureSpec):
     zones: Annotated[tuple[Length, ...], listed("lengths", 2, MOST_HOLES)] = Field(
         description="diameter or width of the zone of each, in their order"
     )
-    datums: Datums | None = Field(default=None, description="of all of them; the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="of all of them; default: the part's frame")
     modifier: Modifier | None = Field(
-        default=None, description="mmc or lmc: each less the bonus of its size; regardless of sizes if not given"
+        default=None, description="mmc or lmc: each less the bonus of its size; default: regardless of sizes"
     )
 
     @property

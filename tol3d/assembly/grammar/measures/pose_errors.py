@@ -103,7 +103,7 @@ class DirectionErrorSpec(TimedSpec):
     kind: Literal["direction_error"]
     of: FeatureName = Field(description="the feature whose z is read, such as gear 2.axis")
     from_: Name | None = Field(
-        default=None, alias="from", description="the part that sees it; the first one that is fixed if not given"
+        default=None, alias="from", description="the part that sees it; default: the first one that is fixed"
     )
     against: FeatureName | None = Field(default=None, description="the axis from which it tilts, such as frame.axis")
     component: Literal["size", "along", "across"] = Field(

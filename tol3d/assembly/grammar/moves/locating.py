@@ -21,8 +21,8 @@ class ContactSpec(PairSpec):
 
     along: Direction | None = Field(
         default=None,
-        description="normal of the plane, in the frame of the part that the plane stays with; that feature's own "
-        "normal if not given",
+        description="normal of the plane, in the frame of the part that the plane stays with; default: that "
+        "feature's own normal",
     )
 
 

@@ -52,7 +52,7 @@ class FitSpec(PairSpec):
 
     weight: float = Field(default=1.0, gt=0.0, description="of its square, with criterion: squares")
     along: Annotated[tuple[Direction, ...], listed("directions", 1, 3)] = Field(
-        default=(), description="directions of the target's part in which it counts; all if not given"
+        default=(), description="directions of the target's part in which it counts; default: all"
     )
 
 

@@ -23,7 +23,7 @@ class EngagementSpec(PairSpec):
     """A pin in a hole or slot, or a tab in a slot; either may be of the part that is placed."""
 
     over: Literal["from", "to"] | None = Field(
-        default=None, description="whose ends are those of the engagement; of the stretch that both share if not given"
+        default=None, description="whose ends are those of the engagement; default: of the stretch that both share"
     )
 
 

@@ -25,7 +25,7 @@ MOST_ALIKE: Final = 8  # parts in sequence that copy each other; as many as a re
 class Placement(Strict):
     """Nominal pose of a part."""
 
-    at: Vector | None = Field(default=None, description="its origin, in the world; the world's origin if not given")
+    at: Vector | None = Field(default=None, description="its origin, in the world; default: the world's origin")
     z: Direction = Field(default=(0.0, 0.0, 1.0), description="its z axis")
     x: Direction | None = Field(default=None, description="its x axis, as near as may be")
 

@@ -19,7 +19,7 @@ class StepSpec(SolidSpec):
 
     kind: Literal["step"]  # type: ignore[assignment]
     file: str = Field(description="the STEP file, in the scene's folder")
-    product: str | None = Field(default=None, description="which of its products; the only one if not given")
+    product: str | None = Field(default=None, description="which of its products; default: the only one")
     use: str | None = Field(
         default=None,
         description="a part as it stands in the file's assembly, such as lower/bolt_2, in place of `product`; "

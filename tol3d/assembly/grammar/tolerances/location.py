@@ -34,7 +34,7 @@ class LocationSpec(FeatureTolerance):
 
     zone: ZoneSpec = Field(description="where the feature may lie, about its nominal place")
     law: LawUnion
-    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="default: the part's frame")
 
     @model_validator(mode="before")
     @classmethod
@@ -195,16 +195,14 @@ class AxialRunOutSpec(OrientationSpec):
     applies_to: ClassVar[tuple[str, ...]] = ("plane",)
 
     kind: Literal["axial_run_out"]
-    radius: Length | None = Field(default=None, description="of the circle that is read; that of the face if not given")
+    radius: Length | None = Field(default=None, description="of the circle that is read; default: that of the face")
 
 
 class FormSpec(FeatureTolerance):
     """A zone for the form of a feature; where it touches at a point, that point lies off by up to half of it."""
 
     zone: ZoneSpec = Field(description="width within which the surface or line lies")
-    law: LawUnion | None = Field(
-        default=None, description="of the points that touch; they lie on the shape if not given"
-    )
+    law: LawUnion | None = Field(default=None, description="of the points that touch; default: they lie on the shape")
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry."""
@@ -219,7 +217,7 @@ class FlatnessSpec(FormSpec):
 
     kind: Literal["flatness"]
     per: Annotated[tuple[Length, Length], listed("lengths", 2, 2)] | None = Field(
-        default=None, description="every piece so long along x and y of the face; the whole face if not given"
+        default=None, description="every piece so long along x and y of the face; default: the whole face"
     )
 
 
@@ -230,7 +228,7 @@ class StraightnessSpec(FormSpec):
     applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis", "plane")
 
     kind: Literal["straightness"]
-    per: Length | None = Field(default=None, description="every piece of that length; the whole if not given")
+    per: Length | None = Field(default=None, description="every piece of that length; default: the whole")
     lines: Literal["x", "y"] | None = Field(default=None, description="of a plane: along which of its axes lines run")
 
 

@@ -25,10 +25,10 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
     kind: Literal["plus_minus"]
     along: Direction | None = Field(
         default=None,
-        description="in the part's frame; if not given away from the first of the datums off which the feature lies "
+        description="in the part's frame; default: away from the first of the datums off which the feature lies "
         "along its normal, and without datums along its normal",
     )
-    datums: Datums | None = Field(default=None, description="where the dimension starts; the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="where the dimension starts; default: the part's frame")
 
     @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
@@ -47,8 +47,8 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
     kind: Literal["size"]
     limits: Annotated[tuple[Deviation, Deviation], listed("lengths", 2, 2)] | None = Field(
         default=None,
-        description="lower and upper on the drawing, as deviations from nominal, from which a bonus counts; those of "
-        "the distribution if not given",
+        description="lower and upper on the drawing, as deviations from nominal, from which a bonus counts; default: "
+        "those of the distribution",
     )
 
     @model_validator(mode="after")
