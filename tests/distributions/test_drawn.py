@@ -201,10 +201,10 @@ def test_the_page_shows_a_scene_that_loads_and_what_check_lists_of_it(tmp_path: 
     assert all(own.distribution.drawn is not None for own in scene.distributed.values())
     table = next(own for own in drawn_limits(scene) if isinstance(own, Table))
     assert {row.label: tuple(str(cell) for cell in row.cells) for row in table.rows} == {
-        "pinion tooth thickness": ("-19 um to -30 um", "-30 um", "-19 um", "normal"),
-        "wheel tooth thickness": ("-21/-32 um", "-32 um", "-21 um", "uniform"),
-        "centre distance": ("js7 of 60.2 mm", "-15 um", "15 um", "normal"),
-        "wheel bearing clearance": ("+16/+4 um", "4 um", "16 um", "normal"),
+        "pinion tooth thickness": ("-19 µm to -30 µm", "-30 µm", "-19 µm", "normal"),
+        "wheel tooth thickness": ("-21/-32 µm", "-32 µm", "-21 µm", "uniform"),
+        "centre distance": ("js7 of 60.2 mm", "-15 µm", "15 µm", "normal"),
+        "wheel bearing clearance": ("+16/+4 µm", "4 µm", "16 µm", "normal"),
         "wheel axial shift": ("ISO 2768-m of 60 mm", "-0.3 mm", "0.3 mm", "normal"),
         "axis in plane": ("±0.0002 in", "-0.0002 in", "0.0002 in", "normal"),
     }

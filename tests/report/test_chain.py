@@ -436,7 +436,8 @@ def test_a_chain_says_of_how_many_trials_it_is_where_some_failed() -> None:
     measure = summary["trains"]["shoulder swing"]["measure"]
     summary["measures"][measure] = summary["measures"][measure] | {"status": {"ok": 1900, "interferes": 100}}
     assert any(
-        "of the 1900 of 2000 that were assembled" in text for text in texts_of(chain_figure(typed_run(summary), "shoulder swing"))
+        "of the 1900 of 2000 that were assembled" in text
+        for text in texts_of(chain_figure(typed_run(summary), "shoulder swing"))
     )
 
 

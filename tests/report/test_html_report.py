@@ -237,7 +237,9 @@ def test_a_run_with_failed_trials_says_how_many_and_why(tmp_path: Path) -> None:
     failed = run.trials - run.found.measures["normal backlash"].seated
     assert 0 < failed < run.trials
     page = _no_way_out(report_html([run], in_3d=False))
-    assert f"trials: {run.trials - failed} assembled, {failed} could not be assembled (" in "".join(text for _, text in page.texts)
+    assert f"trials: {run.trials - failed} assembled, {failed} could not be assembled (" in "".join(
+        text for _, text in page.texts
+    )
     counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
     assert sum(counted) <= 2 * sum(own.seated for own in run.found.measures.values()), "none of them is in a bar"
 

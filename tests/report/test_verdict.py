@@ -138,18 +138,21 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
     short, whole = (lines_of(run_report(run.found, each), 120) for each in (Detail.SHORT, Detail.MEASURES))
     assert len(short) < 40 < 200 < len(whole)
     for name, own in run.summary["measures"].items():
-        row, named = (line for line in short if line.startswith(name))
-        shares = [each["geometric_percent"] for each in own["contributors"]]
-        assert named.endswith(f" {max(shares):.0f} %"), name
+        _, told = (line for line in short if line.startswith(f"{name}  "))
+        largest = max(each["geometric_percent"] for each in own["contributors"])
+        assert told.rstrip().endswith(f" {largest:.0f} %"), name
     assert any("train shoulder swing" in line for line in whole)
     assert any("more with -v: all tables" in line for line in short)
-    shares = "squares of the ranges that each contributor alone"
+    shares = "squared range of each contributor alone"
     assert sum(shares in line for line in whole) == 1  # once for all measures
     assert not any(shares in line for line in short)
 
 
 def test_the_screen_of_two_measures_has_its_verdict_first_and_thirty_lines(tmp_path: Path) -> None:
-    """At 80 columns, two lines kept for the folder and its pictures; each limit is missed, or no difference explained."""
+    """At 80 columns, with two lines left for the folder and its pictures. What is not explained is told.
+
+    So are warnings.
+    """
     run = spur(tmp_path, "    lower_limit: 45 um\n", trials=200)
     lines = as_text(run_report(run.found, Detail.SHORT), 80).splitlines()
     assert len(lines) <= 28

@@ -16,9 +16,7 @@ NOMINAL_NOTE = (
 
 def drawn_limits(scene: Scene) -> list[PageItem]:
     """Every limit that stands as on a drawing, with its numbers; nothing where there are none."""
-    rows = [
-        Row(name, (_told(law.drawn), *_numbers(law), law_name(law.resolve(scene.files)))) for name, law in _drawn(scene)
-    ]
+    rows = [Row(name, (*_written(law), law_name(law.resolve(scene.files)))) for name, law in _drawn(scene)]
     if not rows:
         return []
     words = (Heading("as drawn", words=True), Heading("lower"), Heading("upper"), Heading("law", words=True))
@@ -32,10 +30,11 @@ def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
                 yield str(name), law
 
 
-def _numbers(law: DistributionSpec) -> tuple[str, str]:
+def _written(law: DistributionSpec) -> Iterator[str]:
+    """Its limits as drawn, and as numbers, with the signs of their units."""
     given = law.quantities()
-    lower, upper = (str(given[key]).replace(" um", " µm") for key in ("lower", "upper"))
-    return lower, upper
+    for text in (_told(law.drawn), given["lower"], given["upper"]):
+        yield str(text).replace(" um", " µm")
 
 
 def _told(written: Any) -> str:

@@ -146,7 +146,8 @@ def verdict_table(
     """
     shown = {name: run.measures[name] for name in shown_measures(run.measures)}
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
-    headings += [Heading("limits", words=True), Heading("fraction out of limits", words=True, below=True)]
+    wide = any(None not in measure.limits for measure in shown.values())
+    headings += [Heading("limits", words=wide), Heading("fraction out of limits", words=True, below=True)]
     headings += [Heading("Ppk", plain=True)]
     by = not brief and any(measure.has_limits for measure in run.measures.values())
     headings += [Heading("Ppk by", words=True)] if by else []

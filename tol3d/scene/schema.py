@@ -126,8 +126,8 @@ class StudySpec(Strict):
     )
     ppk_by: Literal["quantiles", "sigma"] | None = Field(
         default=None,
-        description="Ppk of measures of which all builds are assembled: by quantiles, or mean and sigma; default: as the "
-        "values are distributed",
+        description="Ppk of measures of which all builds are assembled: by quantiles, or mean and sigma; default: as "
+        "the values are distributed",
     )
 
     engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them
