@@ -252,7 +252,7 @@ def test_robots_that_interfere_are_counted_and_left_out_of_both_methods(tmp_path
         assert {len(angles[state]) for state in STATES} == {400 - tight.failed}
         assert not np.isnan(angles["robot"]).any()
         assert len(known(tight.swing).curves[method]["robot"]) <= 400 - tight.failed
-    assert f"{tight.failed} of them not seated and left out" in " ".join(shown(tight).split())
+    assert f"{tight.failed} of them could not be assembled and are left out" in " ".join(shown(tight).split())
 
 
 def test_an_analytic_study_has_the_analytic_method_alone(tmp_path: Path) -> None:

@@ -270,7 +270,7 @@ def test_builds_that_do_not_seat_are_left_out_and_blamed() -> None:
     assert holds(found.contributors["x0"].first, 1.0)
     assert found.failures_by == "simulation"
     assert shares(found, "failures") == pytest.approx([0.0, 1.0], abs=1e-9)
-    assert "do not seat" in effects_report_text(effects(own, base=256))
+    assert "could not be assembled" in effects_report_text(effects(own, base=256))
 
 
 def effects_report_text(found: Effects) -> str:

@@ -354,8 +354,8 @@ def test_what_is_decided_is_printed_and_a_fault_is_loud(tmp_path: Path, monkeypa
     with altered(monkeypatch, Stack, "normal_backlash", scaled("pinion eccentricity", -1.0)):
         wrong = run_scene(SCENES / "spur_pair.yaml", overrides=asked, out=tmp_path / "wrong").summary
     assert right["warnings"] == []
-    assert "explained: no contributor's part in it is above 0.0" in printed(right)
-    assert "terms of second order have rms 0.00" in printed(right)
+    assert "difference explained; no contributor explains more of it than 0.0" in printed(right)
+    assert "second-order terms: rms 0.00" in printed(right)
     assert "NOT EXPLAINED" not in printed(right)
     fault = "the two methods disagree on pinion eccentricity: their difference depends on it by 200 % of its own effect"
     assert f"NOT EXPLAINED: {fault}" in printed(wrong)

@@ -167,8 +167,8 @@ def test_an_engine_that_sees_other_gears_is_warned_of(model_of: Modelling) -> No
     assert witness["measures"]["normal backlash"]["mean_difference"] == pytest.approx(-6.840, abs=0.05)
     warnings = witness_warnings(model, witness)
     assert len(warnings) == 2
-    assert warnings[0].startswith("witness: FCL finds 6.8")
-    assert "um more or less normal backlash of trial " in warnings[0]
+    assert warnings[0].startswith("witness: normal backlash by FCL differs by 6.8")
+    assert " um in trial " in warnings[0]
 
 
 @pytest.mark.parametrize(("apart", "told"), [(0.0, False), (0.4, True), (-0.4, True)])
