@@ -107,7 +107,7 @@ def _verdict_line(run: RunSummary, accepted_ppm: float) -> Line:
     found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
     judged = sum(found.values()) - found["no limits"]
     worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
-    counted = f", {found[worst]} of {judged} measures with limits" if judged > 1 else ""
+    counted = f", {found[worst]} of {judged} measures" if judged > 1 else ""
     accepted = f"{counted} · accepted: {share_text(accepted_ppm)} out of limits" if judged else ""
     style = f"bold {STYLES.get(worst, '')}".rstrip()
     return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, style), (accepted, "dim")))
