@@ -87,9 +87,9 @@ def test_a_nominal_out_of_limits_is_shown_by_check(tol3d: Command, tmp_path: Pat
     [
         (
             "{kind: uniform, lower: 0 mm, upper: 27 mm}",
-            "smaller than the nominal 8 mm, got up to 27 mm; write how much",
+            "smaller than the nominal 8 mm, got up to 27 mm; state the deviation",
         ),
-        ("{kind: constant, value: 8 mm}", "smaller than the nominal 8 mm, got up to 8 mm; write how much larger"),
+        ("{kind: constant, value: 8 mm}", "smaller than the nominal 8 mm, got up to 8 mm; state the deviation"),
     ],
 )
 def test_a_size_as_large_as_the_feature_is_refused(law: str, words: str, tmp_path: Path) -> None:

@@ -360,7 +360,7 @@ WRONG = {
     "no cylinder": (
         without("judged", "diameter").replace(SIZE, "").replace(SIZED, "kind: axis").replace(", diameter: 10 mm", ""),
         "tolerances.bore position.modifier",
-        "expected none, for 'plate.bore' is an axis, whose zone no size widens, got mmc",
+        "expected none, for 'plate.bore' is an axis, whose zone is not widened by a size, got mmc",
     ),
     "two conditions": (
         zoned(square="lmc"),

@@ -84,7 +84,7 @@ def test_a_relation_that_misses_is_refused_with_how_far_and_where(case: str, tmp
         simulation_of(scene_of(text, tmp_path), Overrides())
     first = str(caught.value).splitlines()[0].partition(": ")[2]
     assert first.startswith(f"moves.closed.relations[2]: {sentence}")
-    assert "mm, for what comes before leaves no freedom to close it; make their places or directions agree" in first
+    assert "mm, as earlier relations leave no freedom to close it; make their places or directions agree" in first
 
 
 def test_places_that_are_rounded_to_a_thousandth_meet(tmp_path: Path) -> None:

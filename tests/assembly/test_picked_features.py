@@ -144,7 +144,7 @@ WRONG = {
     "one wall": ({"groove": "faces: [{name: groove left wall}]"}, "expected a list of 2 faces, got a list of 1"),
     "no walls of a slot": (
         {"groove": "faces: [{name: top}, {name: left}]"},
-        "parts.base.features.groove: expected two parallel walls that look at each other or apart",
+        "parts.base.features.groove: expected two parallel walls that face each other, or face away",
     ),
     "neither face nor numbers": (
         {"top": "normal: [0, 0, 1], extent: [1 mm, 1 mm]"},
@@ -211,7 +211,7 @@ def test_a_program_runs_only_with_leave(tmp_path: Path, tol3d: Command) -> None:
     path = own_scene(tmp_path, f"open({str(tmp_path / 'ran')!r}, 'w')\n{PROGRAM}")
     code, _, err = tol3d("check", str(path))
     assert code == 2
-    assert "parts.base.builder: expected leave to run part.py, which is a program, and got none" in " ".join(
+    assert "parts.base.builder: expected permission to run part.py, which is a program, got none" in " ".join(
         err.split()
     )
     assert not (tmp_path / "ran").exists()

@@ -299,7 +299,7 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str]] = {
     ),
     "smaller than its pin": (
         [("diameter: 10.1 mm", "diameter: 9.9 mm")],
-        "moves.plate on the pins.pairs[0]: expected a size of 'plate.hole' over that of 'base.pin 1' at the mean, got "
+        "moves.plate on the pins.pairs[0]: expected a size of 'plate.hole' above that of 'base.pin 1' at the mean, got "
         "100 um under it; nothing could be assembled",
     ),
     "two holes": (

@@ -231,7 +231,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
             )
         ],
         "moves.cover on the base",
-        "coincident of cover.A2 and base.floor takes no freedom: relations before it hold all that it asks; "
+        "coincident of cover.A2 and base.floor takes no freedom: earlier relations hold all that it constrains; "
         "leave it out",
     ),
     "mate of what does not mate": (
@@ -296,13 +296,14 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "a key of what is not there": (
         [changed(BASE_HOLE, "[floor,", "[{feature: floor, translation: true},")],
         "tolerances.base hole position.datums[0].translation",
-        "expected another word here, got 'translation'; datums that may shift (a triangle) are not there: leave the "
-        "datum out, or name it with `mmb`",
+        "expected another word here, got 'translation'; datums that may shift (a triangle) are not supported: "
+        "leave the datum out, or name it with `mmb`",
     ),
     "a modifier that is not there": (
         [changed(BASE_HOLE, "kind: position", "kind: position, modifier: st")],
         "tolerances.base hole position.modifier",
-        "expected another word here, got 'st'; statistical tolerances (ST) are not there: name the law of the process",
+        "expected another word here, got 'st'; statistical tolerances (ST) are not supported: "
+        "name the law of the process",
     ),
     "a key that is a word elsewhere": (
         [changed(BASE_HOLE, "kind: position", "kind: position, width: 1 mm")],
@@ -312,8 +313,8 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "a word of another kind of feature": (
         [("      rim:   {kind: point", "      rim:   {kind: cone")],
         "parts.base.features.rim.kind",
-        "expected another word here, got 'cone'; write axis, whose `face` may be a cone; how far in it is "
-        "seated is not there",
+        "expected another word here, got 'cone'; write axis, whose `face` may be a cone; its "
+        "seating depth is not supported",
     ),
     "gears and assemblies": (
         [added(PARTS, "pinion: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 10 mm}")],

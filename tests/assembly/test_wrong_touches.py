@@ -51,13 +51,13 @@ WRONG = {
     "a third contact in the plane": (
         ((DISC, THREE),),
         "moves.first",
-        "contact of lower disc.rim and box.right asks what earlier contacts hold; lower disc is still free: "
+        "contact of lower disc.rim and box.right constrains what earlier contacts hold; lower disc is still free: "
         f"it shifts along z; {FREE}",
     ),
     "twice on the same floor": (
         ((DISC, "      - {from: lower disc.rim, to: box.floor}"),),
         "moves.first",
-        "contact of lower disc.rim and box.floor asks what earlier contacts hold; lower disc is still free: "
+        "contact of lower disc.rim and box.floor constrains what earlier contacts hold; lower disc is still free: "
         f"it shifts along x; {FREE}",
     ),
     "in the middle of its hole": (

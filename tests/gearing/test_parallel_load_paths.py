@@ -608,7 +608,7 @@ BAD = {
         "  right slow:",
         f"moves.right slow: the load paths to 'output' do not fit: here it lies "
         f"{120 * math.sin(math.radians(5)):.3f} mm and 0.000 deg from where "
-        "'left slow' puts it; look at azimuths, centre distances and places on the shafts",
+        "'left slow' puts it; check azimuths, centre distances and places on the shafts",
     ),
     "two motors": (
         {

@@ -90,7 +90,7 @@ def test_teeth_may_be_a_tenth_thinner(words: str, warned: Warned) -> None:
         assert len(lines) == count
     assert lines[0].startswith("tolerances.")
     assert f"distribution: expected at most 10 % of the tooth thickness of {gear!r}" in lines[0]
-    assert "(10.01 %); write how much thicker than nominal the tooth is" in lines[0]
+    assert "(10.01 %); state the deviation of the thickness from nominal" in lines[0]
 
 
 def test_the_thickness_of_each_law_is_that_of_its_ends(warned: Warned, tmp_path: Path) -> None:
@@ -267,7 +267,7 @@ def test_gears_may_shift_by_their_face_width(warned: Warned) -> None:
 def test_faces_may_be_a_metre_wide(warned: Warned) -> None:
     found = [warned("every_field", ("face_width: 18 mm", f"face_width: {width}")) for width in ("1 m", "1001 mm")]
     assert found[0] == ()
-    assert found[1] == ("parts.pinion.face_width: expected at most 1 m, got 1001 mm; look at the unit",)
+    assert found[1] == ("parts.pinion.face_width: expected at most 1 m, got 1001 mm; check the unit",)
 
 
 @pytest.mark.parametrize(

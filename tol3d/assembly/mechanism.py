@@ -45,19 +45,19 @@ OTHER_KINDS: Final = (
     ("dimension", "write plus_minus for where a feature lies, size for a diameter or a width"),
     ("diameter", "write size"),
     ("width", "write size"),
-    ("cone", "write axis, whose `face` may be a cone; how far in it is seated is not there"),
+    ("cone", "write axis, whose `face` may be a cone; its seating depth is not supported"),
     ("line", "write axis"),
-    ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),
+    ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
 )
 OTHER_KEYS: Final = (
     ("composite", "write lower_segment: {zone: …, datums: …}"),
     ("tangent_plane", "leave it out: an orientation is of the plane in contact, and form takes nothing of it"),
     ("tangent", "leave it out: an orientation is of the plane in contact, and form takes nothing of it"),
-    ("translation", "datums that may shift (a triangle) are not there: leave the datum out, or name it with `mmb`"),
-    ("freedoms", "customised datum freedoms are not there: each datum takes what earlier ones leave"),
-    ("statistical", "statistical tolerances (ST) are not there: name the law of the process"),
-    ("st", "statistical tolerances (ST) are not there: name the law of the process"),
-    ("non_uniform", "non-uniform profiles are not there: `outward` makes one unequal"),
+    ("translation", "datums that may shift (a triangle) are not supported: leave the datum out, or name it with `mmb`"),
+    ("freedoms", "customised datum freedoms are not supported: each datum takes what earlier ones leave"),
+    ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
+    ("st", "statistical tolerances (ST) are not supported: name the law of the process"),
+    ("non_uniform", "non-uniform profiles are not supported: `outward` makes one unequal"),
     ("envelope", "the envelope of a size (Rule #1) does not limit its form here: write straightness or flatness"),
 )
 

@@ -41,8 +41,8 @@ class Miss:
         place = ", ".join(f"{round(value, 4) + 0.0:g}" for value in self.at)
         return (
             f"expected {own.moving!r} and {own.target!r} to {kinds[own.kind]} without deviations, got "
-            f"{self.amount:.4g} mm between them at ({place}) mm, for what comes before leaves no freedom to close it; "
-            "make their places or directions agree, or ask with a relation only for what is left"
+            f"{self.amount:.4g} mm between them at ({place}) mm, as earlier relations leave no freedom to close it; "
+            "make their places or directions agree, or constrain only the freedoms left"
         )
 
 

@@ -113,8 +113,8 @@ class AssemblySystem(PlainSystem):
             elif abs(value - linear[measure.name][0]) > SAME + self.assembly.measures[measure.name].chord_error:
                 off = abs(value - linear[measure.name][0]) * measure.per_internal
                 words = (
-                    f"moves lay parts elsewhere than they are `placed`, and this reads {off:.3g} {measure.unit} else; "
-                    "place parts and fixtures where they are when all moves are done"
+                    f"moves place parts elsewhere than `placed` states, by {off:.3g} {measure.unit} in this measure; "
+                    "state the final places of parts and fixtures"
                 )
                 yield ("measures", measure.name), words
 

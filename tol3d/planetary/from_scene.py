@@ -63,7 +63,7 @@ def _pins(scene: Scene, own: PlanetarySet, made: Made) -> Iterator[str]:
             f"expected planets that stay clear of their neighbours, whose pins are {pitch:.4g} mm apart, got planets "
         )
         words += f"that overlap by up to {taken - room:.4g} mm where pins are at their worst places"
-        yield warned(("moves", own.name, "planets"), f"{words}; look at the units of the pins' places")
+        yield warned(("moves", own.name, "planets"), f"{words}; check the units of the pins' places")
 
 
 def _of_pins(scene: Scene, own: PlanetarySet) -> Iterator[tuple[KeyPath, PlanetPinSpec | BorePositionSpec]]:

@@ -15,11 +15,11 @@ class Implausible:
         advice: remedy.
 
     >>> Implausible(0.5).sentence("the diameter of 'plate.hole'", 8.0, 200.0)
-    "expected at most 50 % of the diameter of 'plate.hole' (8 mm), got 200 mm (2500 %); look at the unit"
+    "expected at most 50 % of the diameter of 'plate.hole' (8 mm), got 200 mm (2500 %); check the unit"
     """
 
     share: float
-    advice: str = "look at the unit"
+    advice: str = "check the unit"
 
     def sentence(self, of: str, nominal: float, deviation: float) -> str:
         """Sentence on an implausible deviation [mm]; "" for a plausible one, or without a nominal size.

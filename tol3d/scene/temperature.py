@@ -57,4 +57,4 @@ class TemperatureSpec(ToleranceSpec):
             lowest = self.distribution.resolve({}).extremes[0]
             if lowest < ABSOLUTE_ZERO:
                 least = f"at least {ABSOLUTE_ZERO} K, which is absolute zero"
-                yield Contradiction(("distribution",), least, f"{lowest:.6g} K; look at the unit")
+                yield Contradiction(("distribution",), least, f"{lowest:.6g} K; check the unit")

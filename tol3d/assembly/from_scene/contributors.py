@@ -153,7 +153,7 @@ class Effects:
             words = (
                 f"expected deviations smaller than the nominal {nominal:g} mm, got up to {draw.distribution.high:g} mm"
             )
-            advice = "write how much larger it is than nominal, not the size, and look at the unit"
+            advice = "state the deviation from nominal, not the size, and check the unit"
             raise self.scene.refuse(("tolerances", own.entry, "distribution"), f"{words}; {advice}")
 
     def _along(self, feature: str, spec: PlusMinusSpec) -> Array:

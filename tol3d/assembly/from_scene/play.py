@@ -67,7 +67,7 @@ def engaged_by(
             raise scene.refuse(here, found)
         clearance = _mean_size(effects, features[found.inner]) - _mean_size(effects, features[found.outer])
         if clearance < 0.0:
-            words = f"expected a size of {found.inner!r} over that of {found.outer!r} at the mean"
+            words = f"expected a size of {found.inner!r} above that of {found.outer!r} at the mean"
             raise scene.refuse(here, f"{words}, got {-clearance * 1e3:.6g} um under it; nothing could be assembled")
         engagements.append(found)
     return Engage(name, spec.part, relations, tuple(engagements), _floating(name, spec, effects))
@@ -106,7 +106,7 @@ def _bolted(
         short = mean - _mean_size(effects, own)
         if short > 0.0:
             words = (
-                f"expected a size of {own.name!r} over that of its bolt at the mean, got {short * 1e3:.6g} um under it"
+                f"expected a size of {own.name!r} above that of its bolt at the mean, got {short * 1e3:.6g} um under it"
             )
             raise scene.refuse(here, f"{words}; nothing could be assembled")
     bolt = Bolt(diameter, by, frame, reach)

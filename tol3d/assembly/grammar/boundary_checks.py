@@ -166,7 +166,7 @@ def _of_tolerance(drawing: Drawing, own: Stated, spec: Modified) -> Iterator[Pro
 def _unsized(drawing: Drawing, feature: str, place: KeyPath, modifier: str) -> Iterator[Problem]:
     if drawing.kind(feature).kind not in SIZED:
         words = drawing.kind(feature).words
-        yield place, f"expected none, for {feature!r} is {words}, whose zone no size widens, got {modifier}"
+        yield place, f"expected none, for {feature!r} is {words}, whose zone is not widened by a size, got {modifier}"
     elif not drawing.of(feature, SizeSpec):
         words = f"expected a tolerance of the size of {feature!r}, from which the bonus counts, got none"
         yield place, f"{words}; add one of kind size"

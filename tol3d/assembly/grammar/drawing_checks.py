@@ -297,7 +297,7 @@ def cyclic_datums(drawing: Drawing) -> Iterator[Problem]:
 
 
 HALF: Final = Implausible(0.5)
-SIZE: Final = Implausible(0.5, "write how much larger than nominal the feature is, not its size, and look at the unit")
+SIZE: Final = Implausible(0.5, "state the deviation from nominal, not the size, and check the unit")
 
 
 def implausible_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:

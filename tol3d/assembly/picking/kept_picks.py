@@ -215,8 +215,8 @@ def built_shape(scene: Scene, part: str, *, run_builders: bool) -> BuiltShape:
     if not isinstance(builder, OwnFileSpec):
         return builder.shape
     if not run_builders:
-        words = f"expected leave to run {builder.file}, which is a program, and got none"
-        raise GeometryError(f"{words}; read it, and say --run-builders if you trust it")
+        words = f"expected permission to run {builder.file}, which is a program, got none"
+        raise GeometryError(f"{words}; read it, and use --run-builders if you trust it")
     dimensions = {name: own.internal for name, own in builder.dimensions.items()}
     return run_program(scene.files[builder.file], builder.function, {**dimensions, **builder.counts})
 

@@ -209,8 +209,8 @@ class _Freedoms:
         tie, seat = self.ties[index], self.seats[index]
         if self.pivot < 0 or self.lying >= 0:
             raise InputError(
-                f"{tie.name} would turn what no plane, axis or point holds: expected one of these before it; points on "
-                "planes alone are contacts of three_two_one or six_plane"
+                f"{tie.name} would turn a part that no plane, axis or point holds: expected one of these before it; "
+                "points on planes alone are contacts of three_two_one or six_plane"
             )
         arm = (self._pose().turn[:, :, 0] @ (seat.point - self.seats[self.pivot].point))[:, 0]
         length = np.linalg.norm(arm)

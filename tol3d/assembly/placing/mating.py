@@ -74,7 +74,8 @@ def mating(move: Mate, nominal: World) -> Mating:
     seats = [_seat(move, relation, sign, nominal) for relation, sign in zip(move.relations, signs, strict=True)]
     alignment = aligned(ties, seats, nominal.poses[move.part])
     for tie in alignment.idle:
-        raise InputError(f"{ties[tie].name} takes no freedom: relations before it hold all that it asks; leave it out")
+        words = "takes no freedom: earlier relations hold all that it constrains; leave it out"
+        raise InputError(f"{ties[tie].name} {words}")
     return Mating(move, alignment, signs)
 
 

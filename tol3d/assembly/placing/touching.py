@@ -178,8 +178,8 @@ def _refuse_redundant(move: Touch, rows: Array, ends: Sequence[int], origin: Arr
             left = free_motions((rows * scale)[:before], origin, reach) if before else np.zeros((0, 6))
             free = f"{move.part} is still free: {in_words(left)}" if len(left) else f"nothing of {move.part} is free"
             raise InputError(
-                f"moves.{move.name}: contact of {contact.moving} and {contact.target} asks what earlier contacts hold; "
-                f"{free}; expected contacts that are independent of each other where {move.part} is `placed`"
+                f"moves.{move.name}: contact of {contact.moving} and {contact.target} constrains what earlier contacts "
+                f"hold; {free}; expected contacts that are independent of each other where {move.part} is `placed`"
             )
         before = end
 

@@ -40,7 +40,7 @@ def take_relations(freedoms: Freedoms, move: Mate | Rest, world: World) -> None:
         if not _take(freedoms, relation, move, world):
             raise InputError(
                 f"moves.{move.name}: {relation.kind} of {relation.moving} and {relation.target} takes no freedom: "
-                "earlier relations hold all that it asks; leave it out"
+                "earlier relations hold all that it constrains; leave it out"
             )
         freedoms.settle(world.origin(relation.moving))
 

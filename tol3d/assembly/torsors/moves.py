@@ -39,8 +39,8 @@ def touched(move: Touch, world: World) -> Array:
         if freedoms.take(rows, values) < len(rows):
             free = f"{move.part} is still free: {freedom_in_words(before)}" if before.size else "nothing is free"
             raise InputError(
-                f"moves.{move.name}: contact of {contact.moving} and {contact.target} asks what earlier contacts hold; "
-                f"{free}; expected contacts that are independent of each other"
+                f"moves.{move.name}: contact of {contact.moving} and {contact.target} constrains what earlier contacts "
+                f"hold; {free}; expected contacts that are independent of each other"
             )
     freedoms.settle(np.mean([world.origin(contact.moving) for contact in move.contacts], axis=0))
     return freedoms.rest()

@@ -84,7 +84,7 @@ def implausible_pins(scene: Scene) -> Iterator[Problem]:
             words += (
                 f"{ring.pin_radius} that overlap by up to {taken - room:.4g} mm where tolerances are at their worst"
             )
-            yield ("parts", name, "pin_radius"), f"{words}; look at the units of pins' places and radii"
+            yield ("parts", name, "pin_radius"), f"{words}; check the units of pins' places and radii"
 
 
 def implausible_discs(scene: Scene) -> Iterator[Problem]:

@@ -54,7 +54,7 @@ def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Faces of gears wider than a metre, and gears that a shift along their axis takes beyond their own face."""
     for name, gear in scene.of(GearSpec).items():
         if gear.face_width.internal > WIDEST_FACE + ROUNDING:
-            yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; look at the unit"
+            yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; check the unit"
     for name, spec in scene.of(AxialShiftSpec).items():
         far, of = larger_end(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
         assert isinstance(of, GearSpec)
@@ -83,7 +83,7 @@ def off_shaft(name: str, shaft: ShaftSpec, at: float) -> str:
     for field, end, sense in (("start", shaft.start, -1.0), ("end", shaft.end, 1.0)):
         if end is not None and (beyond := sense * (at - end.internal)) > ROUNDING:
             words = f"expected a place on {name!r}, whose {field} is at {end}, got {at:.6g} mm, {beyond:.4g} mm beyond"
-            return f"{words}; look at the unit, and where the shaft's origin lies"
+            return f"{words}; check the unit, and the shaft's origin"
     return ""
 
 
@@ -101,7 +101,7 @@ def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
     """Error text for a shaft thicker than a bore [mm] around it; "" if there is none, or a size is unknown."""
     if bore is None or shaft.diameter is None or shaft.diameter.internal <= bore + ROUNDING:
         return ""
-    return f"expected at most {bore:.6g} mm, the diameter of {words}, got {shaft.diameter}; look at both, and the units"
+    return f"expected at most {bore:.6g} mm, the diameter of {words}, got {shaft.diameter}; check both, and the units"
 
 
 HALF: Final = Implausible(0.5)

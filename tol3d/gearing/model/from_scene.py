@@ -39,7 +39,7 @@ from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
 
-THICKNESS: Final = Implausible(0.1, "write how much thicker than nominal the tooth is, and look at the unit")
+THICKNESS: Final = Implausible(0.1, "state the deviation of the thickness from nominal, and check the unit")
 
 SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size over pins to one hundredth at the coarsest
 

@@ -128,7 +128,7 @@ def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None
                     ("moves", mesh.name),
                     f"the load paths to {shaft!r} do not fit: here it lies {apart:.3f} mm and "
                     f"{math.degrees(askew):.3f} deg from where {layout.driving[shaft].name!r} "
-                    "puts it; look at azimuths, centre distances and places "
+                    "puts it; check azimuths, centre distances and places "
                     "on the shafts",
                 )
             if layout.seating(mesh.name).gap > PLACE_AS_WRITTEN:
@@ -136,7 +136,7 @@ def refuse_misfits(scene: Scene, meshes: Sequence[Mesh], layout: Layout) -> None
                     ("moves", mesh.name),
                     f"the teeth of {mesh.driver!r} and {mesh.driven!r} do not fit: they miss each other by "
                     f"{layout.seating(mesh.name).gap:.3f} mm, and both are in other meshes too, so that neither can be "
-                    "turned on its shaft; look at azimuths and numbers of teeth",
+                    "turned on its shaft; check azimuths and numbers of teeth",
                 )
 
 

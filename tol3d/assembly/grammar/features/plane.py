@@ -125,7 +125,7 @@ class SlotSpec(FeatureSpec):
         first, second = faces
         across, there = np.array(first.direction), np.array(second.at) - np.array(first.at)
         if np.linalg.norm(np.cross(across, second.direction)) > PARALLEL or across @ second.direction > 0.0:
-            raise GeometryError("expected two parallel walls that look at each other or apart, got others")
+            raise GeometryError("expected two parallel walls that face each other, or face away, got others")
         x, y = (min(pair) for pair in zip(first.extent, second.extent, strict=True))
         width = float(across @ there)
         middle = np.array(first.at) + there / 2
