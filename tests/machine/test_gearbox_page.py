@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 from fixtures import Command
 from places import ROOT, SCENES
+from ruamel.yaml import YAML
 
 from tol3d import open_run, run_scene
+from tol3d.machine.grammar.carrier_pins import CarrierPinsSpec
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 
 PAGE = (ROOT / "docs" / "gearboxes.md").read_text("utf-8")
@@ -23,8 +25,9 @@ UPRIGHT = (
 def test_the_page_quotes_its_scenes() -> None:
     scenes = [(SCENES / f"{name}.yaml").read_text("utf-8") for name in ("housed_gears", "gearbox_in_housing")]
     quoted = [block.partition("```")[0] for block in PAGE.split("```yaml\n")[1:]]
-    (changed,) = (own for own in quoted if own not in scenes[0] and own not in scenes[1])
+    changed, pins = (own for own in quoted if own not in scenes[0] and own not in scenes[1])
     assert changed in UPRIGHT
+    CarrierPinsSpec.model_validate(YAML(typ="safe").load(pins)["moves"]["planet pins"])
 
 
 @pytest.mark.slow
