@@ -108,7 +108,7 @@ def test_the_page_quotes_both_scenes() -> None:
 
 
 def test_the_tables_of_the_example_are_those_of_the_run(tol3d: Command, tmp_path: Any) -> None:
-    code, out, _ = tol3d("run", "cover_on_base", "--no-picture", "--out", str(tmp_path / "run"))
+    code, out, _ = tol3d("run", "cover_on_base", "-v", "--no-picture", "--out", str(tmp_path / "run"))
     assert code == 0
     assert len(TABLES) == 3
     for table in TABLES:
