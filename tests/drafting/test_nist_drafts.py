@@ -163,7 +163,7 @@ def test_a_tolerance_that_is_said_reaches_its_zone_and_never_leaves_it(model: st
     assert isinstance(system, AssemblySystem)
     method = system.method("exact", system.materials("exact"))
     said = {int(row["id"]): row["kind"] for row in ROWS if row["class"] == "said" and row["model"] == named(model)}
-    sources = {own.name: own.needs[0].source or 0 for own in draft.entries if own.section == "measures" and own.needs}
+    sources = {own.name: own.inspects or 0 for own in draft.entries if own.section == "measures" and own.needs}
     inspected = {name: number for name, number in sources.items() if number in said}
     assert {*inspected.values()} == {number for number, kind in said.items() if kind not in FORMS}
     reached = dict.fromkeys(inspected, 0.0)

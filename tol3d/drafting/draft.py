@@ -85,7 +85,7 @@ class Draft:
         lost: list[str] = []
         left: list[str] = []
         for tolerance, meaning in zip(own.text.tolerances, own.meanings.all, strict=True):
-            made = [each for each in self.entries if each.source == tolerance.id]
+            made = [each for each in self.entries if tolerance.id in (each.source, *each.below)]
             standing = [each for each in made if each.stands]
             words = [doubled.get(tolerance.id, ""), *(word for each in standing for word in each.losses)]
             why = "; ".join(dict.fromkeys(filter(None, words)))

@@ -11,8 +11,10 @@ from tol3d.drafting.dimensions import sized, take_distance, take_size
 from tol3d.drafting.entry import LAW, Entry, Wording
 from tol3d.drafting.features import Features, Group
 from tol3d.drafting.words import Names, comment, length, scalar
-from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, zone
+from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
+from tol3d.numerics.arrays import Array
 from tol3d.step.dimension import Dimension
+from tol3d.step.faces import extent
 from tol3d.step.found import FoundFeature, Triple
 from tol3d.step.frame import frame
 from tol3d.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning, Meanings
@@ -23,6 +25,9 @@ from tol3d.step.tolerance import Tolerance
 
 INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"
+TURNED: Final = ORIENTATIONS | {"axial_run_out"}
+AROUND: Final = 72  # directions in which the edges of a face are felt for the farthest one: to 1e-3 of a corner
+MOST_OF_A_SET: Final = 64  # features that `inspected_set` takes
 
 
 @dataclass
@@ -86,8 +91,8 @@ class Drawing:
         for dimension in self.dimensions:
             take_size(self, dimension)
         for tolerance, meaning in self.tolerances:
-            if meaning.how != NOTHING:
-                self.say(tolerance, meaning)
+            if meaning.how != NOTHING and not (tolerance.above and meaning.kind not in ORIENTATIONS):
+                self.say(tolerance, meaning)  # a lower segment of a pattern is said with its upper one
         for dimension in self.dimensions:
             take_distance(self, dimension)
 
@@ -155,6 +160,9 @@ class Drawing:
 
     def take_family(self, family: Sequence[FoundFeature], pmi: Sequence[str]) -> None:
         """Select features that the drawing names alike: in one line, if one means them, else each by itself."""
+        if len(family) == 1 and (disc := self.disc(family[0])) is not None:
+            self.features.disc(family[0], *disc)
+            return
         outward = [self.outward(own) for own in family]
         if any(outward):
             for own, along in zip(family, outward, strict=True):
@@ -183,6 +191,31 @@ class Drawing:
                         continue
                     above = float(np.dot(np.subtract(own.at, member.at), axis))
                     return None if above > 0.0 else (-float(axis[0]), -float(axis[1]), -float(axis[2]))
+        return None
+
+    def disc(self, member: FoundFeature) -> tuple[Array, Array, float] | None:
+        """Middle, normal and radius of the circle to the farthest edge of a face that runs out about an axis.
+
+        None of a face that is a disc about it already, or that is no plane.
+        """
+        for tolerance, meaning in self.tolerances:
+            if meaning.kind != "axial_run_out" or not {*member.faces} & {*tolerance.feature.faces}:
+                continue
+            own = self.meanings.datum(tolerance.datums[0].references[0])
+            shape = None if own is None else self.meanings.datum_shapes.get(own.id)
+            if member.kind != "plane" or shape is None or shape.kind != "cylinder":
+                continue
+            axis, normal = np.array(shape.surfaces[0].direction), np.array(member.direction)
+            off = np.subtract(member.at, shape.surfaces[0].at)
+            if abs(float(axis @ normal)) < 1.0 - SQUARE:
+                continue
+            middle = np.array(shape.surfaces[0].at) + axis * float(off @ normal) / float(axis @ normal)
+            if member.radius and np.linalg.norm(middle - member.at) < SQUARE:
+                return None
+            x, y = np.array(member.x), np.cross(normal, member.x)
+            edges = [edge for face in member.faces for edge in self.features.part.shell.edges[face]]
+            ways = [x * np.cos(angle) + y * np.sin(angle) for angle in np.arange(AROUND) * 2.0 * np.pi / AROUND]
+            return middle, normal, max(extent(edges, way)[1] - float(way @ middle) for way in ways)
         return None
 
     def of(self, feature: str) -> str:
@@ -232,7 +265,7 @@ class Drawing:
         kind = self.kind_of(tolerance, meaning, group)
         remark = source(tolerance)
         name = self.names.new(tolerance.name or kind.replace("_", " "), kind, len(group.members))
-        locates = tolerance.kind in LOCATIONS and kind not in ORIENTATIONS and kind not in FORMS
+        locates = tolerance.kind in LOCATIONS and kind not in TURNED and kind not in FORMS
         if locates and kind not in INSPECTED and group.name in self.located:
             self.doubled[tolerance.id] = f"#{self.located[group.name]} locates the feature: this one is inspected"
             kind = "inspected_position"
@@ -243,9 +276,10 @@ class Drawing:
         wordings = list(self.wordings(tolerance, kind, group, datums, has_law=has_law))
         if not has_law or kind in FORMS:  # a form has a law only where a contact reads it
             wordings += self.wordings(tolerance, kind, group, datums, has_law=not has_law)
+        below = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
         entry = Entry(
             "tolerances", scalar(name), [Wording((line,), remark, lost) for line, lost in wordings],
-            tolerance.id, remark,
+            tolerance.id, remark, below=tuple(each.id for each in below),
         )  # fmt: skip
         self.entries.append(entry)
         if locates:
@@ -257,6 +291,8 @@ class Drawing:
         if locates or len(tolerance.datums) != 1 or count < 2 or not self.turns(tolerance, group):
             inspected = datums  # else to one datum alone the turn about it would count, which its zone leaves free
         self.inspect(tolerance, kind, group, inspected, remark, entry)
+        for each in below:
+            self.inspect_pattern(each, group, entry)
 
     def turns(self, tolerance: Tolerance, group: Group) -> bool:
         """True if a feature may turn about the one datum of its orientation."""
@@ -281,7 +317,10 @@ class Drawing:
         self, tolerance: Tolerance, kind: str, group: Group, datums: tuple[tuple[str, str], ...], *, has_law: bool
     ) -> Iterator[tuple[str, str]]:
         """Ways to write a tolerance, the best first, with the losses."""
-        own = zone(self.meanings, tolerance, kind, group)
+        own = zone(self.meanings, tolerance, kind, group) + piece(tolerance, kind)
+        if kind == "straightness" and group.kind == "plane":
+            own += f", lines: {'x' if group.members[0].extent[0] >= group.members[0].extent[1] else 'y'}"
+        segments = [*self.lower_segments(tolerance, kind, group)]
         law = f", law: {LAW}" if has_law else ""
         modifier = modifier_of(tolerance) if group.name in self.sizes and kind not in FORMS else ""
         for k, (said, _) in enumerate(datums):
@@ -290,8 +329,41 @@ class Drawing:
                 lost += ["the bonus is lost"] if bonus != modifier else []
                 frame_words = f", datums: [{said}]" if said and kind not in FORMS else ""
                 extra = f", modifier: {bonus}" if bonus else ""
-                head = f"{{kind: {kind}, of: {self.of(group.name)}, zone: {own}"
-                yield f"{head}{law}{frame_words}{extra}}}", "; ".join(lost)
+                for lower, without in segments:
+                    head = f"{{kind: {kind}, of: {self.of(group.name)}, zone: {own}"
+                    yield f"{head}{law}{frame_words}{extra}{lower}}}", "; ".join([*lost, *without])
+        if kind == "axial_run_out":
+            yield from (
+                (line, "; ".join(filter(None, (lost, "axial run-out is a perpendicularity: its form is lost"))))
+                for line, lost in self.wordings(tolerance, "perpendicularity", group, datums, has_law=has_law)
+            )
+
+    def lower_segments(self, tolerance: Tolerance, kind: str, group: Group) -> Iterator[tuple[str, list[str]]]:
+        """The lower segment of a composite tolerance as YAML, then none, with what is lost; none alone of others."""
+        for each, meaning in self.tolerances:
+            if each.above == tolerance.id and meaning.kind == kind:
+                datums = self.datum_wordings(each)[-1][0]
+                words = f", datums: [{datums}]" if datums else ""
+                yield f", lower_segment: {{zone: {zone(self.meanings, each, kind, group)}{words}}}", []
+                yield "", ["the lower segment is lost"]
+                return
+        yield "", []
+
+    def inspect_pattern(self, tolerance: Tolerance, group: Group, entry: Entry) -> None:
+        """A measure of a lower segment's own limit: over the places that its datums leave the pattern."""
+        if group.kind != "cylinder" or len(group.names) > MOST_OF_A_SET:
+            return
+        assert tolerance.magnitude is not None
+        features = ", ".join(self.of(own) for own in group.names)
+        modifier = modifier_of(tolerance) if group.name in self.sizes else ""
+        read = self.datum_wordings(tolerance)[-1][1]
+        frame_words = f", datums: [{read}]" if read else ""
+        limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
+        extra = f", modifier: {modifier}" if modifier else ""
+        words = f"{{kind: inspected_set, of: [{features}], free: oriented{frame_words}{extra}, upper_limit: {limit}}}"
+        name = scalar(self.names.new(f"inspected {tolerance.name or 'pattern'}", "inspected_set"))
+        wordings, remark = [Wording((words,))], source(tolerance)
+        self.entries.append(Entry("measures", name, wordings, None, remark, (entry,), inspects=tolerance.id))
 
     def inspect(
         self,
@@ -304,7 +376,7 @@ class Drawing:
     ) -> None:
         """Measures of a tolerance's own limit, one of each feature."""
         assert tolerance.magnitude is not None
-        turned = kind in ORIENTATIONS or kind == "inspected_orientation"
+        turned = kind in TURNED or kind == "inspected_orientation"
         measured = "inspected_orientation" if turned else "inspected_position"
         modifier = modifier_of(tolerance) if group.name in self.sizes and not turned else ""
         projected = ""
@@ -325,7 +397,8 @@ class Drawing:
             number = f" {feature.removeprefix(group.name).strip()}" if len(group.names) > 1 else ""
             name = self.names.new(f"inspected {label}{number}", measured)
             source_id = None if entry is not None else tolerance.id
-            self.entries.append(Entry("measures", scalar(name), words, source_id, remark, needs))
+            made = Entry("measures", scalar(name), words, source_id, remark, needs, inspects=tolerance.id)
+            self.entries.append(made)
 
 
 def source(tolerance: Tolerance) -> str:

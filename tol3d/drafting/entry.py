@@ -39,6 +39,9 @@ class Entry:
         label: its name in words, for the list of omissions.
         needs: entries without which it is of no use.
         refused: why it is left out; "" while it is not.
+        losses: what its wordings lost so far.
+        inspects: the `#id` of the tolerance whose limit a measure reads; None of others.
+        below: those of the lower segments that it says too.
     """
 
     section: Section
@@ -49,6 +52,8 @@ class Entry:
     needs: tuple["Entry", ...] = ()
     refused: str = ""
     losses: list[str] = field(default_factory=list)
+    inspects: int | None = None
+    below: tuple[int, ...] = ()
 
     @property
     def stands(self) -> bool:

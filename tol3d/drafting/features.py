@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from tol3d.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
+from tol3d.numerics.arrays import Array
 from tol3d.step.found import FoundFeature, Triple, by_place
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError, shown
@@ -161,6 +162,16 @@ class Features:
             f"diameter: {length(2 * member.radius)}{', hole: true' if member.hollow else ''}}}"
         )
         made = Group(name, (member,), line, comment=f"{faces_of(member)}, by numbers: its axis leads out")
+        self.groups.append(made)
+        return made
+
+    def disc(self, member: FoundFeature, middle: Array, normal: Array, radius: float) -> Group:
+        """A face that turns about an axis, as a disc by its numbers."""
+        line = f"{{kind: plane, at: {place(middle)}, normal: {direction(normal)}, radius: {length(radius)}}}"
+        made = Group(
+            self.names.new("", self.kind_name(member.kind)), (member,), line,
+            comment=f"{faces_of(member)}, by numbers: to its farthest edge from the axis",
+        )  # fmt: skip
         self.groups.append(made)
         return made
 

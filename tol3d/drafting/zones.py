@@ -28,12 +28,25 @@ def zone(meanings: Meanings, tolerance: Tolerance, kind: str, group: Group) -> s
     projected = ""
     if tolerance.projected is not None and group.kind == "cylinder" and kind in PROJECTED:
         projected = f", projected: {length(tolerance.projected.length.value)}"
-    if group.kind in ("plane", "slot") or kind in ("circular_run_out", "total_run_out", *FORMS):
+    if kind == "straightness" and tolerance.zone != "width":
+        return f"{{diameter: {size}}}"
+    if group.kind in ("plane", "slot") or kind in ("circular_run_out", "total_run_out", "profile", *FORMS):
         outward = f", outward: {length(tolerance.unequal.value)}" if tolerance.unequal and kind == "profile" else ""
         return f"{{width: {size}{outward}}}"
     if tolerance.zone != "width" or kind == "coaxiality" or group.kind == "sphere":
         return f"{{diameter: {size}{projected}}}"
     return f"{{width: {size}, along: {direction(limited(meanings, tolerance, group))}{projected}}}"
+
+
+def piece(tolerance: Tolerance, kind: str) -> str:
+    """The piece of a feature over which a form holds, as YAML; "" where it is of the whole."""
+    if tolerance.per_unit is None or kind not in FORMS:
+        return ""
+    own = tolerance.per_unit
+    if kind != "flatness" or own.area == "circular":
+        return f", per: {length(own.size.value)}"
+    sides = (own.size, own.second or own.size)
+    return f", per: [{', '.join(length(each.value) for each in sides)}]"
 
 
 def limited(meanings: Meanings, tolerance: Tolerance, group: Group) -> Array:

@@ -33,6 +33,14 @@ MATERIAL: Final = frozenset(
 DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder"))
 SQUARE: Final = 1e-6  # cosine between directions that are square
 
+LOST_RELATION: Final = "how the faces lie to each other is lost"
+FORM_ALONE: Final = {
+    "plane": ("flatness", ""),
+    **dict.fromkeys(("planes", "slot"), ("flatness", LOST_RELATION)),
+    **dict.fromkeys(("cylinder", "cylinders"), ("cylindricity", "its size is lost")),
+}
+"""A profile without datums by what it is of: the form that it holds, and what is lost."""
+
 DROPPED: Final = {
     "free state": "the free state is dropped",
     "tangent plane": "the tangent plane is taken as the face itself",
@@ -146,14 +154,16 @@ class Meanings:
             return f"it is of {tolerance.feature.lies_on}, not of faces"
         if "non-uniform zone" in tolerance.modifiers:
             return "a zone that is not as wide everywhere"
-        if tolerance.per_unit is not None:
-            return "a zone per unit of length or area"
-        if tolerance.kind in ("line profile", "straightness"):
-            return f"{tolerance.kind} is form of lines"
+        if tolerance.per_unit is not None and tolerance.kind not in ("straightness", "flatness"):
+            return f"{tolerance.kind} per unit of length or area"
+        if tolerance.kind == "line profile":
+            return "line profile is form of lines"
+        round_ones = ("cylinder", "cylinders", "sphere", "spheres")
         allowed = {
-            "position": ("plane", "slot", "cylinder", "cylinders", "sphere", "spheres"),
-            "surface profile": ("plane", "planes", "slot"),
+            "position": ("plane", "slot", *round_ones),
+            "surface profile": ("plane", "planes", "slot", *round_ones),
             "flatness": ("plane",),
+            "straightness": ("cylinder", "cylinders", "plane"),
             **dict.fromkeys(("roundness", "cylindricity"), ("cylinder", "cylinders")),
             "circular runout": ("cylinder", "plane"),
             "total runout": ("cylinder", "plane"),
@@ -164,6 +174,8 @@ class Meanings:
         }.get(tolerance.kind)
         if allowed is None:
             return "the file states no kind of tolerance"
+        if tolerance.kind == "surface profile" and not tolerance.datums and shape.kind not in FORM_ALONE:
+            return f"a profile without datums of {shape.words}"
         return "" if shape.kind in allowed else f"{tolerance.kind} of {shape.words}"
 
     def datum_obstacle(self, compartment: Compartment) -> str:
@@ -199,34 +211,47 @@ class Meanings:
 
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
         """The kind in the scene, and its loss; empty for none."""
-        if tolerance.kind == "surface profile" and not tolerance.datums:
-            return "flatness", "a profile without datums is a flatness"
         if tolerance.kind == "surface profile":
-            joint = shape.kind in ("planes", "slot") and len(tolerance.datums) < 3
-            return "profile", "each face lies in its zone by itself, not all as one" if joint else ""
+            return ("profile", "") if tolerance.datums else FORM_ALONE[shape.kind]
         if tolerance.kind in ("circular runout", "total runout"):
-            if shape.kind == "plane":
-                return "perpendicularity", "axial run-out is a perpendicularity: its form is lost"
-            return tolerance.kind.replace("runout", "run_out").replace(" ", "_"), ""
+            radial = tolerance.kind.replace("runout", "run_out").replace(" ", "_")
+            return "axial_run_out" if shape.kind == "plane" else radial, ""
+        if tolerance.kind == "straightness" and shape.kind == "plane":
+            return tolerance.kind, "the direction of its lines is a guess: along the longer side"
         if tolerance.kind in ("concentricity", "symmetry"):
             kind = "coaxiality" if tolerance.kind == "concentricity" else "symmetry"
             return kind, f"{tolerance.kind} of median points is taken of the axis or median plane"
         return tolerance.kind, ""
 
     def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:
-        """The meaning of a lower segment: an orientation of the planes of a profile, else none."""
+        """The meaning of a lower segment: that of a composite tolerance of a pattern; of one feature an orientation."""
         if upper is None or upper.how == "left out":
             return Meaning(tolerance.id, "left out", "", shape.words, "the lower segment of a frame that is left out")
+        above = self.by_id[upper.tolerance]
+        if upper.kind not in ("position", "profile"):
+            told = f"the lower segment of #{upper.tolerance}, which only limits what is inspected"
+            return Meaning(tolerance.id, "left out", "", shape.words, told)
         datum = self.datum_shape(tolerance.datums[0]) if tolerance.datums else None
-        if tolerance.kind != "surface profile" or shape.kind not in ("plane", "planes") or datum is None:
+        if shape.kind in ("cylinders", "spheres"):
+            lost = self.segment_loss(tolerance, above)
+            return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
+        if shape.kind not in ("plane", "planes", "cylinder") or datum is None:
             why = f"the lower segment of a composite {tolerance.kind}: how the features lie to each other"
             return Meaning(tolerance.id, "left out", "", shape.words, why)
-        lost = "the lower segment is an orientation: its form is lost"
+        lost = self.refining_loss(tolerance, above) or self.turn_loss(tolerance, shape, above)
         if shape.kind == "planes":
-            lost = (
-                "the lower segment is an orientation of each face: their form, and how they lie to each other, are lost"
-            )
-        return Meaning(tolerance.id, "approximately", orientation(shape, datum), shape.words, lost)
+            lost = f"the lower segment is an orientation of each face: {LOST_RELATION}"
+        how: Class = "approximately" if lost else "said"
+        return Meaning(tolerance.id, how, orientation(shape, datum), shape.words, lost)
+
+    def segment_loss(self, tolerance: Tolerance, above: Tolerance) -> str:
+        """Loss of the lower segment of a pattern, which has its modifiers and datums from the upper one."""
+        if set(tolerance.modifiers) & MATERIAL != set(above.modifiers) & MATERIAL:
+            return "its bonus is that of the upper segment"
+        letters = [[each.letters for each in own.datums] for own in (tolerance, above)]
+        if letters[0] != letters[1][: len(letters[0])]:
+            return f"its datums are not the first of #{above.id}: it only limits what is inspected"
+        return ""
 
     def refining_loss(self, tolerance: Tolerance, location: Tolerance) -> str:
         """Loss of an orientation that cannot refine the location zone of its feature."""

@@ -16,6 +16,7 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedOrientationSpec,
     InspectedPatternSpec,
     InspectedPositionSpec,
+    InspectedSetSpec,
     InspectedTogetherSpec,
 )
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
@@ -54,7 +55,7 @@ def _inspected(
     several = spec if isinstance(spec, InspectedTogetherSpec) else None
     room = None if several else room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
     over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
-    gauge = spec.free if isinstance(spec, InspectedPatternSpec) else "shift"
+    gauge = spec.free if isinstance(spec, InspectedPatternSpec) else found.gauge
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
     zones = tuple(own.internal for own in several.zones) if several else ()
     return replace(found, gauge=gauge, zones=zones, room=room, over_gauges=over_gauges)
@@ -90,7 +91,7 @@ def _bonuses(
     scene: Scene, drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
 ) -> tuple[MaterialBonus, ...]:
     """Bonus of each feature; empty without a modifier."""
-    widened = InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec
+    widened = InspectedPositionSpec | InspectedPatternSpec | InspectedSetSpec | InspectedTogetherSpec
     modifier = spec.modifier if isinstance(spec, widened) else None
     if modifier is None:
         return ()

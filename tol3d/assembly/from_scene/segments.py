@@ -4,9 +4,11 @@ Each feature lies in the lower segment's zone about a place that shifts and turn
 the excess of the upper zone over the lower one, so both segments are kept in every trial.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -24,6 +26,10 @@ from tol3d.scene import Scene
 
 SEEN = 1e-9
 """Fraction of the largest motion that affects features, below which there is no effect: directions have some digits."""
+
+
+BENT: Final = 0.0045
+"""Share of the lower zone that a turn's second order takes at most: a tilt of short holes shortens their pattern."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,14 +122,18 @@ def motion_of(scene: Scene, drawing: Drawing, pattern: Sequence[Stated]) -> tupl
     first = members[0].feature.frame[:3, :3]
     seen = sum(own.directions.T @ own.directions for own in members)
     shifts = _basis(np.asarray(seen), first)
+    room = spec.zone.size - spec.lower_segment.zone.size
     free = _free_turns(drawing, part_of(pattern[0].feature), spec.lower_segment.datums or ())
     square = sum((row.T @ row for own in members for row in own.levers(centre)), np.zeros((3, 3)))
     turns = _basis(free @ square @ free, first)
     if turns.size:
         sizes, axes = np.linalg.eigh(turns.T @ square @ turns)
-        turns = turns @ axes @ np.diag(1.0 / np.sqrt(sizes)) @ axes.T  # scaled so that all of them move features alike
-        turns /= max(own.largest_displacement(centre, turns) for own in members)
-    zone = catalogue.pattern_motion(spec.zone.size - spec.lower_segment.zone.size, shifts.shape[1], turns.shape[1])
+        alike = 1.0 / np.sqrt(sizes)  # such that all of them move features alike
+        farthest = max(own.largest_displacement(centre, turns @ axes @ np.diag(alike) @ axes.T) for own in members)
+        reach = max(float(np.linalg.norm(own.place - centre + own.judged, axis=1).max()) for own in members)
+        most = math.sqrt(BENT * spec.lower_segment.zone.size / reach) / (0.5 * room)
+        turns = turns @ axes @ np.diag(np.minimum(alike / farthest, most)) @ axes.T
+    zone = catalogue.pattern_motion(room, shifts.shape[1], turns.shape[1])
     moved = {own.name: own.moved(centre, shifts, turns) for own in members}
     return drawn_by(spec.law, zone, scene.files), moved, "shift and turn" if turns.size else "shift"
 

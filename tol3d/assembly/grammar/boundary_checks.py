@@ -11,6 +11,7 @@ from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedPatternSpec,
     InspectedPositionSpec,
+    InspectedSetSpec,
     InspectedTogetherSpec,
 )
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
@@ -144,7 +145,7 @@ def unfit_modifiers(scene: Scene) -> Iterator[Problem]:
     sized = {name for name in drawing.names if drawing.kind(name).kind in SIZED}  # others are reported already
     for name, spec in scene.measures.items():
         if (
-            isinstance(spec, InspectedPositionSpec | InspectedPatternSpec | InspectedTogetherSpec)
+            isinstance(spec, InspectedPositionSpec | InspectedPatternSpec | InspectedSetSpec | InspectedTogetherSpec)
             and spec.modifier is not None
         ):
             for own in (feature for _, feature, _ in spec.named() if feature in sized):

@@ -4,6 +4,7 @@ A part that copies another has its own tolerances, "position of cover 2" for "po
 pattern, such as "position 3".
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -191,12 +192,21 @@ class Drawing:
     def form(self, feature: str, located: FeatureTolerance | None = None) -> float:
         """Part of a zone's width used by form [mm]; default that of a location or an axial run-out."""
         forms = [own.spec for own in self.of(feature, FormSpec) if isinstance(own.spec, FormSpec)]
+        shape, room = self.kind(feature).shape, self.room(located)
         match located:
             case CircularRunOutSpec():
-                return of_section(forms, self.kind(feature).shape)
-            case TotalRunOutSpec() | ProfileSpec() if isinstance(self.kind(feature).shape, Axis):
-                return of_total_run_out(forms, self.kind(feature).shape)
-        return of_location(forms, self.kind(feature).shape)
+                return of_section(forms, shape, room)
+            case TotalRunOutSpec() | ProfileSpec() if isinstance(shape, Axis):
+                return of_total_run_out(forms, shape, room)
+        return of_location(forms, shape, room)
+
+    @staticmethod
+    def room(located: FeatureTolerance | None) -> float:
+        """Width of the zone in which a tolerance of location or axial run-out holds the form too [mm]."""
+        lower = located.lower_segment if isinstance(located, Composite) else None
+        if lower is not None:
+            return lower.zone.size
+        return located.zone.size if isinstance(located, LocationSpec | AxialRunOutSpec) else math.inf
 
     def oriented(self, own: Stated) -> float:
         """Width of a zone of orientation [mm], where a location zone, or else itself, holds the feature.
@@ -213,7 +223,7 @@ class Drawing:
         if not isinstance(own.spec, AxialRunOutSpec):
             return width
         shape, radius = self.kind(own.feature).shape, own.spec.radius
-        left = max(width - self.form(own.feature), 0.0)
+        left = max(width - self.form(own.feature, own.spec), 0.0)
         if radius is None or not isinstance(shape, Plane | RoundPlane):  # of another feature: refused elsewhere
             return left
         return left * max(shape.reach) / radius.internal

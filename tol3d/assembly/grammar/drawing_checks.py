@@ -106,8 +106,8 @@ def _axial_problems(here: KeyPath, spec: AxialRunOutSpec, drawing: Drawing, feat
     elif spec.radius is not None and spec.radius.internal > shape.radius:
         words = f"expected a circle on the face, whose radius is {shape.radius:g} mm, got {spec.radius}"
         yield (*here, "radius"), words
-    if drawing.form(feature) >= spec.zone.size:
-        words = f"expected more than the {drawing.form(feature) * 1e3:g} um of its form, which it holds too"
+    if drawing.form(feature, spec) >= spec.zone.size:
+        words = f"expected more than the {drawing.form(feature, spec) * 1e3:g} um of its form, which it holds too"
         yield (*here, "zone"), f"{words}, got {spec.zone.size * 1e3:g} um"
 
 
@@ -219,7 +219,7 @@ def _room_problems(here: KeyPath, spec: LocationSpec, drawing: Drawing, feature:
         assert isinstance(other.spec, OrientationSpec | FormSpec)
         is_form = isinstance(other.spec, FormSpec)
         own = (
-            whole_form(other.spec, drawing.kind(feature).shape)
+            whole_form(other.spec, drawing.kind(feature).shape, width)
             if isinstance(other.spec, FormSpec)
             else drawing.oriented(other)
         )

@@ -70,6 +70,8 @@ Rocking = Literal["least", "middle", "largest"]
 
 
 Gauge = Literal["shift", "shift_and_turn"]
+SetGauge = Literal["held", "oriented"]
+"""A set lies as its datum frame says, or is only oriented by it."""
 
 OverPlay = Literal["least", "largest"]
 """Value read over all poses that play allows."""
@@ -90,7 +92,9 @@ class Measured:
         zones: of several positions, the width of each [mm], which is subtracted.
         room: of a position, datum shift allowed to the gauge of its last datum, which takes the best shift.
         over_gauges: of a position, True if the gauges of its datum frame take the best place.
-        gauge: how a pattern's gauge finds its best pose in the frame.
+        gauge: how a pattern's or a set's gauge finds its best pose in the frame.
+        surfaces: True if what is round counts by its surface, with its size.
+        middle: of a set, how far the middle of its zone lies out of the material [mm].
         of_move: index of the move whose slack is read; -1 for other kinds.
         over_play: the value taken over the play of parts; None if the floats of the moves decide.
         parts: of a clearance.
@@ -107,7 +111,9 @@ class Measured:
     after: int = -1
     bonuses: tuple[MaterialBonus, ...] = ()
     zones: tuple[float, ...] = ()
-    gauge: Gauge = "shift"
+    gauge: Gauge | SetGauge = "shift"
+    surfaces: bool = False
+    middle: float = 0.0
     room: GaugeRoom | None = None
     over_gauges: bool = False
     of_move: int = -1

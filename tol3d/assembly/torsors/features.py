@@ -196,6 +196,15 @@ class PartTorsors:
             self._displacements[name] = found
         return self._displacements[name]
 
+    def left_by(self, name: str) -> Array:
+        """Directions (3, turns) about which the datums of a frame let the part turn; all for "", the part's frame."""
+        if not name:
+            return np.eye(3)
+        frame = self._frames[name]
+        left = kept_by(frame, self._datums(frame), self._columns, len(frame.datums)).left[3:]
+        ways, sizes, _ = np.linalg.svd(left)
+        return np.asarray(ways[:, : int(np.sum(sizes > NEARER * sizes.max(initial=0.0)))])
+
     def gauges(self, name: str) -> GaugesRoom:
         """The play of the gauges of a datum frame."""
         if name not in self._rooms:

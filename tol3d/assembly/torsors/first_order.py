@@ -256,5 +256,6 @@ def _room(assembly: Assembly) -> int:
 
 
 def _readings(measured: Measured) -> int:
-    own = 1 if measured.reads.is_linear else 10  # where a part may rock, the ends of a linear measure are a term
+    # where a part may rock, the ends of a linear measure are a term
+    own = 1 if measured.reads.is_linear else 10 + len(measured.bonuses)
     return own + (0 if measured.minus is None else _readings(measured.minus))

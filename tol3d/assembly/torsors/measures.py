@@ -166,7 +166,7 @@ def _in_room(measured: Measured, room: GaugeRoom, world: World) -> Array:
     assert isinstance(shape, Axis)
     sides = world.assembly.features[room.feature].frame[:3, :2].T
     still = _constant(world, 0.0)
-    bonus = _clipped(measured.bonuses[0], name, world) if measured.bonuses else still
+    bonus = clipped(measured.bonuses[0], name, world) if measured.bonuses else still
     size = world.size(room.feature) + _constant(world, (shape.diameter or 0.0) - room.virtual)
     forms: list[Array] = []
     counts: list[int] = []
@@ -185,7 +185,7 @@ def position(measured: Measured, world: World) -> Array:
         return _in_room(measured, measured.room, world)
     if measured.over_gauges:
         (name,) = measured.features
-        own = _clipped(measured.bonuses[0], name, world) if measured.bonuses else _constant(world, 0.0)
+        own = clipped(measured.bonuses[0], name, world) if measured.bonuses else _constant(world, 0.0)
         return on_gauges(measured, world, [own])
     feature = world.assembly.features[measured.features[0]]
     rotation = feature.frame[:3, :3]
@@ -202,12 +202,12 @@ def position(measured: Measured, world: World) -> Array:
         case Plane():
             directions = rotation[:, 2:].T
     row: Array = 2.0 * world.columns.largest(_at_ends(measured, world, directions))
-    return row - _clipped(measured.bonuses[0], measured.features[0], world) if measured.bonuses else row
+    return row - clipped(measured.bonuses[0], measured.features[0], world) if measured.bonuses else row
 
 
 def together(measured: Measured, world: World) -> Array:
     """The largest of several, each less its zone; the least over the play of gauges if datums leave some."""
-    bonuses = [_clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
+    bonuses = [clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
     has = [_constant(world, zone) for zone in measured.zones]
     has = [zone + own for zone, own in zip(has, bonuses, strict=True)] if bonuses else has
     if measured.over_gauges:
@@ -218,7 +218,7 @@ def together(measured: Measured, world: World) -> Array:
     return row
 
 
-def _clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
+def clipped(bonus: MaterialBonus, feature: str, world: World) -> Array:
     """Bonus by a feature's size (columns,) [mm]."""
     sign, origin = (1.0, bonus.low) if bonus.grows else (-1.0, bonus.high)
     departure = sign * (world.size(feature) - _constant(world, origin))
@@ -312,7 +312,7 @@ def pattern(measured: Measured, world: World) -> Array:
     features = [world.assembly.features[name] for name in measured.features]
     sides = features[0].frame[:3, :2].T
     places = np.array([sides @ feature.frame[:3, 3] for feature in features])
-    bonuses = [_clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
+    bonuses = [clipped(own, name, world) for own, name in zip(measured.bonuses, measured.features, strict=False)]
     forms: list[Array] = []
     arms: list[Array] = []
     for k, (name, (x, y)) in enumerate(zip(measured.features, places - places.mean(axis=0), strict=True)):

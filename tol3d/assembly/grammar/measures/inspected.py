@@ -1,7 +1,8 @@
 """Inspection of a feature, as by a measuring machine, in the datum frame of the same trial."""
 
 from collections.abc import Sequence
-from typing import Annotated, ClassVar, Literal, Self
+from dataclasses import replace
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -10,12 +11,16 @@ from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.clearance import MOST_HOLES
 from tol3d.assembly.model.datum_frame import Modifier
-from tol3d.assembly.model.measures import PLACING, TORSORS, Gauge, Reading
+from tol3d.assembly.model.measures import PLACING, TORSORS, Gauge, Measured, Reading, SetGauge
 from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
 from tol3d.strict import refused
+from tol3d.units import Of, Quantity
+
+INSPECTED_SETS: Final = "tol3d.assembly.placing.inspected_sets", "tol3d.assembly.torsors.inspected_sets"
+MOST_OF_A_SET: Final = 64  # features; four places each are that many cones
 
 
 class InspectedSpec(FeatureMeasureSpec):
@@ -148,6 +153,54 @@ class InspectedPatternSpec(FeatureMeasureSpec):
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
         kinds = ("cylinder",) if self.modifier is not None else ("cylinder", "axis")
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
+
+
+class InspectedSetSpec(FeatureMeasureSpec):
+    """Twice the largest distance of a set of features from where it lies nominally in the datum frame.
+
+    The set is `held` by the frame, or only `oriented`: then it lies where that is least, shifted and turned as far as
+    its datums leave turns. Round `surfaces` count with their size. A round face is judged at 24 points of its rim.
+    """
+
+    reads: ClassVar[Reading] = Reading(
+        "set", f"{INSPECTED_SETS[0]}:inspected_set", f"{INSPECTED_SETS[1]}:inspected_set", of_part=True, worse="high"
+    )
+
+    kind: Literal["inspected_set"]
+    features: Annotated[tuple[FeatureName, ...], listed("features", 1, MOST_OF_A_SET)] = Field(
+        alias="of", description="features of one part; of an oriented set no points and balls"
+    )
+    free: SetGauge = Field(default="held", description="held by its datums, or only oriented")
+    surfaces: bool = Field(default=False, description="whether what is round counts by its surface, not by its middle")
+    middle: Annotated[Quantity, Of("length")] | None = Field(
+        default=None, description="of an unequal profile: how far the middle of its zone lies out of the material"
+    )
+    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+    modifier: Modifier | None = Field(
+        default=None, description="mmc or lmc: each less the bonus of its size, so that all count against t0"
+    )
+
+    @property
+    def named_datums(self) -> tuple[DatumSpec, ...]:
+        return self.datums or ()
+
+    @model_validator(mode="after")
+    def _refuse_contradictions(self) -> Self:
+        _refuse_other_features(self.features)
+        if self.modifier is not None and self.surfaces:
+            raise refused("modifier", "none of surfaces, which count with their size", self.modifier)
+        if any(own.mmb is not None for own in self.named_datums):
+            raise refused("datums", "datums regardless of size, for an inspected set takes no gauge", "mmb")
+        return self
+
+    def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
+        kinds = ("cylinder", "axis", "slot", "plane") if self.free == "oriented" else ()
+        kinds = ("cylinder", "slot") if self.modifier is not None else kinds
+        return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
+
+    def measured(self, moves: Sequence[str]) -> Measured:
+        middle = 0.0 if self.middle is None else self.middle.internal
+        return replace(super().measured(moves), gauge=self.free, surfaces=self.surfaces, middle=middle)
 
 
 class InspectedTogetherSpec(FeatureMeasureSpec):

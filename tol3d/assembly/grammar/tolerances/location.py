@@ -3,14 +3,13 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
 from tol3d.files import Files
-from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
@@ -209,6 +208,15 @@ class FormSpec(FeatureTolerance):
         return scaled_in_zone(self, factor, stays, files)
 
 
+def _area(value: Any) -> tuple[Any, ...]:
+    """The sides of a rectangular piece, or the diameter of a round one by itself."""
+    if not isinstance(value, list | tuple):
+        return (value,)
+    if len(value) != 2:
+        raise refused("", "a length, the diameter of a round piece, or two: along x and y", f"a list of {len(value)}")
+    return tuple(value)
+
+
 class FlatnessSpec(FormSpec):
     """Flatness of a plane, or of every piece of it `per` an area."""
 
@@ -216,8 +224,13 @@ class FlatnessSpec(FormSpec):
     applies_to: ClassVar[tuple[str, ...]] = ("plane",)
 
     kind: Literal["flatness"]
-    per: Annotated[tuple[Length, Length], listed("lengths", 2, 2)] | None = Field(
-        default=None, description="every piece so long along x and y of the face; default: the whole face"
+    per: (
+        Annotated[tuple[Length, ...], BeforeValidator(_area, json_schema_input_type=Length | tuple[Length, Length])]
+        | None
+    ) = Field(
+        default=None,
+        description="every round piece of that diameter, or every one so long along x and y of the face; "
+        "default: the whole face",
     )
 
 

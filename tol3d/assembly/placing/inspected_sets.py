@@ -1,0 +1,122 @@
+"""A set of features against their nominal places, which lie as a datum frame has them or find their best place.
+
+That place is where the largest distance is least: cones of a common slack over the freedoms of the set, whose steps
+are made as finite motions until nothing moves.
+"""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from tol3d.assembly.model import Axis, Feature, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.placing.actual_feature import actual_size
+from tol3d.assembly.placing.engaging import moved_about
+from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, full, point_row
+from tol3d.assembly.placing.holding import held_by_datums
+from tol3d.assembly.placing.measuring import bonuses
+from tol3d.assembly.placing.poses import Pose, column, dot
+from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.placing.world import World
+from tol3d.numerics.arrays import Array
+
+RIM: Final = 24
+"""Places around a disc where it is judged: a tilt is read low by 1 - cos(pi / 24), 0.9 %, at most."""
+SEEN: Final = 1e-6
+"""Change of all offsets by a freedom of length 1 [mm] that is none."""
+
+
+def judged(feature: Feature) -> tuple[Array, Array]:
+    """Places where a feature is judged (places, 3), in its frame [mm], and the directions (directions, 3)."""
+    match feature.shape:
+        case Axis():
+            return feature.shape.ends, np.eye(3)[:2]
+        case RoundPlane():
+            angles = 2.0 * np.pi * np.arange(RIM) / RIM
+            rim = feature.shape.radius * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+            return rim, np.eye(3)[2:]
+        case Plane():
+            return feature.shape.ends, np.eye(3)[2:]
+    return np.zeros((1, 3)), np.eye(3)
+
+
+def inspected_set(measured: Measured, world: World) -> Array:
+    """Twice the largest distance, with the offset of a surface by its size, at the place that is asked (n,) [mm]."""
+    part = world.part_of(measured.features[0])
+    pose = full(world.own[part].displacement(measured.frame).inverse, world.trials)
+    radii = np.array(list(_radii(measured, world)))
+    if measured.gauge != "oriented":
+        offsets = _offsets(measured, world, pose)
+        return 2.0 * np.asarray((np.sqrt((offsets * offsets).sum(axis=1)) - radii).max(axis=0))
+    rows, middle, motions = _freedoms(measured, world)
+    steps, slacks = np.zeros((motions.shape[1], world.trials)), np.zeros(world.trials)
+    asked, found = np.ones(world.trials, bool), np.ones(world.trials, bool)
+    deciding = np.zeros(world.trials, dtype=np.int64)
+    before = np.zeros((len(rows), world.trials)), np.zeros((len(rows), world.trials), dtype=np.int64)
+    for _ in range(ROUNDS):
+        offsets, push = _offsets(measured, world, pose), np.zeros(motions.shape[1])
+        room_found(offsets, radii, rows, push, asked, steps, slacks, deciding, found, *before)
+        asked = asked & (np.abs(steps).max(axis=0) > MET)
+        if not asked.any():
+            break
+        motion = np.where(asked, motions @ np.where(asked, steps, 0.0), 0.0)
+        pose = moved_about(pose, middle, motion[:3], motion[3:])
+    return np.where(found, -2.0 * slacks, np.nan)
+
+
+def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
+    """Offset of every place from the middle of its zone (places, 3 or 2, n) [mm], with the part at a pose."""
+    found: list[Array] = []
+    for name in measured.features:
+        feature, actual = world.assembly.features[name], world.on_part(name).moved(pose)
+        places, directions = judged(feature)
+        turn, at = feature.frame[:3, :3], feature.frame[:3, 3]
+        is_axis = isinstance(feature.shape, Axis)
+        points = actual.ends if is_axis else [actual.at(place) for place in places]
+        for place, point in zip(places, points, strict=True):
+            aside = point - column(turn @ place + at)
+            vector = np.zeros((3 if measured.gauge != "oriented" else 2, world.trials))
+            for r, direction in enumerate(directions @ turn.T):
+                vector[r] = dot(column(direction), aside)
+            if isinstance(feature.shape, Plane | RoundPlane):
+                vector[0] -= measured.middle
+            found.append(vector)
+    return np.array(found)
+
+
+def _radii(measured: Measured, world: World) -> Iterator[Array]:
+    """Allowance of each place (n,) [mm]: half of a bonus, or less than 0 by the offset of its surface from the middle."""
+    each = bonuses(measured, world) if measured.bonuses else [np.zeros(1)] * len(measured.features)
+    for name, bonus in zip(measured.features, each, strict=True):
+        feature = world.assembly.features[name]
+        own = np.zeros(world.trials) + 0.5 * bonus
+        if measured.surfaces and isinstance(feature.shape, Axis | Point) and feature.shape.diameter is not None:
+            larger = 0.5 * (actual_size(feature, world.columns) - feature.shape.diameter)
+            own = own - np.abs((-larger if feature.shape.inner else larger) - measured.middle)
+        yield from [own] * len(judged(feature)[0])
+
+
+def _freedoms(measured: Measured, world: World) -> tuple[Array, Array, Array]:
+    """Change of each place by the freedoms (places, 2, freedoms), the set's middle (3,), and motions (6, freedoms)."""
+    features = [world.assembly.features[name] for name in measured.features]
+    places = [own.frame[:3, :3] @ place + own.frame[:3, 3] for own in features for place in judged(own)[0]]
+    middle = np.mean(places, axis=0)
+    reach = max(1.0, float(np.linalg.norm(np.subtract(places, middle), axis=1).max()))
+    ways, k = np.zeros((len(places), 2, 6)), 0
+    for own in features:
+        its_places, directions = judged(own)
+        for _ in its_places:
+            for r, direction in enumerate(directions @ own.frame[:3, :3].T):
+                ways[k, r] = point_row(places[k] - middle, direction, reach)
+            k += 1
+    turns = np.eye(3)
+    if measured.frame:
+        part = world.assembly.part[features[0].part]
+        frame = next(own for own in part.datum_frames if own.name == measured.frame)
+        turns = held_by_datums(world.assembly, frame).left.turns.T
+    free = np.zeros((6, 3 + turns.shape[1]))
+    free[:3, :3], free[3:, 3:] = np.eye(3), turns
+    _, sizes, right = np.linalg.svd((ways @ free).reshape(-1, free.shape[1]))
+    free = free @ right[: int(np.sum(sizes > SEEN))].T
+    scale = np.array([1.0, 1.0, 1.0, reach, reach, reach])[:, None]
+    return np.ascontiguousarray(ways @ free), middle, free / scale
