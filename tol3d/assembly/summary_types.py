@@ -57,7 +57,7 @@ class AssemblyMeasureSummary(MeasureSummary):
             return f"{along}{kind} of {self.of[0]}, as {self.of[1]} sees it{at}"
         if self.kind == "difference":
             return " less ".join(self.of) + at
-        if len(self.of) == 2 and self.kind not in ("virtual_clearance", "inspected_pattern"):
+        if len(self.of) == 2 and self.kind != "virtual_clearance" and not self.kind.startswith("inspected_"):
             return f"{kind} from {self.of[0]} to {self.of[1]}{at}"
         return f"{kind} of {', '.join(self.of)}{at}"
 

@@ -43,25 +43,50 @@ def judged(feature: Feature) -> tuple[Array, Array]:
 def inspected_set(measured: Measured, world: World) -> Array:
     """Twice the largest distance, with the offset of a surface by its size, at the place that is asked (n,) [mm]."""
     part = world.part_of(measured.features[0])
-    pose = full(world.own[part].displacement(measured.frame).inverse, world.trials)
+    start = full(world.own[part].displacement(measured.frame).inverse, world.trials)
     radii = np.array(list(_radii(measured, world)))
     if measured.gauge != "oriented":
-        offsets = _offsets(measured, world, pose)
-        return 2.0 * np.asarray((np.sqrt((offsets * offsets).sum(axis=1)) - radii).max(axis=0))
-    rows, middle, motions = _freedoms(measured, world)
+        return _largest(_offsets(measured, world, start), radii)
+    rows, middle, motions, shifts = _freedoms(measured, world)
+    by_shift, at = _least(measured, world, start, (radii, rows[..., :shifts], middle, motions[:, :shifts]))
+    if shifts == motions.shape[1]:
+        return by_shift
+    found = [_least(measured, world, own, (radii, rows, middle, motions))[0] for own in (start, at)]
+    return np.minimum(by_shift, np.minimum(*found))  # far turned a place may be the least about it, and not of all
+
+
+def _largest(offsets: Array, radii: Array) -> Array:
+    return 2.0 * np.asarray((np.sqrt((offsets * offsets).sum(axis=1)) - radii).max(axis=0))
+
+
+def _least(measured: Measured, world: World, pose: Pose, seen: tuple[Array, Array, Array, Array]) -> tuple[Array, Pose]:
+    """The least value (n,) [mm] over motions from a pose, and where it is.
+
+    Args:
+        measured, world: what, and as it is read.
+        pose: where to start.
+        seen: radii (places, n), rows (places, 2, freedoms), the middle (3,), motions (6, freedoms).
+    """
+    radii, rows, middle, motions = seen
+    rows, push = np.ascontiguousarray(rows), np.zeros(motions.shape[1])
     steps, slacks = np.zeros((motions.shape[1], world.trials)), np.zeros(world.trials)
     asked, found = np.ones(world.trials, bool), np.ones(world.trials, bool)
     deciding = np.zeros(world.trials, dtype=np.int64)
     before = np.zeros((len(rows), world.trials)), np.zeros((len(rows), world.trials), dtype=np.int64)
+    offsets = _offsets(measured, world, pose)
+    least = _largest(offsets, radii)
     for _ in range(ROUNDS):
-        offsets, push = _offsets(measured, world, pose), np.zeros(motions.shape[1])
         room_found(offsets, radii, rows, push, asked, steps, slacks, deciding, found, *before)
-        asked = asked & (np.abs(steps).max(axis=0) > MET)
+        motion = motions @ np.where(asked & found, steps, 0.0)
+        moved = moved_about(pose, middle, motion[:3], motion[3:])
+        offsets = _offsets(measured, world, moved)
+        value = _largest(offsets, radii)
+        asked = asked & (value < least - MET)
+        pose = Pose(np.where(asked, moved.turn, pose.turn), np.where(asked, moved.shift, pose.shift))
+        least = np.minimum(least, value)
         if not asked.any():
             break
-        motion = np.where(asked, motions @ np.where(asked, steps, 0.0), 0.0)
-        pose = moved_about(pose, middle, motion[:3], motion[3:])
-    return np.where(found, -2.0 * slacks, np.nan)
+    return least, pose
 
 
 def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
@@ -96,8 +121,11 @@ def _radii(measured: Measured, world: World) -> Iterator[Array]:
         yield from [own] * len(judged(feature)[0])
 
 
-def _freedoms(measured: Measured, world: World) -> tuple[Array, Array, Array]:
-    """Change of each place by the freedoms (places, 2, freedoms), the set's middle (3,), and motions (6, freedoms)."""
+def _freedoms(measured: Measured, world: World) -> tuple[Array, Array, Array, int]:
+    """Change of each place by the freedoms (places, 2, freedoms), the set's middle (3,), and motions (6, freedoms).
+
+    Of the freedoms so many as are told last are shifts, and come first.
+    """
     features = [world.assembly.features[name] for name in measured.features]
     places = [own.frame[:3, :3] @ place + own.frame[:3, 3] for own in features for place in judged(own)[0]]
     middle = np.mean(places, axis=0)
@@ -114,9 +142,18 @@ def _freedoms(measured: Measured, world: World) -> tuple[Array, Array, Array]:
         part = world.assembly.part[features[0].part]
         frame = next(own for own in part.datum_frames if own.name == measured.frame)
         turns = held_by_datums(world.assembly, frame).left.turns.T
-    free = np.zeros((6, 3 + turns.shape[1]))
-    free[:3, :3], free[3:, 3:] = np.eye(3), turns
-    _, sizes, right = np.linalg.svd((ways @ free).reshape(-1, free.shape[1]))
-    free = free @ right[: int(np.sum(sizes > SEEN))].T
+    shifts = _seen(ways[..., :3])
+    by_shift, by_turn = (ways[..., :3] @ shifts).reshape(-1, shifts.shape[1]), ways[..., 3:] @ turns
+    beside = by_turn.reshape(len(by_shift), turns.shape[1])
+    beside = beside - by_shift @ np.linalg.lstsq(by_shift, beside, rcond=None)[0]
+    turns = turns @ _seen(beside)
+    motions = np.zeros((6, shifts.shape[1] + turns.shape[1]))
+    motions[:3, : shifts.shape[1]], motions[3:, shifts.shape[1] :] = shifts, turns
     scale = np.array([1.0, 1.0, 1.0, reach, reach, reach])[:, None]
-    return np.ascontiguousarray(ways @ free), middle, free / scale
+    return ways @ motions, middle, motions / scale, shifts.shape[1]
+
+
+def _seen(ways: Array) -> Array:
+    """Orthonormal directions (freedoms, seen) of freedoms by which places move (.., freedoms)."""
+    _, sizes, right = np.linalg.svd(ways.reshape(int(np.prod(ways.shape[:-1])), ways.shape[-1]))
+    return np.asarray(right[: int(np.sum(sizes > SEEN))].T)
