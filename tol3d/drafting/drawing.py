@@ -9,7 +9,7 @@ import numpy as np
 
 from tol3d.drafting.dimensions import sized, take_distance, take_size
 from tol3d.drafting.entry import LAW, Entry, Wording
-from tol3d.drafting.features import Features, Group
+from tol3d.drafting.features import USABLE, Features, Group
 from tol3d.drafting.words import Names, comment, length, scalar
 from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
 from tol3d.numerics.arrays import Array
@@ -26,6 +26,9 @@ from tol3d.step.tolerance import Tolerance
 INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"
 TURNED: Final = ORIENTATIONS | {"axial_run_out"}
+UNUSABLE: Final = frozenset(("torus", "free form"))
+UNPROFILED: Final = UNUSABLE | {"cone"}
+"""Features of which a scene has no profile."""
 AROUND: Final = 72  # directions in which the edges of a face are felt for the farthest one: to 1e-3 of a corner
 MOST_OF_A_SET: Final = 64  # features that `inspected_set` takes
 
@@ -77,7 +80,11 @@ class Drawing:
             for each, meaning in zip(self.text.tolerances, self.meanings.all, strict=True)
             if self.text.product(each.feature) == self.product
         ]
-        return tuple(sorted(own, key=lambda pair: (pair[0].above is not None, pair[0].kind not in LOCATIONS)))
+        return tuple(
+            sorted(
+                own, key=lambda pair: (pair[0].above is not None, pair[0].kind not in LOCATIONS, pair[0].feature.whole)
+            )
+        )
 
     @cached_property
     def dimensions(self) -> tuple[Dimension, ...]:
@@ -120,7 +127,13 @@ class Drawing:
         Raises:
             StepError: a scene can do nothing with them.
         """
-        return self.features.of_faces(tolerance.feature.faces)
+        shape = shape_of(tolerance.feature, self.meanings.surfaces, self.text.structure)
+        if shape.kind in ("mixed", "round") and tolerance.kind == "position":
+            return self.features.of_faces(tolerance.feature.faces, frozenset(("plane",)))
+        if shape.kind == "mixed" and (tolerance.kind in ORIENTATIONS or tolerance.above):
+            return self.features.of_faces(tolerance.feature.faces, USABLE - {"plane"} | UNUSABLE)
+        skipped = UNPROFILED if tolerance.kind == "surface profile" else frozenset()
+        return self.features.of_faces(tolerance.feature.faces, skipped)
 
     def is_slot(self, tolerance: Tolerance, kind: str) -> bool:
         """True if a tolerance applies to the middle of two walls; a profile applies to each wall."""
@@ -132,7 +145,7 @@ class Drawing:
         signed: dict[tuple[int, ...], tuple[FoundFeature, list[int]]] = {}
         by_name: dict[int, str] = {}
         for tolerance, meaning in self.tolerances:
-            if meaning.how == NOTHING:
+            if meaning.how == NOTHING or tolerance.feature.whole:
                 continue
             try:
                 found = self.members(tolerance)
@@ -225,8 +238,10 @@ class Drawing:
     def say(self, tolerance: Tolerance, meaning: Meaning) -> None:
         """A tolerance as entries: one of each group of features, and measures that inspect it."""
         try:
-            found = self.members(tolerance)
-            if self.is_slot(tolerance, meaning.kind):
+            found = [] if tolerance.feature.whole else self.members(tolerance)
+            if tolerance.feature.whole:
+                groups = self.left_to_all()
+            elif self.is_slot(tolerance, meaning.kind):
                 if len(found) != 2:
                     raise StepError(f"a slot or tab of {len(found)} faces")
                 groups = [self.features.slot(found)]
@@ -238,6 +253,19 @@ class Drawing:
                 self.say_of(tolerance, meaning, group, datums)
         except StepError as error:
             self.reasons[tolerance.id] = str(error)
+
+    def left_to_all(self) -> list[Group]:
+        """Features that a tolerance of the whole part locates: those that it names, and nothing else holds.
+
+        Raises:
+            StepError: there is none.
+        """
+        taken = {*self.located, *self.sizes, *self.datums.values()}
+        kinds = ("plane", "cylinder", "sphere")
+        found = [own for own in self.features.groups if own.kind in kinds and own.name not in taken and not own.slot]
+        if not found:
+            raise StepError("of the whole part: other tolerances locate each face that the scene names")
+        return found
 
     def datum_wordings(self, tolerance: Tolerance) -> tuple[tuple[str, str], ...]:
         """The datums as a tolerance has them, and as a measure does; the second pair is regardless of size.
@@ -285,7 +313,7 @@ class Drawing:
         if locates:
             self.located.setdefault(group.name, tolerance.id)
             self.frames.setdefault(group.name, (datums, len(tolerance.datums)))
-        if kind in FORMS or tolerance.unequal is not None:
+        if kind in FORMS or (tolerance.unequal is not None and kind != "profile"):
             return
         inspected, count = self.frames.get(group.name, (datums, 0))
         if locates or len(tolerance.datums) != 1 or count < 2 or not self.turns(tolerance, group):
@@ -379,6 +407,11 @@ class Drawing:
         turned = kind in TURNED or kind == "inspected_orientation"
         measured = "inspected_orientation" if turned else "inspected_position"
         modifier = modifier_of(tolerance) if group.name in self.sizes and not turned else ""
+        surface = ""
+        if kind == "profile" and (tolerance.unequal is not None or group.kind != "plane"):
+            measured, surface = "inspected_set", ", surfaces: true"
+            if tolerance.unequal is not None:
+                surface += f", middle: {length(tolerance.unequal.value - 0.5 * tolerance.magnitude.value)}"
         projected = ""
         if tolerance.projected is not None and group.kind == "cylinder":
             projected = f", projected: {length(tolerance.projected.length.value)}"
@@ -391,7 +424,8 @@ class Drawing:
                 for bonus in dict.fromkeys((modifier, "")):
                     frame_words = f", datums: [{read}]" if read else ""
                     extra = f", modifier: {bonus}" if bonus else ""
-                    head = f"{{kind: {measured}, of: {self.of(feature)}{frame_words}{extra}{projected}"
+                    of = f"[{self.of(feature)}]" if measured == "inspected_set" else self.of(feature)
+                    head = f"{{kind: {measured}, of: {of}{surface}{frame_words}{extra}{projected}"
                     lost = "" if bonus == modifier else "inspected without the bonus"
                     words.append(Wording((f"{head}, upper_limit: {limit}}}",), "" if entry else remark, lost))
             number = f" {feature.removeprefix(group.name).strip()}" if len(group.names) > 1 else ""

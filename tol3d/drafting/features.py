@@ -80,8 +80,12 @@ class Features:
     groups: list[Group] = field(default_factory=list)
     owner: "Drawing | None" = None
 
-    def of_faces(self, faces: Sequence[int]) -> list[FoundFeature]:
+    def of_faces(self, faces: Sequence[int], skipped: frozenset[str] = frozenset()) -> list[FoundFeature]:
         """The features of the part that some faces are; of a plane that is known already that one, whole.
+
+        Args:
+            faces: by their numbers.
+            skipped: kinds of features that are passed over.
 
         Raises:
             StepError: a scene can use one of them for nothing.
@@ -90,6 +94,8 @@ class Features:
         for own in self.part.features:
             here = [face for face in faces if face in own.faces]
             if not here and not set(faces) & {*own.repeated}:
+                continue
+            if own.kind in skipped:
                 continue
             if own.kind not in USABLE:
                 raise StepError(f"a {own.kind} is not simulated")

@@ -33,6 +33,9 @@ MATERIAL: Final = frozenset(
 DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder"))
 SQUARE: Final = 1e-6  # cosine between directions that are square
 
+PROFILED: Final = ("plane", "cylinder", "sphere")
+"""Surfaces that a profile may be of."""
+FLAT_ALONE: Final = "it is of its flat faces alone"
 LOST_RELATION: Final = "how the faces lie to each other is lost"
 FORM_ALONE: Final = {
     "plane": ("flatness", ""),
@@ -141,6 +144,7 @@ class Meanings:
         if before is not None and tolerance.kind in ORIENTATIONS:
             told = self.refining_loss(tolerance, self.by_id[before])
             if told:
+                told += f"; {lost}" if lost else ""
                 return Meaning(tolerance.id, "approximately", "inspected_orientation", shape.words, told)
             lost = lost or self.turn_loss(tolerance, shape, self.by_id[before])
         lost = lost or self.modifier_loss(tolerance)
@@ -150,6 +154,8 @@ class Meanings:
         """Reason why the feature or the kind of a tolerance cannot be said at all; empty if it can."""
         if tolerance.magnitude is None:
             return "the file states no value"
+        if tolerance.feature.whole and tolerance.kind == "surface profile" and tolerance.datums:
+            return ""
         if tolerance.feature.lies_on != "faces":
             return f"it is of {tolerance.feature.lies_on}, not of faces"
         if "non-uniform zone" in tolerance.modifiers:
@@ -174,6 +180,12 @@ class Meanings:
         }.get(tolerance.kind)
         if allowed is None:
             return "the file states no kind of tolerance"
+        if tolerance.kind == "surface profile" and tolerance.datums and shape.of_kinds(*PROFILED):
+            return ""
+        if tolerance.kind == "position" and shape.is_bored and tolerance.zone == "diameter":
+            return ""
+        if tolerance.kind in ORIENTATIONS and shape.kind == "mixed" and shape.of_kinds("plane"):
+            return ""
         if tolerance.kind == "surface profile" and not tolerance.datums and shape.kind not in FORM_ALONE:
             return f"a profile without datums of {shape.words}"
         return "" if shape.kind in allowed else f"{tolerance.kind} of {shape.words}"
@@ -212,7 +224,9 @@ class Meanings:
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
         """The kind in the scene, and its loss; empty for none."""
         if tolerance.kind == "surface profile":
-            return ("profile", "") if tolerance.datums else FORM_ALONE[shape.kind]
+            return ("profile", self.profile_loss(tolerance, shape)) if tolerance.datums else FORM_ALONE[shape.kind]
+        if tolerance.kind in ORIENTATIONS and shape.kind == "mixed":
+            return tolerance.kind, FLAT_ALONE
         if tolerance.kind in ("circular runout", "total runout"):
             radial = tolerance.kind.replace("runout", "run_out").replace(" ", "_")
             return "axial_run_out" if shape.kind == "plane" else radial, ""
@@ -222,6 +236,14 @@ class Meanings:
             kind = "coaxiality" if tolerance.kind == "concentricity" else "symmetry"
             return kind, f"{tolerance.kind} of median points is taken of the axis or median plane"
         return tolerance.kind, ""
+
+    def profile_loss(self, tolerance: Tolerance, shape: Shape) -> str:
+        """Loss of a profile: faces that no feature of a scene is of."""
+        if tolerance.feature.whole:
+            return "it is of the faces alone that other tolerances name, and none locates"
+        lost = sorted({each.kind for each in shape.surfaces} - {*PROFILED})
+        words = {"cone": "cones", "torus": "tori", "other": "free forms"}
+        return f"its {' and '.join(words[own] for own in lost)} are left out" if lost else ""
 
     def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:
         """The meaning of a lower segment: that of a composite tolerance of a pattern; of one feature an orientation."""
@@ -235,12 +257,15 @@ class Meanings:
         if shape.kind in ("cylinders", "spheres"):
             lost = self.segment_loss(tolerance, above)
             return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
+        flat = shape.of_kinds("plane")
+        if shape.kind in ("mixed", "round") and flat:
+            shape = Shape("planes", tuple(flat))
         if shape.kind not in ("plane", "planes", "cylinder") or datum is None:
             why = f"the lower segment of a composite {tolerance.kind}: how the features lie to each other"
             return Meaning(tolerance.id, "left out", "", shape.words, why)
         lost = self.refining_loss(tolerance, above) or self.turn_loss(tolerance, shape, above)
         if shape.kind == "planes":
-            lost = f"the lower segment is an orientation of each face: {LOST_RELATION}"
+            lost = f"the lower segment is an orientation of each flat face: {LOST_RELATION}"
         how: Class = "approximately" if lost else "said"
         return Meaning(tolerance.id, how, orientation(shape, datum), shape.words, lost)
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from tol3d.step.feature import NamedFeature
 from tol3d.step.structure import Structure
-from tol3d.step.surfaces import Surface, aligned, merged
+from tol3d.step.surfaces import Surface, SurfaceKind, aligned, merged
 
 ShapeKind = Literal[
     "plane", "planes", "slot", "cylinder", "cylinders", "sphere", "spheres", "round", "mixed", "nothing"
@@ -39,6 +39,18 @@ class Shape:
     kind: ShapeKind
     surfaces: tuple[Surface, ...] = ()
     loose: bool = False
+
+    def of_kinds(self, *kinds: SurfaceKind) -> list[Surface]:
+        """Its surfaces of some kinds."""
+        return [each for each in self.surfaces if each.kind in kinds]
+
+    @property
+    def is_bored(self) -> bool:
+        """True of holes or pins of several sizes with flat faces square to them: counterbores and their seats."""
+        axes = self.of_kinds("cylinder")
+        seats = self.of_kinds("plane")
+        square = all(any(aligned(seat.direction, axis.direction) for axis in axes) for seat in seats)
+        return bool(axes) and square and len(axes) + len(seats) == len(self.surfaces)
 
     @property
     def words(self) -> str:

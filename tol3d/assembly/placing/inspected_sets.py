@@ -110,7 +110,7 @@ def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
 
 
 def _radii(measured: Measured, world: World) -> Iterator[Array]:
-    """Allowance of each place (n,) [mm]: half of a bonus, or less than 0 by the offset of its surface from the middle."""
+    """Allowance of each place (n,) [mm]: half of a bonus, or the offset of its surface, as less than 0."""
     each = bonuses(measured, world) if measured.bonuses else [np.zeros(1)] * len(measured.features)
     for name, bonus in zip(measured.features, each, strict=True):
         feature = world.assembly.features[name]

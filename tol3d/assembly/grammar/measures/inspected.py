@@ -194,8 +194,9 @@ class InspectedSetSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds = ("cylinder", "axis", "slot", "plane") if self.free == "oriented" else ()
-        kinds = ("cylinder", "slot") if self.modifier is not None else kinds
+        kinds: tuple[str, ...] = ("cylinder", "axis", "slot", "plane") if self.free == "oriented" else ()
+        if self.modifier is not None:
+            kinds = ("cylinder", "slot")
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
 
     def measured(self, moves: Sequence[str]) -> Measured:
