@@ -7,19 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from assembly_trials import Assembled, assembled
+from composite_plate import HOLES, columns, plate
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
-from test_composite import columns, plate
 
 from tol3d.numerics.arrays import Array
 from tol3d.study.draws import drawn
 
 PADS = ", ".join(f"plate.pad {k}" for k in range(1, 5))
-PLATE_HOLES = ", ".join(f"plate.hole {k}" for k in range(1, 5))
 ASKED = f"""  pads set: {{kind: inspected_set, of: [{PADS}], free: oriented}}
   pads by A: {{kind: inspected_set, of: [{PADS}], free: oriented, datums: [A]}}
   held: {{kind: inspected_set, of: [{PADS}], datums: [A, B, C]}}
-  holes set: {{kind: inspected_set, of: [{PLATE_HOLES}], free: oriented, datums: [A]}}
+  holes set: {{kind: inspected_set, of: [{", ".join(HOLES)}], free: oriented, datums: [A]}}
   bore set: {{kind: inspected_set, of: [plate.bore], surfaces: true, datums: [A, B, C]}}
   ball set: {{kind: inspected_set, of: [plate.ball], surfaces: true, middle: -0.02 mm}}
 """
