@@ -30,6 +30,7 @@ UNUSABLE: Final = frozenset(("torus", "free form"))
 UNPROFILED: Final = UNUSABLE | {"cone"}
 """Features of which a scene has no profile."""
 AROUND: Final = 72  # directions in which the edges of a face are felt for the farthest one: to 1e-3 of a corner
+MOST_OF_ALL: Final = 6  # faces on which a tolerance of the whole part is written
 MOST_OF_A_SET: Final = 64  # features that `inspected_set` takes
 
 
@@ -255,17 +256,18 @@ class Drawing:
             self.reasons[tolerance.id] = str(error)
 
     def left_to_all(self) -> list[Group]:
-        """Features that a tolerance of the whole part locates: those that it names, and nothing else holds.
+        """Features that a tolerance of the whole part locates: the largest planes that nothing else names.
 
         Raises:
             StepError: there is none.
         """
-        taken = {*self.located, *self.sizes, *self.datums.values()}
-        kinds = ("plane", "cylinder", "sphere")
-        found = [own for own in self.features.groups if own.kind in kinds and own.name not in taken and not own.slot]
-        if not found:
-            raise StepError("of the whole part: other tolerances locate each face that the scene names")
-        return found
+        of_them = [each.feature.faces for each, _ in self.tolerances] + [each.faces for each in self.text.datums]
+        taken = {face for faces in of_them for face in faces}
+        found = [own for own in self.features.part.features if own.kind == "plane" and not own.loose]
+        left = [own for own in found if not taken & {*own.faces} and self.features.named(own) is None]
+        if not left:
+            raise StepError("of the whole part: other tolerances and datums name each flat face")
+        return [self.features.add([own]) for own in sorted(left, key=lambda own: -own.area)[:MOST_OF_ALL]]
 
     def datum_wordings(self, tolerance: Tolerance) -> tuple[tuple[str, str], ...]:
         """The datums as a tolerance has them, and as a measure does; the second pair is regardless of size.

@@ -240,7 +240,7 @@ class Meanings:
     def profile_loss(self, tolerance: Tolerance, shape: Shape) -> str:
         """Loss of a profile: faces that no feature of a scene is of."""
         if tolerance.feature.whole:
-            return "it is of the faces alone that other tolerances name, and none locates"
+            return "it is of the largest flat faces alone that nothing else names"
         lost = sorted({each.kind for each in shape.surfaces} - {*PROFILED})
         words = {"cone": "cones", "torus": "tori", "other": "free forms"}
         return f"its {' and '.join(words[own] for own in lost)} are left out" if lost else ""
