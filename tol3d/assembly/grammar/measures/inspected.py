@@ -175,7 +175,7 @@ class InspectedSetSpec(FeatureMeasureSpec):
     middle: Annotated[Quantity, Of("length")] | None = Field(
         default=None, description="of an unequal profile: how far the middle of its zone lies out of the material"
     )
-    datums: Datums | None = Field(default=None, description="the part's frame if not given")
+    datums: Datums | None = Field(default=None, description="default: the part's frame")
     modifier: Modifier | None = Field(
         default=None, description="mmc or lmc: each less the bonus of its size, so that all count against t0"
     )
