@@ -90,7 +90,7 @@ class Halved(Section):
     after: Spread
 
 
-class Taken(Section):
+class MeanOffset(Section):
     """Shift of a measure's mean from the nominal build by a contributor, in its unit."""
 
     contributor: Label
@@ -109,7 +109,7 @@ class MeasureChanges(Section):
     shifts: list[Shift]
     halved: list[Halved]
     nominal: Known = Field(description="every deviation 0, averaged over positions")
-    taken: list[Taken]
+    taken: list[MeanOffset]
     taken_together: Known = Field(description="what of mean less nominal is no contributor's alone")
     taken_error: Known = Field(description="standard error of that")
 
@@ -409,13 +409,13 @@ class _Simulated(Asked):
             found.append(made(Halved, contributor=name, share_percent=100 * float(shares[k]), after=after))
         return helpful(found, now)
 
-    def taken(self) -> Iterator[Taken]:
+    def taken(self) -> Iterator[MeanOffset]:
         """By contributor, the most first."""
         first, second = self.rates.first[0], self.rates.second[0]
         for k in np.argsort(-np.abs(first + second), kind="stable"):
             if first[k] or second[k]:
                 name = self.response.contributors[int(k)].name
-                yield made(Taken, contributor=name, first_order=float(first[k]), second_order=float(second[k]))
+                yield made(MeanOffset, contributor=name, first_order=float(first[k]), second_order=float(second[k]))
 
 
 def helpful(found: Sequence[Halved], now: Spread) -> list[Halved]:

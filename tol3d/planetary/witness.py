@@ -221,7 +221,7 @@ class StripContact:
         readouts = np.eye(len(unknowns))
         for _ in range(MOST_STEPS):
             gaps = self.engine.gaps(placed_gears(own, self.made, deviated, turns, at))
-            least, most = (push - at[of_springs] for push in own.pushed)
+            least, most = (push - at[of_springs] for push in own.spring_ends)
             lower = np.concatenate([-gaps[..., 0].ravel(), least])[None]
             upper = np.concatenate([gaps[..., 1].ravel(), most])[None]
             step = np.empty(len(unknowns))

@@ -63,7 +63,7 @@ class PublishedTrain(Strict):
     )
     stages: Mapping[Name, PublishedStage] = Field(default_factory=dict, description="by the name of the link")
     sums: PublishedEnds | None = Field(default=None, description="sums of the stages' ends at the shaft that is read")
-    description: Remark = Field(default="", description="what must be known of these numbers")
+    description: Remark = Field(default="", description="remark on these numbers")
 
 
 class PublishedTrains(PublishedFigures):

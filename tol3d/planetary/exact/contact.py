@@ -44,7 +44,7 @@ class Contact:
         reached = np.empty((len(turns), 2, own.all_rows.shape[1]))
         seated_ranges(
             *self.given(deviated, turns),
-            np.stack(own.pushed),
+            np.stack(own.spring_ends),
             np.array(own.unknowns(stands)),
             *own.asked(stands, shaft),
             found.ends,
@@ -61,7 +61,7 @@ class Contact:
             *self.given(deviated, np.zeros(len(found.ends))),
             cosines_and_sines(turns[:, None] * rates),
             cosines_and_sines(turns * planet),
-            np.stack(own.pushed),
+            np.stack(own.spring_ends),
             np.array(own.unknowns(stands)),
             *own.asked(stands, shaft, end),
             *found.written,

@@ -89,20 +89,20 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
 
 @part
 def seated(
-    shape: Any, given: Any, pushed: Any, unknowns: Any, objective: Any, basis: Any, rooms: Any, turns: Any
+    shape: Any, given: Any, spring_ends: Any, unknowns: Any, objective: Any, basis: Any, rooms: Any, turns: Any
 ) -> tuple[int, int, float]:  # fmt: skip
     """Turn as far along an objective as contacts let; like programme.solve_lp, again and again from where that leads.
 
     Args:
         shape, given: see gaps_at.
-        pushed: least and largest displacement by each spring (2, springs) [mm].
+        spring_ends: least and largest displacement by each spring (2, springs) [mm].
         unknowns: places of the programme's unknowns among the turns.
         objective, basis: see programme.solve_lp.
         rooms: those of programme.solve_lp; slopes, rows, lower, upper and x to write in.
         turns: zeros; written.
     """
     solving, slopes, rows, lower, upper, x = rooms
-    springs = pushed.shape[1]
+    springs = spring_ends.shape[1]
     contacts = slopes.shape[0]
     found, row, lacking = STALLED, -1, 0.0
     for _ in range(MOST_STEPS):
@@ -115,8 +115,8 @@ def seated(
             place = turns.shape[0] - springs + spring
             for j in range(unknowns.shape[0]):
                 rows[contacts + spring, j] = 1.0 if unknowns[j] == place else 0.0
-            lower[contacts + spring] = pushed[0, spring] - turns[place]
-            upper[contacts + spring] = pushed[1, spring] - turns[place]
+            lower[contacts + spring] = spring_ends[0, spring] - turns[place]
+            upper[contacts + spring] = spring_ends[1, spring] - turns[place]
         found, row, lacking = solve_lp(rows, lower, upper, objective, basis, solving, x)
         if found != OK:
             return found, row, lacking
@@ -137,7 +137,7 @@ def seated(
 def seated_ranges(
     meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
     central: Any, planet: Any, pin: Any, aside: Any, room: Any, middle: Any,
-    pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
+    spring_ends: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
     ends: Any, reached: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
     """Both ends of one coordinate in trials, and all turns there; see seated and programme.ranges."""
@@ -157,7 +157,7 @@ def seated_ranges(
             turns[:] = 0.0
             for j in range(count):
                 basis[j], solving[2][j] = begun[j], 1.0
-            found, row, lacking = seated(shape, given, pushed, unknowns, wanted[end], basis, rooms, turns)
+            found, row, lacking = seated(shape, given, spring_ends, unknowns, wanted[end], basis, rooms, turns)
             if found != OK:
                 status[i], decided[i], amount[i] = found, row, lacking
                 ends[i, 0] = ends[i, 1] = np.nan
@@ -189,7 +189,7 @@ def turn_offsets(central: Any, planet: Any, centrals: Any, own: Any, now: Any) -
 def placed_curve(
     meshes: Any, places: Any, planets: Any, senses: Any, distance: float,
     central: Any, planet: Any, pin: Any, aside: Any, room: Any, middle: Any,
-    centrals_turned: Any, planets_turned: Any, pushed: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
+    centrals_turned: Any, planets_turned: Any, spring_ends: Any, unknowns: Any, turn: Any, wanted: Any, begun: Any,
     ends: Any, status: Any, decided: Any, amount: Any,
 ) -> None:  # fmt: skip
     """The end of one coordinate at positions that all trials share; for the arguments see seated_ranges.
@@ -223,7 +223,7 @@ def placed_curve(
                     turns[:] = 0.0
                     for j in range(count):
                         basis[j], solving[2][j] = begun[j], 1.0
-                found, row, lacking = seated(shape, given, pushed, unknowns, wanted, basis, rooms, turns)
+                found, row, lacking = seated(shape, given, spring_ends, unknowns, wanted, basis, rooms, turns)
                 if found == OK or afresh:
                     break
             ends[i, p] = 0.0

@@ -53,7 +53,7 @@ class StackUp:
     def free(self, deviated: Deviated, turns: Array, shaft: str, stands: str) -> Free:
         """Free turn of a shaft while another one and the held one stand."""
         own, found = self.own, Free.of(len(turns))
-        sides = zip(self.sides(deviated, turns), own.pushed, strict=True)
+        sides = zip(self.sides(deviated, turns), own.spring_ends, strict=True)
         lower, upper = (np.hstack([side, np.tile(push, (len(turns), 1))]) for side, push in sides)
         ranges(own.rows(stands), lower, upper, *own.asked(stands, shaft), *found.written)
         return found
@@ -89,7 +89,7 @@ class StackUp:
             central_offset=np.zeros_like(deviated.central_offset),
             planet_offset=np.zeros_like(deviated.planet_offset),
         )
-        sides = zip(self.sides(still, np.zeros(trials)), own.pushed, strict=True)
+        sides = zip(self.sides(still, np.zeros(trials)), own.spring_ends, strict=True)
         lower, upper = (np.ascontiguousarray(np.hstack([side, np.tile(push, (trials, 1))])) for side, push in sides)
         across = [
             (m.sense * np.sin(m.working_pressure_angle), m.sense * np.cos(m.working_pressure_angle)) for m in own.meshes

@@ -215,7 +215,7 @@ class PlanetarySet:
         return rows
 
     @property
-    def pushed(self) -> tuple[Array, Array]:
+    def spring_ends(self) -> tuple[Array, Array]:
         """Least and largest coordinate of each spring [mm]: as it is set, or as far as meshes may let it."""
         set_at = [spring.displacement for spring in self.springs]
         least = np.array([-MOST_PUSH if own is None else own for own in set_at])
