@@ -242,7 +242,8 @@ def test_the_page_s_program_draws_what_the_page_says(tmp_path: Path, monkeypatch
     names: dict[str, Any] = {}
     exec(compile(program, "docs/planetary.md", "exec"), names)
     loop = names["loop"]
-    assert f"gives way at {loop.breakaway[1]:.0f} N mm. Below it {loop.lost_motion / ARCMIN:.2f}′ are left" in page
-    assert f"the {(loop.rigid[1] - loop.rigid[0]) / ARCMIN:.2f}′ that a rigid carrier leaves" in page
+    assert f"yields at {loop.breakaway[1]:.0f} N mm. Below this the output turns freely" in page
+    assert f"turns freely by {loop.lost_motion / ARCMIN:.2f}′" in page
+    assert f"the {(loop.rigid[1] - loop.rigid[0]) / ARCMIN:.2f}′ that a rigid carrier would leave" in page
     assert (tmp_path / "torque_curve.csv").read_text("utf-8") == loop.csv()
     assert (tmp_path / "torque_curve.png").stat().st_size > 10_000
