@@ -86,7 +86,7 @@ def test_a_field_without_a_description_is_refused() -> None:
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where it was built; python.md is run as a notebook."""
+    """Built site; python.md is run as a notebook."""
     out = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-j", "2", str(DOCS), str(out)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=600)  # s; a guard against hanging

@@ -6,7 +6,7 @@ from tol3d.errors import InputError
 from tol3d.standards.iso_1328_2 import DIAMETERS, FINE_MODULES, KINDS, tolerance
 
 RUN_OUT = (1.5, 2.5, 3.0, 4.5, 6.5, 9.0, 13, 18, 25, 36, 51, 72, 102)
-"""Of d 5 to 20 mm and m 0.5 to 2 mm, grades 0 to 12, as tables of the standard print it."""
+"""Run-out of d 5 to 20 mm and m 0.5 to 2 mm, grades 0 to 12, as tables of the standard print it."""
 
 
 def test_a_row_of_the_table_of_run_out() -> None:
@@ -15,7 +15,7 @@ def test_a_row_of_the_table_of_run_out() -> None:
 
 @pytest.mark.parametrize(("deviation", "row"), [("F_i''", (11, 15, 21, 30)), ("f_i''", (2.0, 2.5, 3.5, 5.0))])
 def test_rows_of_the_tables_of_composite_deviations(deviation: str, row: tuple[float, ...]) -> None:
-    """Of d 5 to 20 mm and m 0.2 to 0.5 mm, grades 5 to 8."""
+    """Rows for d 5 to 20 mm and m 0.2 to 0.5 mm, grades 5 to 8."""
     assert tuple(tolerance(deviation, grade, 0.4, 20.0) for grade in (5, 6, 7, 8)) == row
 
 

@@ -86,7 +86,7 @@ class Distribution(ABC):
 
     @property
     def words(self) -> str:
-        """What kind of law it is, such as "truncated normal"."""
+        """Kind of the law, such as "truncated normal"."""
         return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(self).__name__).lower()
 
     @property

@@ -14,11 +14,11 @@ STEP: Final = 1e-4  # of the slope at the mean [mm]; central differences
 
 
 class Scale(Protocol):
-    """What a measured deviation means; it rises or falls throughout."""
+    """Scale of a measured deviation; it rises or falls throughout."""
 
     @property
     def words(self) -> str:
-        """Of what is measured."""
+        """Name of the measured quantity."""
         ...
 
     def deviation(self, measured: Array) -> Array:
@@ -78,7 +78,7 @@ class Derived(Distribution):
         return self.scale.deviation(self.measured.ppf(u if self._rises else 1 - u))
 
     def cdf(self, x: Array) -> Array:
-        """Of what is measured."""
+        """Distribution function of the measured quantity."""
         found = self.measured.cdf(self.scale.measured(np.asarray(x, np.float64)))
         return found if self._rises else 1 - found
 

@@ -167,7 +167,7 @@ class PinScale:
 
     @property
     def words(self) -> str:
-        """Of what is measured."""
+        """Name of the measured quantity."""
         return self.pins.words
 
     @cached_property
@@ -177,7 +177,7 @@ class PinScale:
 
     @property
     def _lever(self) -> float:
-        """Of the size by r_K/r_b [mm]."""
+        """Lever of the size by r_K/r_b [mm]."""
         return 2 * _opposite(self.gear) * self.gear.base_radius
 
     def deviation(self, measured: Array) -> Array:

@@ -179,7 +179,7 @@ def bounded_share_text(ppm: float | None, interval: Sequence[float] | None) -> s
 
 
 def counted(count: int, word: str) -> str:
-    """How many there are of something whose plural ends in s.
+    """Number and noun, whose plural ends in s.
 
     >>> counted(1, "trial"), counted(2000, "trial")
     ('1 trial', '2000 trials')

@@ -244,7 +244,7 @@ def _notes(run: RunSummary) -> Iterator[str]:
 
 
 def _ends_note(run: RunSummary) -> str:
-    """What low and high are."""
+    """Note on the meaning of low and high."""
     measures = run.measures.values()
     ends = "low, high: mean ∓ 3 sigma"
     ends += ", * 0.135 % and 99.865 % of the trials, which end before" if any(map(_by_quantiles, measures)) else ""

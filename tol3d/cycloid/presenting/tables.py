@@ -40,7 +40,7 @@ def _nominal(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contri
 
 
 def _sizes(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    """What shops measure of the gears of the first stage."""
+    """Workshop measures of the gears of the first stage."""
     if own.first is None:
         return ()
     names = {"sun thickness": own.first.sun, "planet thickness": own.first.planet}

@@ -36,7 +36,7 @@ class Thickness:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Of the arc [mm]."""
+        """Limits of the arc [mm]."""
         low, high = sorted((self.arc * self.law.low, self.arc * self.law.high))
         return low, high
 

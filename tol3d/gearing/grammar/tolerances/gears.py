@@ -137,7 +137,7 @@ class MeasuredOverSpec(Strict):
 
     @property
     def measure(self) -> ToothMeasure:
-        """What it is on any gear."""
+        """Measure of it on any gear."""
         return Span(self.span or 0) if self.pins is None else OverPins(self.pins.internal)
 
 
@@ -191,7 +191,7 @@ class ToothThicknessSpec(GearToleranceSpec):
 
     @property
     def over(self) -> ToothMeasure | None:
-        """What is measured, where that is no thickness."""
+        """Measured quantity, if it is not a thickness."""
         return self.measured.measure if isinstance(self.measured, MeasuredOverSpec) else None
 
     @property
