@@ -13,6 +13,7 @@ from tol3d.assembly.grammar.contact_checks import (
     unfit_pairs,
 )
 from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances, implausible_sizes
+from tol3d.assembly.grammar.general import general_sizes
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
     mixed_dimensions,
@@ -89,6 +90,7 @@ ASSEMBLY: Final = Mechanism(
         round_contacts,
     ),
     warnings=(implausible_sizes,),
+    general=(general_sizes,),
     other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,
     engines=("exact",),

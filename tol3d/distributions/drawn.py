@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, Self
 
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError, model_validator
 
 from tol3d.distributions.base import DistributionSpec
 from tol3d.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
@@ -48,11 +48,27 @@ class FitSpec(Strict):
 
 
 class GeneralSpec(Strict):
-    """`{general: m, of: 60 mm}`: limits of ISO 2768-1."""
+    """`{general: m, of: 60 mm}` or `{general: m, leg: 60 mm}`: limits of ISO 2768-1 of a size or an angle."""
 
     general: str = Field(description="class f, m, c or v of ISO 2768-1")
-    of: Annotated[Quantity, Of("length"), Positive()] = Field(description="nominal size")
-    law: StatedLimitLaw | None = Field(default=None, description="default: by the scene's default_law")
+    of: Annotated[Quantity, Of("length"), Positive()] | None = Field(default=None, description="nominal size")
+    leg: Annotated[Quantity, Of("length"), Positive()] | None = Field(
+        default=None, description="of an angle, the length of its shorter leg"
+    )
+    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+
+    @model_validator(mode="after")
+    def _refuse_other_than_one(self) -> Self:
+        if (self.of is None) == (self.leg is None):
+            raise refused("", "either `of`, the nominal size, or `leg` of an angle", "both" if self.of else "neither")
+        return self
+
+    @property
+    def limit(self) -> Quantity:
+        """Plus and minus."""
+        if self.leg is not None:
+            return Quantity(iso_2768.angular(self.general, self.leg.internal), "deg")
+        return Quantity(iso_2768.linear(self.general, self.of.internal if self.of else 0.0), "mm")
 
 
 class GradeSpec(Strict):
@@ -173,10 +189,10 @@ def _limits(stated: Stated) -> tuple[Quantity, Quantity]:
             word, _, grade = stated.iso_1328_2.strip().replace("″", "''").replace('"', "''").rpartition(" ")
             if not grade.isdecimal():
                 raise InputError(f"expected a deviation and its grade, such as F_r 7, got {stated.iso_1328_2!r}")
-            most = iso_1328_2.tolerance(word.strip(), int(grade), stated.module.internal, stated.of.internal)
-            return Quantity(0.0, "um"), Quantity(most, "um")
-        size = iso_2768.linear(stated.general, stated.of.internal)
-        return Quantity(-size, "mm"), Quantity(size, "mm")
+            largest = iso_1328_2.tolerance(word.strip(), int(grade), stated.module.internal, stated.of.internal)
+            return Quantity(0.0, "um"), Quantity(largest, "um")
+        most = stated.limit
+        return Quantity(-most.number, most.unit), most
     except InputError as error:
         expected, _, got = str(error).removeprefix("expected ").partition(", got ")
         raise refused(field, expected, got) from None

@@ -8,6 +8,7 @@ from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 from tol3d.report.system_check import law_name
 from tol3d.scene.schema import Scene
 from tol3d.scene.tolerance import laws_in
+from tol3d.standards import iso_2768
 
 NOMINAL_NOTE = (
     "a number in front of limits, such as 40.1 mm +0.12/0, is not compared with the part: its size is the part's"
@@ -20,7 +21,20 @@ def drawn_limits(scene: Scene) -> list[PageItem]:
     if not rows:
         return []
     words = (Heading("as drawn", words=True), Heading("lower"), Heading("upper"), Heading("law", words=True))
-    return [*titled("limits as drawn", Table("", words, rows)), note(NOMINAL_NOTE)]
+    return [*titled("limits as drawn", Table("", words, rows)), note(NOMINAL_NOTE), *_general(scene)]
+
+
+def _general(scene: Scene) -> Iterator[PageItem]:
+    """Which dimensions took the general tolerance, and what it says that is not drawn."""
+    if scene.general is None:
+        return
+    sizes, forms = iso_2768.classes(scene.general)
+    taken = ", ".join(scene.origin.general) or "none"
+    yield note(f"general tolerance ISO 2768-{sizes}, taken by dimensions without one of their own: {taken}")
+    if forms:
+        yield note(
+            f"class {forms} of ISO 2768-2 (form, orientation, run-out) is not applied: state zones where they matter"
+        )
 
 
 def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
@@ -45,5 +59,5 @@ def _told(written: Any) -> str:
         if "iso_1328_2" in written:
             return f"ISO 1328-2 {written['iso_1328_2']} of m {written['module']}, d {written['of']}"
         word = written["fit"] if "fit" in written else f"ISO 2768-{written['general']}"
-        return f"{word} of {written['of']}"
+        return f"{word} of {written['of']}" if "of" in written else f"{word}, leg of {written['leg']}"
     return " to ".join(str(own) for own in written) if isinstance(written, list) else str(written)

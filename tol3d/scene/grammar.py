@@ -30,6 +30,9 @@ from tol3d.scene.tolerance import ToleranceEntry, laws_in
 Check = Callable[[Scene], Iterator[tuple[KeyPath, str]]]
 """Check across entries whose names all exist: gives key path and finished sentence of each inconsistency."""
 
+General = Callable[[Scene], Iterator[tuple[str, Mapping[str, Any]]]]
+"""Tolerances of dimensions without one of their own, by name, as a scene writes them."""
+
 REQUIRED: Final = frozenset(("parts", "moves", "measures"))  # sections that every scene has, with an entry at least
 
 SECTIONS_MEAN: Final[Mapping[str, str]] = {
@@ -56,6 +59,7 @@ class Vocabulary:
         parts, tolerances, moves, measures: the kinds of each section.
         checks: conditions across entries.
         warnings: of probable slips: numbers that could be built.
+        general: tolerances that dimensions without one of their own take where the scene has general ones.
         includes: names of vocabularies whose kinds may stand beside these in one scene, which is then this one's.
         extends: names of vocabularies in whose scenes these kinds may stand; the scene stays theirs.
         distributions: laws that tolerances of any scene may state besides those that tol3d ships.
@@ -79,6 +83,7 @@ class Vocabulary:
     measures: tuple[type[MeasureEntry], ...] = ()
     checks: tuple[Check, ...] = ()
     warnings: tuple[Check, ...] = ()
+    general: tuple[General, ...] = ()
     includes: tuple[str, ...] = ()
     extends: tuple[str, ...] = ()
     distributions: tuple[type[DistributionSpec], ...] = ()
@@ -211,6 +216,13 @@ class Grammar:
         for vocabulary in self.vocabularies:
             for check in vocabulary.warnings:
                 yield from (warned(path, sentence) for path, sentence in check(scene))
+
+    def general(self, scene: Scene) -> dict[str, Mapping[str, Any]]:
+        """Tolerances that dimensions take from the general ones of a scene, by names that it does not have."""
+        if scene.general is None:
+            return {}
+        found = (own for vocabulary in self.vocabularies for make in vocabulary.general for own in make(scene))
+        return {name: own for name, own in found if name not in scene.tolerances}
 
     def vocabulary_of(self, scene: Scene) -> Vocabulary:
         """The vocabulary that understands all of a scene: its own kinds, those that it includes or that extend it.

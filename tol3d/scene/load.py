@@ -131,8 +131,17 @@ def _read(top: Node, origin: Origin, kinds: Kinds, asked: _Asked) -> Scene:
     origin = replace(origin, places=Places(top), files=includes.files, included=tuple(includes.files))
 
     def checked(grammar: Grammar) -> Scene:
-        found = grammar.scene.model_validate(plain(top), context=origin)
-        return _with_files(found, origin, files, trust_parts=asked.trust_parts)
+        data = plain(top)
+        found = _with_files(
+            grammar.scene.model_validate(data, context=origin), origin, files, trust_parts=asked.trust_parts
+        )
+        if not (added := grammar.general(found)):
+            return found
+        whole = {**data, "tolerances": {**(data.get("tolerances") or {}), **added}}
+        named = replace(found.origin, general=tuple(added))
+        return _with_files(
+            grammar.scene.model_validate(whole, context=named), named, found.files, trust_parts=asked.trust_parts
+        )
 
     grammar = kinds.saying(_words(top))
     try:
@@ -162,6 +171,9 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: 
     """
     text = scene.model_dump_json(indent=1, exclude_unset=True, by_alias=True) + "\n"
     source = scene.source if scene.source != Origin().source else Path("scene.yaml")
+    if scene.general is not None:
+        allowed = {"trust_parts": trust_parts, "run_builders": run_builders}
+        return scene_of_text(source, text.encode(), scene.grammar, **allowed)
     scene = _with_files(scene, Origin(source, text), None, trust_parts=trust_parts)
     return _settled(scene, None, run_builders=run_builders)
 

@@ -37,6 +37,7 @@ class Origin:
         places: where the key of each key path stands (the value, for an item of a list).
         files: the files that it names, as they were when it was read.
         included: those of them that it includes.
+        general: names of the tolerances that dimensions took from the general ones of the scene.
     """
 
     source: Path = Path("scene")
@@ -44,6 +45,7 @@ class Origin:
     places: Mapping[KeyPath, Place] = field(default_factory=dict)
     files: Files = field(default_factory=dict)
     included: tuple[str, ...] = ()
+    general: tuple[str, ...] = ()
 
     def place(self, path: KeyPath) -> Place:
         """Place of the key path, or of the nearest key above it; the top of the file at last."""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal, Self, TypeVar
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     Discriminator,
     Field,
@@ -42,6 +43,7 @@ from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedColumn
 from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
+from tol3d.standards import iso_2768
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 
@@ -196,6 +198,18 @@ def _blank_study_spec(engines: Engines, options: tuple[type[StudyOptions], ...])
     return made.__new__(made)
 
 
+def _general(value: str) -> str:
+    try:
+        iso_2768.classes(value)
+    except InputError as error:
+        expected, _, got = str(error).removeprefix("expected ").partition(", got ")
+        raise refused("", expected, got) from None
+    return value
+
+
+GeneralClass = Annotated[str, AfterValidator(_general)]
+
+
 class Scene(Strict):
     """A scene: parts, their tolerances, their assembly, the measures, and the study.
 
@@ -210,6 +224,10 @@ class Scene(Strict):
     description: str = Field(default="", description="the user's own words, shown in reports")
     default_law: StatedLimitLaw | None = Field(
         default=None, description="of deviations of which limits alone are stated, as a drawing writes them"
+    )
+    general: GeneralClass | None = Field(
+        default=None,
+        description="general tolerances of ISO 2768-1 for dimensions without one of their own, such as m or mK",
     )
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
@@ -244,6 +262,11 @@ class Scene(Strict):
         """Keep the origin that validation was given as its context."""
         if isinstance(context, Origin):
             self._origin = context
+
+    @property
+    def general_sizes(self) -> str:
+        """The class of ISO 2768-1 of its general tolerances; "" without any."""
+        return "" if self.general is None else iso_2768.classes(self.general)[0]
 
     @property
     def origin(self) -> Origin:

@@ -25,6 +25,32 @@ EDGES: Final[Mapping[str, tuple[float, float, float]]] = {
 }
 """Table 2: plus and minus of radii and chamfers [mm]."""
 
+LEGS: Final = (10.0, 50.0, 120.0, 400.0)
+"""Upper ends of the ranges of the shorter leg of an angle [mm]; a fifth one has no end."""
+ANGLES: Final[Mapping[str, tuple[float, ...]]] = {
+    "f": (60.0, 30.0, 20.0, 10.0, 5.0),
+    "m": (60.0, 30.0, 20.0, 10.0, 5.0),
+    "c": (90.0, 60.0, 30.0, 15.0, 10.0),
+    "v": (180.0, 120.0, 60.0, 30.0, 20.0),
+}
+"""Table 3: plus and minus of angles [minutes]."""
+
+
+def classes(text: str) -> tuple[str, str]:
+    """Class of sizes and class of form and position of a title block: m and K of `mK`, m and "" of `m`.
+
+    Raises:
+        InputError: no such classes; the text says what to write.
+    """
+    words = text.removeprefix("ISO 2768").lstrip(" -").strip()
+    if words.startswith("ISO 22081") or words.startswith("22081"):
+        raise InputError(
+            f"expected classes of ISO 2768 such as mK, got {text!r}; write a profile of ISO 22081 as zones"
+        )
+    if not 1 <= len(words) <= 2 or words[0] not in LINEAR or words[1:] not in ("", "H", "K", "L"):
+        raise InputError(f"expected classes of ISO 2768 such as m or mK, got {text!r}")
+    return words[0], words[1:]
+
 
 def linear(tolerance_class: str, size: float) -> float:
     """Plus and minus [mm] of a linear size [mm] without a tolerance of its own.
@@ -55,6 +81,19 @@ def broken_edge(tolerance_class: str, size: float) -> float:
     _refuse_class(tolerance_class)
     _refuse_small(size)
     return EDGES[tolerance_class][sum(size > end for end in EDGE_SIZES)]
+
+
+def angular(tolerance_class: str, leg: float) -> float:
+    """Plus and minus [deg] of an angle without a tolerance of its own, by the length of its shorter leg [mm].
+
+    >>> angular("m", 60.0) * 60  # minutes
+    20.0
+
+    Raises:
+        InputError: no such class.
+    """
+    _refuse_class(tolerance_class)
+    return ANGLES[tolerance_class][sum(leg > end for end in LEGS)] / 60
 
 
 def _refuse_class(tolerance_class: str) -> None:

@@ -1,9 +1,9 @@
 """Checks across the entries of a scene of gears, and warnings of likely slips."""
 
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
 
-from tol3d.gearing.grammar.moves import GearMeshSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
 from tol3d.gearing.grammar.parts import BearingSpec, BoredGearSpec, GearSpec, ShaftSpec, carried, gears_on
 from tol3d.gearing.grammar.tolerances.axes import AxesOffsetSpec, CentreDistanceSpec
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
@@ -12,6 +12,15 @@ from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec, EccentricityS
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end
 from tol3d.scene.place import KeyPath
+
+
+def general_distances(scene: Scene) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """A tolerance for each stated centre distance without one of its own, as general tolerance of its scene."""
+    own = {spec.of for spec in scene.of(CentreDistanceSpec).values()}
+    for name, move in scene.of(MeshSpec).items():
+        if name not in own and move.centre_distance is not None:
+            law = {"general": scene.general_sizes, "of": str(move.centre_distance)}
+            yield f"centre distance of {name}", {"kind": "centre_distance", "of": name, "distribution": law}
 
 
 def carried_again(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
