@@ -144,7 +144,13 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     capable = f"tolerances: {{pitch: {{kind: pitch_deviation, of: a, flanks: each, {normal}}}}}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}{capable}\n", GEARS)))
     span = f"{{kind: tooth_thickness, of: a, measured: {{span: 3}}, {TIGHT}}}"
-    said |= set(fields_said(load(tmp_path, f"{SMALL}tolerances: {{span: {span}}}\n", GEARS)))
+    pins = f"{{kind: tooth_thickness, of: b, measured: {{pins: 3.5 mm}}, {TIGHT}}}"
+    teeth = [
+        f"{{kind: tooth_to_tooth, of: a, limits: {{{own}}}, law: {{kind: uniform}}}}"
+        for own in ("grade: 7", "size: 9 um")
+    ]
+    measured = f"tolerances: {{span: {span}, pins: {pins}, graded: {teeth[0]}, sized: {teeth[1]}}}"
+    said |= set(fields_said(load(tmp_path, f"{SMALL}default_law: {{kind: uniform}}\ngeneral: mK\n{measured}\n", GEARS)))
     heights = ", ".join(f"{name}: {{kind: tooth_thickness, of: {name[0]}, {TIGHT}}}" for name in ("a1", "b1"))
     both = "{between: [a1, b1], rho: 0.5}, {between: [a1, b1], matrix: [[1, 0.5], [0.5, 1]]}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}tolerances: {{{heights}}}\ncorrelations: [{both}]\n", GEARS)))

@@ -172,8 +172,8 @@ def scene_from_python(scene: Scene, *, trust_parts: bool = False, run_builders: 
     text = scene.model_dump_json(indent=1, exclude_unset=True, by_alias=True) + "\n"
     source = scene.source if scene.source != Origin().source else Path("scene.yaml")
     if scene.general is not None:
-        allowed = {"trust_parts": trust_parts, "run_builders": run_builders}
-        return scene_of_text(source, text.encode(), scene.grammar, **allowed)
+        whole: Kinds = scene.grammar
+        return scene_of_text(source, text.encode(), whole, trust_parts=trust_parts, run_builders=run_builders)
     scene = _with_files(scene, Origin(source, text), None, trust_parts=trust_parts)
     return _settled(scene, None, run_builders=run_builders)
 
