@@ -196,7 +196,8 @@ def test_included_limits_are_read_by_the_scenes_law(tmp_path: Path) -> None:
 
 def test_the_page_shows_a_scene_that_loads_and_what_check_lists_of_it(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "dimensions.md").read_text(encoding="utf-8")
-    (text,) = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    text, general = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    assert load(tmp_path, general).origin.general == ("size of plate bore",)
     scene = load(tmp_path, text)
     assert all(own.distribution.drawn is not None for own in scene.distributed.values())
     table = next(own for own in drawn_limits(scene) if isinstance(own, Table))
