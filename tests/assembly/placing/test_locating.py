@@ -211,7 +211,8 @@ def test_what_is_not_a_number_is_a_fault_and_no_status(monkeypatch: pytest.Monke
     with pytest.raises(FloatingPointError, match="the pose of box is not a number in 1 trials"):
         values(nest("part"), deviations, ["corner"])
     monkeypatch.undo()
-    monkeypatch.setattr("tol3d.assembly.placing.method.reading", lambda *_: np.where(np.arange(40) % 20 == 7, np.nan, 1)
+    monkeypatch.setattr(
+        "tol3d.assembly.placing.method.reading", lambda *_: np.where(np.arange(40) % 20 == 7, np.nan, 1)
     )
     with pytest.raises(FloatingPointError, match=r"measures\.corner is not a number in 1 trials that nothing fails"):
         values(nest("part"), deviations, ["corner"])
