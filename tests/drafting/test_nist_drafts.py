@@ -102,7 +102,7 @@ def test_each_tolerance_is_what_the_table_has_it(drafted: Drafted) -> None:
     listed = {"said": {own.id for own in drafted.draft.files[0].text.tolerances}}
     for heading, how in (("Approximately", "approximately"), ("Left out", "left out")):
         (block,) = re.findall(rf"^# {heading}:\n((?:#   .*\n)*)", drafted.text, re.M) or [""]
-        listed[how] = {int(own) for own in re.findall(r"#(\d+): ", block)}
+        listed[how] = {int(own) for own in re.findall(r"^#   .*?#(\d+): ", block, re.M)}
         listed["said"] -= listed[how]
     wanted = {how: set[int]() for how in listed}
     for row in ROWS:

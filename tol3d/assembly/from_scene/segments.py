@@ -28,7 +28,7 @@ SEEN = 1e-9
 """Fraction of the largest motion that affects features, below which there is no effect: directions have some digits."""
 
 
-BENT: Final = 0.0045
+BENT: Final = 0.005
 """Share of the lower zone that a turn's second order takes at most: a tilt of short holes shortens their pattern."""
 
 
