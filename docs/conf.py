@@ -41,6 +41,8 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_search_summary = False  # excerpts are fetched, which browsers refuse from the file system
 html_copy_source = False
+html_use_index = False  # the search finds names, too
+html_domain_indices = False
 
 MADE = DOCS / "reference"  # pages that git ignores
 LINK = re.compile(r"\]\(\.\./([^)#]+)(#[^)]*)?\)")
