@@ -236,7 +236,7 @@ SOURCE = ("Jiang, Zhong, Lü, Lai, Jin", "Gear backlash modeling and", "doi.org/
     ("page", "words"),
     [
         ("docs/paper.md", SOURCE),
-        ("docs/limits.md", ("3DCS", "KISSsoft", "otaf", "a spreadsheet", "made for", "loads, strength, wear")),
+        ("docs/comparison.md", ("3DCS", "KISSsoft", "otaf", "a spreadsheet", "made for", "loads, strength")),
         ("docs/manual.md", ("GB", "the first of the two commands took", "Linux x86-64 with Python", "Windows are not")),
     ],
 )
