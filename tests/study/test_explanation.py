@@ -263,7 +263,7 @@ def test_the_bevel_pair_names_what_its_stack_up_leaves_out() -> None:
     assert parts["axes offset"].percent == pytest.approx(100.0, abs=0.5)
     assert "offset of the axes" in parts["axes offset"].by
     others = [part for name, part in parts.items() if name != "axes offset"]
-    assert {part.by for part in others} == {"position within a pitch, where shifts of the gears count more or less"}
+    assert {part.by for part in others} == {"position within a pitch, which scales the effect of gear shifts"}
     # by the angle of the flank from the pitch line, a quarter of a pitch: sin(psi) / (sin alpha tan delta), tan 45 = 1
     pair = model_of("bevel_pair").meshes[0].pair
     share = 100 * math.sin(of_kind(BevelGear, pair.pinion).base_pitch_angle / 4) / math.sin(ALPHA)

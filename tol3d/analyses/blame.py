@@ -1,7 +1,7 @@
 """Causes of failures: the share of each contributor in a measure's ppm.
 
 Where failures are frequent among the builds of a simulation these are Sobol' indices of failing itself, a number that
-is 1 where a build is beyond a limit or does not seat, and 0 elsewhere. If failures are rare a simulation does not find
+is 1 where a build is beyond a limit or fails, and 0 elsewhere. If failures are rare a simulation does not find
 them: then the shares are the squared direction cosines of the design points, the most likely builds that fail, averaged
 over positions and limits by how likely each of them is. To first order these are the shares in the reliability index.
 Where contributors are correlated both are Shapley effects: of failing, or of the limit made linear at the design point.

@@ -46,8 +46,8 @@ class DesignPoint:
         positions: at which it is read, of one row.
         gradient: of the limit state there (dimension,); zeros where it is not known.
         beyond: whether the build at the origin fails, and this one is the most likely that does not.
-        smooth: whether a gradient led to it; else it is the nearest that was found of an edge, or of builds that do
-            not seat.
+        smooth: whether a gradient led to it; else it is the nearest that was found of an edge, or of builds that cannot
+            be assembled.
     """
 
     normals: Array
@@ -194,7 +194,7 @@ class _Walk:
 
     @classmethod
     def begun(cls, state: LimitState, normals: Array, positions: Positions, scale: float | None = None) -> "_Walk":
-        """At their starts; those that do not seat go nowhere."""
+        """At their starts; those that cannot be assembled go nowhere."""
         inside, _ = state.at(normals, positions)
         scale, none = scale or _size(inside), np.zeros(len(normals), dtype=bool)
         return cls(state, positions, normals.copy(), inside, np.zeros_like(normals), scale, none, ~np.isfinite(inside))

@@ -111,8 +111,8 @@ def effects(
 
     Args:
         response: of one or several measures.
-        base: pairs of builds, a power of two; as many as 150 000 evaluations allow, or six seconds of a
-            processor, 128 at least and 16 384 at most, if not given.
+        base: pairs of builds, a power of two; default: as many as 150 000 evaluations allow, or six seconds
+            of a processor, 128 at least and 16 384 at most.
         seed: of their points.
         position: whether the position is an input as well, in place of being averaged over.
         shapley: whether Shapley effects are wanted also where no contributors are correlated.

@@ -24,7 +24,7 @@ class Estimate:
         probability: of the failure.
         error: one standard error of it; None where it is not known.
         interval: that holds it with 95 % confidence; None where it is not known.
-        unseated: share of the failing builds that do not seat.
+        unseated: share of the failing builds that cannot be assembled.
         draws: builds that were drawn for it.
         warnings: sentences.
     """

@@ -48,7 +48,7 @@ class Drawn:
     Args:
         places: of each (n,).
         weights: of each that counts, 0 of the others (n,).
-        unseated: which do not seat (n,).
+        unseated: which cannot be assembled (n,).
         apart: which counts, and is far from every design point (n,).
         normals: of each (n, dimension).
         counts: draws of each place.

@@ -23,7 +23,7 @@ BUILDS, POSITIONS = 4, 5
 
 @dataclass(frozen=True, eq=False)
 class LimitState:
-    """A measure and one of its limits: below 0 where the measure is beyond it. A build that does not seat fails.
+    """A measure and one of its limits: below 0 where the measure is beyond it. A build that cannot be assembled fails.
 
     Args:
         response: of that measure alone.
@@ -71,7 +71,7 @@ class LimitState:
         return (values - self.limit if self.side == "low" else self.limit - values), found.seated[:, 0]
 
     def failing(self, normals: Array, positions: Positions | None) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """Builds that are beyond the limit or do not seat (n,), and those that do not seat (n,)."""
+        """Builds that are beyond the limit or cannot be assembled (n,), and those that cannot be assembled (n,)."""
         inside, seated = self.at(normals, positions)
         with np.errstate(invalid="ignore"):
             unseated = ~seated & ~(inside < 0.0)

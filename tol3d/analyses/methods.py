@@ -157,7 +157,7 @@ def trials_of(subject: Subject, response: Response, count: int | None = None) ->
     Args:
         subject: the scene, or the run of it.
         response: of its measures.
-        count: of trials; the study's if not given, MOST_TRIALS at most.
+        count: of trials; default: the study's, MOST_TRIALS at most.
     """
     run = subject.run
     if run is not None and count is None and run.keeps_trials:
@@ -182,7 +182,7 @@ def methods(
 
     Args:
         response: of the scene.
-        trials: of the simulation; as many as the study has, MOST_TRIALS at most, if not given.
+        trials: of the simulation; default: as many as the study has, MOST_TRIALS at most.
         activity: progress callback.
     """
     before = response.evaluations

@@ -220,7 +220,7 @@ def resampled(count: int, seed: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """Values (n, measures), NaN where a build does not seat, and 1.0 where it fails."""
+    """Values (n, measures), NaN where a build cannot be assembled, and 1.0 where it fails."""
 
     values: Array
     fails: Array

@@ -187,7 +187,7 @@ class Response:
 
         Args:
             deviations: (n, components) [mm, rad, K].
-            positions: of the system's streams, (n,) each; at rest if not given.
+            positions: of the system's streams, (n,) each; default: at rest.
         """
         system, deviations = self.simulation.system, np.atleast_2d(np.asarray(deviations, dtype=np.float64))
         if deviations.shape[1] != self.components:
@@ -315,7 +315,7 @@ class Response:
 
         Args:
             normals: the rows.
-            names: contributors that are wanted; columns of others may be zeros. All, if not given.
+            names: contributors that are wanted, whose columns alone are filled; default: all.
         """
         wanted = self.draws.keys() if names is None else self.read_by(names)
         normals = np.atleast_2d(np.asarray(normals, dtype=np.float64))
@@ -395,7 +395,7 @@ class Response:
 
         Args:
             factors: above 0; the others' tolerances are as they are.
-            stays: of some of them, which limit does; see `naturally_stays`, if not given.
+            stays: of some of them, which limit does; default: see `naturally_stays`.
             physical: whether deviations below the least physical one are refused; else they are drawn.
 
         Raises:

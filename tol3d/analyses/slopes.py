@@ -157,7 +157,7 @@ def _variances(slopes: Array, off: Array) -> Array:
 
 
 def _gradients(response: Response, rows: Array, positions: Mapping[str, Array]) -> Array:
-    """Gradients (n, measures, components) in batches that fit the memory; NaN where a build does not seat."""
+    """Gradients (n, measures, components) in batches that fit the memory; NaN where a build cannot be assembled."""
     many = max(1, AT_ONCE // max(2 * response.components**2, 1))
     pieces = [
         response.gradient(rows[k : k + many], {name: own[k : k + many] for name, own in positions.items()})

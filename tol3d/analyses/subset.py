@@ -41,8 +41,8 @@ class Rows:
 
     Args:
         normals: of deviations and then of positions, two for each stream, whose angle is the position.
-        inside: the limit state; -inf where a build does not seat.
-        unseated: which do not seat.
+        inside: the limit state; -inf where a build cannot be assembled.
+        unseated: which cannot be assembled.
     """
 
     normals: Array

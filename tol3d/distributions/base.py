@@ -143,7 +143,7 @@ class Distribution(ABC):
 
         Args:
             factor: above 0.
-            about: the deviation that stays [mm, rad or K]; `pivot` if not given.
+            about: the deviation that stays [mm, rad or K]; default: `pivot`.
 
         Raises:
             InputError: see `mapped`; a factor that is none.

@@ -55,7 +55,7 @@ class GeneralSpec(Strict):
     leg: Annotated[Quantity, Of("length"), Positive()] | None = Field(
         default=None, description="of an angle, the length of its shorter leg"
     )
-    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
 
     @model_validator(mode="after")
     def _refuse_other_than_one(self) -> Self:
@@ -77,7 +77,7 @@ class GradeSpec(Strict):
     iso_1328_2: str = Field(description="F_r, F_i'' or f_i'' and the grade, such as F_r 7")
     module: Annotated[Quantity, Of("length"), Positive()] = Field(description="of what has the grade")
     of: Annotated[Quantity, Of("length"), Positive()] = Field(description="reference diameter")
-    law: StatedLimitLaw | None = Field(default=None, description="by the scene's default_law if not given")
+    law: StatedLimitLaw | None = Field(default=None, description="default: the scene's default_law")
 
 
 class LimitsSpec(Strict):

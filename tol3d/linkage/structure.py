@@ -307,7 +307,7 @@ def structured(
         bodies: its parts.
         joints: all, in the scene's order.
         inputs, output, drawn, frames: see Structure.
-        length: see Structure; the largest distance of a joint from the middle of all if not given.
+        length: see Structure; default: the largest distance of a joint from the middle of all.
 
     Raises:
         InputError: bodies that no joint reaches, or a gear that another joint than its rolling one would place; the

@@ -186,7 +186,7 @@ class MachineMethod:
 
         Args:
             trials, pose, turned: whose, where, by what.
-            sides: by joint, to which end; by their loads if not given.
+            sides: by joint, to which end; default: by their loads.
         """
         system = self.system
         deviations, drawn = system.of_assembly(trials.deviations), component_slices(system.drawn)

@@ -72,7 +72,7 @@ def bars_of(measure: MeasureSummary) -> dict[Method, Bars]:
 
 
 def _seated(measure: MeasureSummary, method: Method) -> float:
-    """The share of a method's trials that seated."""
+    """The share of a method's trials that were assembled."""
     sample = measure.sample(method)
     return sample.count / sample.trials if sample and sample.count and sample.trials else 1.0
 

@@ -96,7 +96,7 @@ def _ends(analytic: Array, geometric: Array) -> tuple[float, float]:
 
 
 def _blocks(run: Run, measure: str, position: str | None) -> Iterator[tuple[Array, Array, Array | None]]:
-    """Analytic and geometric values and positions, one file of trials at a time; NaN where a trial did not seat."""
+    """Analytic and geometric values and positions, one file of trials at a time; NaN where a trial failed."""
     wanted = (*(value_column(method, measure) for method in METHODS), status_column(measure))
     asked = tuple(name for name in wanted if name in run.column_names)
     lacking = run.found.lacking

@@ -20,7 +20,7 @@ class Convergence:
     """Mean and sigma of the first so many trials, with their standard errors, all in the measure's unit.
 
     Args:
-        counts: (n,) how many trials, those that did not seat left out.
+        counts: (n,) how many trials, those that could not be assembled left out.
         mean, sigma: (n,) of them.
     """
 

@@ -18,7 +18,7 @@ WORST_FOUND: Final = (
 
 
 def worst_text(simulation: Simulation, measure: Measure, unit: str, found: WorstCase | None) -> str:
-    """The worst builds of a measure in the unit in which it is shown, told where one does not seat; "" for none."""
+    """The worst builds of a measure in the unit in which it is shown, told where one fails; "" for none."""
     if found is None:
         return ""
     ends = (_end_text(simulation, measure, unit, own) for own in (found.low, found.high))

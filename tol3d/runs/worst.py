@@ -46,7 +46,7 @@ class KeptTrials(Protocol):
 def worst_trial(run: KeptTrials, measure: str | None = None, *, seated_only: bool = False) -> int:
     """Index of the worst trial of a run.
 
-    Where any trial lacks what is measured it is the one that lacks most; else, among those that seated, the one nearest
+    Where any trial lacks what is measured it is the one that lacks most; else, among the assembled, the one nearest
     to a limit, or furthest beyond it. Nearness and depth are counted in standard deviations of each measure; a curve
     counts by its extremes. Without any limit it is the trial at the worse end of the first measure. A trial of which
     nothing is known cannot be shown, and is never the worst.
@@ -86,7 +86,7 @@ def _margin(run: KeptTrials, method: str, name: str, measure: MeasureSummary) ->
     found = outcome_of(columns, method, name, run.found.lacking)
     values = found.values.reshape(run.trials, -1)
     lower, upper = measure.limits
-    below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve did not seat
+    below, above = values.min(axis=1), values.max(axis=1)  # nan where a position of a curve could not be assembled
     if not measure.has_limits:
         margin = -above if measure.worse == "high" else below
     else:

@@ -114,7 +114,7 @@ def read_step_text(source: Path | bytes, name: str | None = None) -> StepText:
 
     Args:
         source: its path, or its content.
-        name: the name for errors; the file's own if not given.
+        name: the name for errors; default: the file's own.
 
     Raises:
         StepError: it is no STEP file, is damaged or too large, or refers to other files. A tolerance, dimension or

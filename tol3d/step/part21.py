@@ -131,7 +131,7 @@ def read_part21(source: Path | bytes, name: str | None = None) -> Part21:
 
     Args:
         source: its path, or its content.
-        name: the name for errors; the file's own if not given.
+        name: the name for errors; default: the file's own.
 
     Raises:
         StepError: it cannot be read, is no STEP file, is damaged or too large, or refers to other files.

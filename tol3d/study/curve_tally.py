@@ -39,7 +39,7 @@ def grid_name(measure: str, index: int) -> str:
 
 
 def amplitudes_of(measure: Measure, spectrum: Spectrum, curves: Array) -> Array:
-    """Amplitudes (trials that seated, orders) of curves (trials, positions), both in the measure's unit."""
+    """Amplitudes (trials that were assembled, orders) of curves (trials, positions), both in the measure's unit."""
     return spectrum.amplitudes(measure.positions, curves[~np.isnan(curves).any(axis=1)])
 
 
@@ -147,7 +147,7 @@ def end_name(measure: str, end: str) -> str:
 class CurveTally:
     """A curve measure: moments at each position, for both methods, the trials with any position out of limits, spectra.
 
-    A trial counts at every position, or where one of them did not seat at none. `ends` are the samples of the ends that
+    A trial counts at every position, or where one of them failed at none. `ends` are the samples of the ends that
     limits judge, `replicates` what is out of limits by replicate, empty for independent trials; both by method.
     """
 

@@ -28,7 +28,7 @@ BATCH: Final = 2**22
 """Numbers that are built at once: rows times components, 32 MB."""
 
 Values = Callable[[Array, Sequence[Measure]], Mapping[str, Array]]
-"""Measures (rows,) by name of deviations (rows, components), in their units; nan where a build does not seat."""
+"""Measures (rows,) by name of deviations (rows, components), in their units; nan where a build cannot be assembled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,11 +75,11 @@ class Evaluation:
         Args:
             trials: stated or drawn.
             measures: of the system.
-            overlaps: keep a method's answers for builds that do not seat, such as the depth of their overlap.
+            overlaps: keep a method's answers for builds that cannot be assembled, such as the depth of their overlap.
 
         Returns:
-            By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build does not
-            seat.
+            By name (trials,), or (trials, positions) of a curve, in the measure's unit; nan where a build cannot
+            be assembled.
         """
         pieces = []
         judged = {own.name for own in measures if self.method and not overlaps(own)}

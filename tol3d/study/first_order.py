@@ -35,7 +35,7 @@ class FirstOrderEffect:
     Args:
         name, unit: of the contributor.
         slope: change of the measure [its unit] per unit of the deviation; of several components the size of their
-            gradient, of several deviations of their own that of each or the greatest; nan where a build does not seat.
+            gradient, of several deviations of their own that of each or the greatest; nan where a build fails.
         each: number of independent deviations, such as one per feature; 1 for a single one or for components.
         alike: True if their slopes are equal.
         variance: its part of the measure's variance [the measure's unit, squared].
@@ -53,13 +53,13 @@ class FirstOrderEffect:
 
 @dataclass(frozen=True)
 class FirstOrder:
-    """A measure by one method before any trial, in its unit; nan where a build does not seat.
+    """A measure by one method before any trial, in its unit; nan where a build cannot be assembled.
 
     Args:
         nominal: without deviations.
         mean: with every contributor at its mean.
         effects: of the contributors that act on it.
-        ends: with every contributor at the end that lowers it, and at the one that raises it, by sign of its slopes:
+        ends: every contributor at its lowering limit, and at its raising one, by the sign of its slopes:
             the worst case of a measure that is a sum of effects.
     """
 

@@ -39,10 +39,10 @@ def high_low_mean_percents(system: System, measures: Sequence[Measure], values: 
 
     Args:
         system, measures: to build and to read: one number of each.
-        values: measures of deviations; nan where a build does not seat.
+        values: measures of deviations; nan where a build cannot be assembled.
 
     Returns:
-        By measure percents by the contributor's name; None where a build does not seat, 0 where nothing moves it.
+        By measure percents by the contributor's name; None where a build cannot be assembled, 0 where nothing moves it.
     """
     return of_alike(system, measures, lambda alike, turning: _percents_of(system, alike, turning, values))
 
@@ -89,7 +89,7 @@ def ranges(
         values: see `high_low_mean_percents`.
 
     Returns:
-        By measure (contributors,) in its unit, nan where a build does not seat; none where the mean build does not.
+        By measure (contributors,) in its unit, nan where a build fails; no entry where the mean build fails.
     """
     alone = [_Alone(own, slices[own.name], turning=False, mean=mean) for own in contributors]
     return _ranges_of(alone, mean, measures, values)
@@ -327,7 +327,7 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
 
 
 def _percents(names: Sequence[str], ranges: Array | None) -> Percents:
-    if ranges is None or np.isnan(ranges).any():  # a build beside the mean does not seat
+    if ranges is None or np.isnan(ranges).any():  # a build beside the mean cannot be assembled
         return dict.fromkeys(names, None)
     squares = [own**2 for own in ranges.tolist()]
     total = sum(squares)

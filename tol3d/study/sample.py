@@ -38,7 +38,7 @@ class Sample:
     """One method's sample of one measure.
 
     Args:
-        moments, grid: of the trials that seated.
+        moments, grid: of the trials that were assembled.
         limits: of all trials.
         deepest: the largest overlap of a trial, as a value below 0; inf if none is known.
         replicated: the sample by replicates where its trials are not independent, and its errors are theirs then.

@@ -98,7 +98,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
 
 
 def _values(system: Described, measure: Measure, pilot: Columns) -> list[Array]:
-    """The pilot's values of a measure by each method that was used, nan if a trial did not seat."""
+    """The pilot's values of a measure by each method that was used, nan if a trial could not be assembled."""
     methods = [method for method in METHODS if value_column(method, measure.name) in pilot]
     return [outcome_of(pilot, method, measure.name, system.statuses.lacking).values for method in methods]
 

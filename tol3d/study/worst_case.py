@@ -74,7 +74,7 @@ class WorstCase:
 
     Args:
         low, high: the builds that lower and that raise the measure most; None if none is measured.
-        unseated: a build within the regions that does not seat; None if none was met.
+        unseated: a build within the regions that cannot be assembled; None if none was met.
         met: number of such builds that were met.
         evaluations: number of builds evaluated.
     """

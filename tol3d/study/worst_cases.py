@@ -65,7 +65,7 @@ def price(simulation: Simulation, method: str, measure: Measure) -> float:
 
 
 def built_by(evaluation: Evaluation, measure: Measure, counted: Callable[[int], None] = lambda builds: None) -> Built:
-    """A measure of builds, not a number where one does not seat, unless it keeps how deep parts overlap."""
+    """A measure of builds, not a number where one cannot be assembled, unless it keeps how deep parts overlap."""
 
     def built(deviations: Array, positions: Standing) -> tuple[Array, Codes]:
         found, codes = [], []

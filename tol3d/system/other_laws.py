@@ -103,7 +103,7 @@ def scaled(draw: Draw, factor: float, stays: Stays | None = None) -> Draw:
     Args:
         draw: its tolerance as it is.
         factor: above 0.
-        stays: its mean, or one of its limits; see `naturally_stays`, if not given.
+        stays: its mean, or one of its limits; default: see `naturally_stays`.
 
     Raises:
         InputError: it has no tolerance of its own, its law cannot be scaled, or has no such limit.

@@ -1,6 +1,6 @@
 """Outcome of each trial of a measure: which ones seated, which ones lack what is measured and by how much.
 
-Statistics of values are of the trials that seated. What is out of limits is counted of all of them, and a build that
+Statistics of values are of the assembled trials. What is out of limits is counted of all of them, and a build that
 lacks what is measured (its parts overlap) is below every lower limit.
 """
 
@@ -47,7 +47,7 @@ class Outcome:
     """A method's values of a measure in some trials.
 
     Args:
-        values: (trials,), or (trials, positions) of a curve, in the measure's unit; nan for trials that did not seat.
+        values: (trials,), or (trials, positions) of a curve, in the measure's unit; nan for trials that failed.
         lacking: (trials,), those whose parts overlap; None where every trial seated.
         deepest: the largest overlap of those that is known, as a value below 0; inf if none is.
     """

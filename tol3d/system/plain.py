@@ -120,8 +120,8 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
 
     Args:
         scene: the scene.
-        draws: by kind of tolerance, the draw of its components, from its law and itself; one component from its law
-            if not given.
+        draws: by kind of tolerance, the draw of its components, from its law and itself; default: one component from
+            its law.
 
     Raises:
         SceneError: a file of measured values that a law reads makes no sense.
@@ -329,7 +329,7 @@ class PlainSystem:
         Args:
             trials: whose deviations.
             kind: of tolerance, the scene's word.
-            measure: only contributors that act on it; all of the kind if not given.
+            measure: only contributors that act on it; default: all of the kind.
             components: number of zeros per trial if there is no such contributor.
         """
         slices = component_slices(self)

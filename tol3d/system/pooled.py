@@ -17,7 +17,7 @@ Columns = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class PooledTerms:
-    """One method's terms of a breakdown, in its order; trials that did not seat are left out.
+    """One method's terms of a breakdown, in its order; trials that could not be assembled are left out.
 
     Args:
         moments: of each term, in the breakdown's unit.

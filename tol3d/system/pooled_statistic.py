@@ -11,7 +11,7 @@ HIGH_SHARE: Final = 0.99865
 
 @dataclass(frozen=True)
 class Pool:
-    """Statistics of the trials that seated, in the measure's unit.
+    """Statistics of the trials that were assembled, in the measure's unit.
 
     Args:
         mean, sigma, minimum, maximum: of the trials.

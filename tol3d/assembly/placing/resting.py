@@ -48,7 +48,7 @@ class Resting:
         basis: contacts that would carry if all were touched, one for each motion.
         inverse: of their rows (motions, motions).
         loads: on them, of the force and of what it leans to (2, motions).
-        nudge: by which the part is moved on once it rests, along the motions (motions, n); none if not given.
+        nudge: by which the part is moved on once it rests, along the motions (motions, n); default: none.
     """
 
     move: Rest

@@ -154,7 +154,7 @@ def display(run: Run, which: Which, *, magnify: float) -> ShownAssembly:
     """A build of a run; its deviations magnified and its parts placed by them.
 
     Raises:
-        RunError: it is not built.
+        RunError: it could not be assembled.
     """
     trial = worst_trial(run) if which == "worst" else which
     notes: tuple[str, ...] = ()
@@ -200,7 +200,7 @@ def replayed_display(seen: Replay, label: str, notes: tuple[str, ...] = ()) -> S
     """A trial that was replayed.
 
     Raises:
-        RunError: it is not built.
+        RunError: it could not be assembled.
     """
     placed = placed_by(seen)
     if placed is None:

@@ -217,7 +217,7 @@ class FclMethod(GeometricMethod):
     def _of_gaps(self, measure: Measure, normal_backlash: Mapping[str, float]) -> float:
         """Value of a measure for normal backlashes [mm], one per mesh, in its unit.
 
-        A transmission error depends on the two flanks that touch, each more or less offset than at the first position.
+        A transmission error depends on the two flanks that touch, each with another offset than at the first position.
         """
         free = sum(
             abs(factor) * normal_backlash[backlash.mesh] * per_normal_backlash(self.model, backlash)

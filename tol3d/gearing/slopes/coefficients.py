@@ -71,7 +71,7 @@ def _beside(model: Model, engine: Engine, measure: Measure, middle: Array, steps
 
 
 def _either(below: float, above: float) -> Array:
-    """Both sides; one that does not seat takes the other's."""
+    """Both sides; one that cannot be assembled takes the other's."""
     return np.array([above if np.isnan(below) else below, below if np.isnan(above) else above])
 
 

@@ -42,7 +42,7 @@ def sensitivities(model: Model, engine: Engine, trials: Trials, measure: Measure
 
     Returns:
         (trials, components) [mm or rad per mm, rad, K], columns as in `model.component_slices`; for a curve
-        (trials, positions, components). NaN where a trial did not seat.
+        (trials, positions, components). NaN where a trial could not be assembled.
     """
     size = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
     pieces = (trials.part(first, first + size) for first in range(0, len(trials), size))
@@ -98,7 +98,7 @@ def _variable_rates(model: Model, measure: Measure, moves: BuildRates, seats: Se
 
 
 def _rates(backlash: Backlash, meshing: Meshing, moves: BuildRates, seat: MeshSeat) -> Array:
-    """Derivatives of a backlash at every position, (rows, components); NaN where the mesh did not seat."""
+    """Derivatives of a backlash at every position, (rows, components); NaN where the mesh could not be assembled."""
     good = np.flatnonzero(seat.status == OK)
     rates = np.full((len(seat.status), meshing.model.component_count), np.nan)
     contacts = _Contacts(meshing.rows(good), moves.rows(good))

@@ -59,7 +59,7 @@ class BevelStack(Stack[BevelPair]):
 
     Source: Jiang et al., J. Zhejiang Univ. (Eng. Sci.) 58(8), 2024, 1533-1542, section 3.1, for equal gears at 90 deg;
     here for any cones. Neglected: the position within a pitch (an axial or radial shift acts on the pairs of one mesh
-    by up to 10 % more or less, and differs by that between the gear with the tooth and the one with the space), and
+    within ±10 % of that, and differs by that between the gear with the tooth and the one with the space), and
     the face: where contact or gap are read over the whole of it, they differ by several per cent.
     """
 
@@ -75,7 +75,7 @@ class BevelStack(Stack[BevelPair]):
         """
         found = [
             Neglect("offset of the axes, which by its source opens the mesh", self._by_offset),
-            Neglect("position within a pitch, where shifts of the gears count more or less", self._by_position),
+            Neglect("position within a pitch, which scales the effect of gear shifts", self._by_position),
         ]
         if "face" in (self.reading.contact, self.reading.gap):
             found.append(Neglect("reading over the face instead of in its middle", self._by_face))

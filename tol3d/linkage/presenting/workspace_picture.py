@@ -137,7 +137,7 @@ def workspace_map(
     Args:
         simulation: of the scene.
         name: of the move.
-        measure: whose sigma is shown, by first order; the condition number if not given.
+        measure: whose sigma is shown, by first order; default: the condition number.
         activity: progress callback.
 
     Raises:

@@ -58,8 +58,8 @@ class RevoluteSpec(Strict):
     )
     seat: Datums | None = Field(
         default=None,
-        description="datums of the link after by which it lies on the joint, such as [flange, pilot]; by the axis if "
-        "not given",
+        description="datums of the link after by which it lies on the joint, such as [flange, pilot]; default: "
+        "the axis",
     )
     train: Name | None = Field(
         default=None, description="the train whose output turns the link after; none: it has no play"

@@ -108,7 +108,7 @@ def replayed(replay: Replay, label: str) -> ShownMachine:
     """A trial that was replayed.
 
     Raises:
-        RunError: it is not built.
+        RunError: it could not be assembled.
     """
     return _shown(GearDisplay(replayed_build(replay, label)), replay, label, 1.0)
 

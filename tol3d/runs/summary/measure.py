@@ -183,7 +183,7 @@ class MeasureSummary(Section):
 
     @property
     def seated(self) -> int:
-        """Number of trials that seated."""
+        """Number of trials that were assembled."""
         return self.status.get(SEATED, self.trials)
 
     def ended_in(self, statuses: Collection[str]) -> int:

@@ -221,7 +221,7 @@ class _Case:
 
         Where positions or load paths are compared all that is left out helps to choose one of them, and by that what
         any contributor does; its part in the difference is no larger than the difference then. Else it is scaled: the
-        contributor varies in all trials more or less than in those looked at.
+        spread of the contributor in all trials is not that in those looked at.
         """
         trials = self.look.trials.part(0, self.looked)
         if self.measure.take != "value" or not self.measure.adds_up:

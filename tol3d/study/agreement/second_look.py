@@ -38,7 +38,7 @@ NAMED_SHARE = 0.1  # of the largest second difference; smaller ones are not name
 
 @dataclass(frozen=True, eq=False)
 class SecondLook:
-    """Differences (geometric - analytic) of some trials, by measure and in its unit; nan if a build did not seat.
+    """Differences (geometric - analytic) of some trials, by measure and in its unit; nan if a build failed.
 
     Args:
         trials: which.
@@ -109,7 +109,7 @@ def bends(simulation: Simulation, method: Method) -> Mapping[str, Mapping[str, f
     """Second differences of (geometric - analytic) at +-3 sigma of each contributor alone, by measure and contributor.
 
     Half of f(m + 3 s) - 2 f(m) + f(m - 3 s), averaged over positions, in the measure's unit; a contributor with
-    components: their sum. Its ninth is the shift of the mean. nan if a build does not seat.
+    components: their sum. Its ninth is the shift of the mean. nan if a build cannot be assembled.
     """
     system = simulation.system
     measures = scalars_of(system)
