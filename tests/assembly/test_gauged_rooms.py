@@ -37,6 +37,8 @@ FRAMES = [
     ([], ["bore", "pin"]),
     ([], ["slot", "tab"]),
     (["bore"], ["slot"]),
+    (["floor"], ["bore-pin"]),
+    ([], ["pin-bore-slot"]),
 ]
 MEASURED: dict[str, tuple[Array, Shape]] = {
     "hole": (frame((70, 45, 10), Z, X), Axis(20.0)),
@@ -55,9 +57,9 @@ def gauged(
         draft.feature(f"p.{name}", where, shape)
         if size:
             draft.size(f"p.{name}")
-    held = draft.datum_frame("p", *(Datum((f"p.{name}",)) for name in (*kept, *at)))
+    held = draft.datum_frame("p", *(datum(name) for name in (*kept, *at)))
     rooms = []
-    for name in at:
+    for name in "-".join(at).split("-"):
         inner = is_inner(name)
         rooms.append(GaugeRoom(f"p.{name}", SHAPES[name][2] + (-2 * room if inner else 2 * room), inner))
     draft.datum_frames[held] = replace(draft.datum_frames[held], gauges=Gauges(tuple(rooms), floating))
@@ -69,6 +71,12 @@ def gauged(
         if floating is None:
             measures[name] = Measured(InspectedPositionSpec.reads, (f"p.{name}",), frame=held, over_gauges=True)
     return draft, draft.assembly((Fix("fix", "p"),), measures)
+
+
+def datum(words: str) -> Datum:
+    """A feature, or several as a pattern: bore-pin."""
+    names = tuple(f"p.{own}" for own in words.split("-"))
+    return Datum(names, "pattern" if len(names) > 1 else "contact")
 
 
 def is_inner(name: str) -> bool:
@@ -114,6 +122,7 @@ def least(kept: Sequence[str], at: Sequence[str], measured: str, own: dict[str, 
         pure = without(free, np.eye(6)[3:])
         start = start - pure @ solved_by(shifts @ pure, off + shifts @ start)
         free = without(free, held)
+    at = "-".join(at).split("-")
     seen = np.concatenate([rows_of(end) for name in at for end in ends(name, own)]) @ free
     _, sizes, right = np.linalg.svd(seen)
     rank = int((sizes > 1e-6).sum())

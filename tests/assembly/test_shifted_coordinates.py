@@ -176,6 +176,10 @@ FRAMES: Sequence[Sequence[str]] = [
     ["ramp", "floor", "ball"],
     ["ball", "floor"],
     ["floor", "ball", "side"],
+    ["floor", "pin1-pin2-pin3 pattern"],
+    ["bore-hole pattern", "floor"],
+    ["floor", "side", "bore-slot pattern"],
+    ["floor-side pattern", "ball"],
 ]
 
 
@@ -184,6 +188,8 @@ def datum(words: str) -> Datum:
     features = tuple(f"p.{own}" for own in name.split("-"))
     if simulator == "targets":
         return Datum(features, "targets", np.array([[-50.0, 4, 0], [50, -5, 0]]))
+    if simulator == "pattern":
+        return Datum(features, "pattern")
     return Datum(features, "fitted" if simulator == "fitted" else "contact")
 
 

@@ -107,13 +107,15 @@ class Drawing:
     def take_datums(self) -> None:
         """Select the feature of each datum, under its letter."""
         for datum in self.text.datums:
-            shape = self.meanings.datum_shapes.get(datum.id)
-            mine = datum.features and self.text.product(datum.features[0]) == self.product
-            if shape is None or not mine or datum.targets:
+            shape, feature = self.meanings.datum_shapes.get(datum.id), self.meanings.datum_features.get(datum.id)
+            if shape is None or feature is None or self.text.product(feature) != self.product:
                 continue
             try:
-                found = self.features.of_faces(datum.faces)
-                if shape.kind == "slot" and len(found) == 2:
+                found = self.features.of_faces(feature.faces)
+                if shape.kind == "cylinders" and all(self.features.named(own) is None for own in found):
+                    group = self.features.add(found, datum.letter, datum.letter)
+                    self.datums[datum.letter] = "-".join(group.names)
+                elif shape.kind == "slot" and len(found) == 2:
                     self.datums[datum.letter] = self.features.slot(found, datum.letter).name
                 elif len(found) == 1:
                     known = self.features.named(found[0])
@@ -280,11 +282,11 @@ class Drawing:
             letters = [own.letter for own in each.references]
             if missing := [own for own in letters if own not in self.datums]:
                 raise StepError(f"datum {', '.join(missing)} is no feature of this scene")
-            name = "-".join(self.datums[own] for own in letters)
-            plain.append(scalar(name))
-            boundary = any(set(own.modifiers) & MATERIAL for own in each.references) and len(letters) == 1
-            said.append(f"{{feature: {scalar(name)}, mmb: random}}" if boundary else scalar(name))
-            read.append(f"{{feature: {scalar(name)}, mmb: least}}" if boundary else scalar(name))
+            name = scalar("-".join(self.datums[own] for own in letters))
+            plain.append(f"{{feature: {name}, simulator: pattern}}" if self.meanings.is_pattern(each) else name)
+            boundary = any(set(own.modifiers) & MATERIAL for own in each.references)
+            said.append(f"{{feature: {name}, mmb: random}}" if boundary else plain[-1])
+            read.append(f"{{feature: {name}, mmb: least}}" if boundary else plain[-1])
         pairs = [(", ".join(said), ", ".join(read))]
         if said != plain:
             pairs.append((", ".join(plain), ", ".join(plain)))

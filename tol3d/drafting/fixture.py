@@ -38,15 +38,15 @@ def datum_system(part: DraftedPart) -> list[Group]:
     drawing = part.drawing
     if drawing is None:
         return []
+    groups = {name: group for group in part.features.groups for name in group.names}
     systems: Counter[tuple[str, ...]] = Counter()
     for tolerance, _ in drawing.tolerances:
         letters = tuple(own.letters for own in tolerance.datums)
-        if letters and all(own in drawing.datums for own in letters):
+        if letters and all(drawing.datums.get(own) in groups for own in letters):  # a pattern is several
             systems[letters] += 1
     if not systems:
         return []
     best = max(systems, key=lambda own: (len(own), systems[own]))
-    groups = {name: group for group in part.features.groups for name in group.names}
     return [groups[drawing.datums[own]] for own in best]
 
 

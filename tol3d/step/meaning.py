@@ -5,15 +5,16 @@ the same frame; *approximately* where something of it is lost, which is named; e
 tolerance has one meaning, so their counts add up to the file's.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, Literal
 
 from tol3d.step.datum import Compartment, Datum, DatumReference
+from tol3d.step.feature import NamedFeature
 from tol3d.step.outline import StepText
 from tol3d.step.shape import Shape, shape_of
-from tol3d.step.surfaces import Surface, aligned, dot, product_unit, surface_of
+from tol3d.step.surfaces import SAME_PLACE, Surface, aligned, dot, product_unit, surface_of
 from tol3d.step.tolerance import Tolerance
 
 Class = Literal["said", "approximately", "left out"]
@@ -30,7 +31,8 @@ MATERIAL: Final = frozenset(
         "least material condition",
     )
 )
-DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder"))
+DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder", "cylinders"))
+MOST_TOGETHER: Final = 10  # features of one datum
 SQUARE: Final = 1e-6  # cosine between directions that are square
 
 PROFILED: Final = ("plane", "cylinder", "sphere")
@@ -107,10 +109,34 @@ class Meanings:
     def datum_shapes(self) -> dict[int, Shape]:
         """The shape of each datum that is taken from one feature, by where the datum stands."""
         return {
-            each.id: shape_of(each.features[0], self.surfaces, self.text.structure)
-            for each in self.text.datums
-            if len(each.features) == 1
+            own: shape_of(feature, self.surfaces, self.text.structure) for own, feature in self.datum_features.items()
         }
+
+    @cached_property
+    def datum_features(self) -> dict[int, NamedFeature]:
+        """The feature from which each datum is taken: what the file names, else the flat faces at its targets."""
+        found: dict[int, NamedFeature] = {}
+        for each in self.text.datums:
+            if len(each.features) == 1:
+                found[each.id] = each.features[0]
+            elif each.targets and not each.features and (faces := self.faces_at(each)):
+                found[each.id] = replace(each.targets[0].feature, groups=(faces,))
+        return found
+
+    def faces_at(self, datum: Datum) -> tuple[int, ...]:
+        """The flat faces on which the targets of a datum lie by their places; () where the file does not say it."""
+        faces: list[int] = []
+        for target in datum.targets:
+            product = self.text.product(target.feature)
+            if target.placement is None or product is None:
+                return ()
+            (_, _, z, at) = zip(*target.placement[:3], strict=True)
+            for face in self.text.structure.products[product].faces:
+                own = self.surfaces.get(face)
+                if own is not None and own.kind == "plane" and aligned(z, own.direction) > 0:
+                    height = dot(at, own.direction) - dot(own.at, own.direction)
+                    faces += [face] if abs(height) < SAME_PLACE else []
+        return tuple(dict.fromkeys(faces))
 
     def datum(self, reference: DatumReference) -> Datum | None:
         """The datum that a frame refers to; in a file of several parts their letters may be the same."""
@@ -147,7 +173,7 @@ class Meanings:
                 told += f"; {lost}" if lost else ""
                 return Meaning(tolerance.id, "approximately", "inspected_orientation", shape.words, told)
             lost = lost or self.turn_loss(tolerance, shape, self.by_id[before])
-        lost = lost or self.modifier_loss(tolerance)
+        lost = lost or self.modifier_loss(tolerance) or self.boundary_loss(tolerance)
         return Meaning(tolerance.id, "approximately" if lost else "said", kind, shape.words, lost)
 
     def obstacle(self, tolerance: Tolerance, shape: Shape) -> str:
@@ -192,34 +218,49 @@ class Meanings:
 
     def datum_obstacle(self, compartment: Compartment) -> str:
         """Reason why a compartment of a datum system cannot be said; empty if it can."""
-        if len(compartment.references) > 2 and not self.in_line(compartment):
-            return f"the common datum {compartment.letters} of {len(compartment.references)} features"
+        shapes: list[Shape] = []
         for each in compartment.references:
             datum = self.datum(each)
             if datum is None:
                 return f"datum {each.letter}, which the file does not have"
-            if datum.targets:
-                return f"datum {each.letter} at its targets"
             shape = self.datum_shapes.get(datum.id)
+            if shape is None and datum.targets:
+                return f"datum {each.letter} at its targets, of which the file says no place"
             if shape is None or shape.kind not in DATUM_SHAPES:
                 return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
-            if len(compartment.references) > 1 and shape.kind != "cylinder":
-                return f"the common datum {compartment.letters} of {shape.words}"
             if set(each.modifiers) - MATERIAL:
                 return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
             if any("least" in word for word in each.modifiers):
                 return f"datum {each.letter} at its least material boundary"
+            shapes.append(shape)
+        return self.together_obstacle(compartment, shapes)
+
+    def together_obstacle(self, compartment: Compartment, shapes: Sequence[Shape]) -> str:
+        """Why the features of a compartment cannot be one datum; empty where they can, or where there is one."""
+        surfaces = [own for shape in shapes for own in shape.surfaces]
+        kinds = {shape.kind for shape in shapes}
+        if len(shapes) == 1 and shapes[0].kind != "cylinders":
+            return ""
+        what = f"the {'common datum' if len(shapes) > 1 else 'pattern as datum'} {compartment.letters}"
+        if not kinds <= {"cylinder", "cylinders"} and kinds != {"plane"}:
+            return f"{what} of {' and '.join(shape.words for shape in shapes)}"
+        if len(surfaces) > MOST_TOGETHER:
+            return f"{what} of {len(surfaces)} features: a datum has {MOST_TOGETHER} at most"
+        if not all(aligned(surfaces[0].direction, own.direction) for own in surfaces):
+            return f"{what} of features that are not parallel"
+        bounded = [bool(set(each.modifiers) & MATERIAL) for each in compartment.references]
+        if any(bounded) and not all(bounded):
+            return f"{what} at the boundary of some of its features alone"
         return ""
 
-    def in_line(self, compartment: Compartment) -> bool:
-        """True if a common datum is of holes or pins on one axis, regardless of their sizes."""
+    def is_pattern(self, compartment: Compartment) -> bool:
+        """True if a compartment is of features beside each other; False of one, and of holes or pins on one axis."""
         known = [self.datum(each) for each in compartment.references]
         shapes = [self.datum_shapes.get(own.id) for own in known if own is not None]
-        surfaces = [own.surfaces[0] for own in shapes if own is not None and own.kind == "cylinder"]
-        if len(surfaces) < len(known) or any(each.modifiers for each in compartment.references):
+        first, *others = [surface for own in shapes if own is not None for surface in own.surfaces]
+        if not others or [own.kind for own in shapes if own is not None] == ["slot"]:
             return False
-        first, *others = surfaces
-        return all(first.is_coaxial_with(own) for own in others)
+        return first.kind == "plane" or not all(first.is_coaxial_with(own) for own in others)
 
     def kind_and_loss(self, tolerance: Tolerance, shape: Shape) -> tuple[str, str]:
         """The kind in the scene, and its loss; empty for none."""
@@ -301,15 +342,24 @@ class Meanings:
     def modifier_loss(self, tolerance: Tolerance) -> str:
         """Loss of the modifiers of a tolerance."""
         lost = [DROPPED.get(each, f"{each} is dropped") for each in tolerance.modifiers if each not in MATERIAL]
-        if set(tolerance.modifiers) & MATERIAL and not self.has_size(tolerance):
+        if set(tolerance.modifiers) & MATERIAL and not self.has_size(tolerance.feature):
             lost.append("without a size that has limits there is no bonus")
         if tolerance.maximum is not None:
             lost.append("MAX is lost")
         return "; ".join(lost)
 
-    def has_size(self, tolerance: Tolerance) -> bool:
+    def boundary_loss(self, tolerance: Tolerance) -> str:
+        """What is lost of datums at their boundary: it counts from a size, which has to have limits."""
+        references = [own for each in tolerance.datums for own in each.references if set(own.modifiers) & MATERIAL]
+        known = [self.datum(own) for own in references]
+        if all(own is not None and self.has_size(self.datum_features[own.id]) for own in known):
+            return ""
+        letters = "-".join(own.letter for own in references)
+        return f"without sizes that have limits datum {letters} is taken regardless of size"
+
+    def has_size(self, feature: NamedFeature) -> bool:
         """True if a dimension with limits is of the same faces."""
-        faces = set(tolerance.feature.faces)
+        faces = set(feature.faces)
         sizes = [each for each in self.text.dimensions if each.is_size and each.limits is not None]
         return any(faces & set(each.features[0].faces) for each in sizes)
 

@@ -97,13 +97,11 @@ def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
 def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
     """Datum shift allowed to each gauge of the datums at their boundary."""
     found = []
-    for k, own in enumerate(datums):
-        if own.mmb is None:
-            continue
-        feature = f"{part}.{own.features[0]}"
+    for k, name in ((k, name) for k, own in enumerate(datums) if own.mmb is not None for name in own.features):
+        feature = f"{part}.{name}"
         shape, bonus = drawing.kind(feature).shape, sized_by(scene, drawing, feature, "mmc").bonus
         assert isinstance(shape, Axis | Slot)
-        tolerance = (earlier_zone(drawing, feature, datums[:k]) or 0.0) if k else 0.0
+        tolerance = earlier_zone(drawing, feature, datums, k) or 0.0
         virtual = bonus.low - tolerance if shape.inner else bonus.high + tolerance
         nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
         found.append(GaugeRoom(feature, nominal + virtual, shape.inner))

@@ -43,7 +43,9 @@ class DatumFrames:
     def _datum(self, part: str, spec: DatumSpec) -> Datum:
         names = tuple(f"{part}.{feature}" for feature in spec.features)
         if not spec.targets:
-            return Datum(names, spec.simulator)
+            flat = any(self.features[part][own].kind in ("plane", "slot") for own in spec.features)
+            pattern = spec.is_several and (flat or spec.mmb is not None)
+            return Datum(names, "pattern" if pattern else spec.simulator)
         into = np.linalg.inv(self.features[part][spec.features[0]].frame)
         points = np.array([[*(own.internal for own in target), 1.0] for target in spec.targets])
         return Datum(names, spec.simulator, (points @ into.T)[:, :3])

@@ -54,11 +54,17 @@ def _shift(frame: DatumFrame, drawing: Drawing) -> Array:
     """Shift of a datum frame (3,) per growth of 1: each datum in the directions that earlier ones left."""
     shift, free = np.zeros(3), np.eye(3)
     for datum in frame.datums:
-        own = drawing.kind(datum.features[0])
-        held = _held(own, datum.features, drawing)
+        features = [drawing.kind(name) for name in datum.features]
+        if datum.simulator == "pattern":
+            rows = [_held(own, (name,), drawing) for own, name in zip(features, datum.features, strict=True)]
+        else:
+            rows = [_held(features[0], datum.features, drawing)]
+        held = np.concatenate(rows)
         across, lengths, along = np.linalg.svd(held @ free)
         taken = np.flatnonzero(lengths > HELD)
-        missing = across.T[taken] @ held @ (own.frame[:3, 3] - shift)
+        parts = np.split(across.T[taken], np.cumsum([len(own) for own in rows])[:-1], axis=1)
+        off = (part @ own @ (f.frame[:3, 3] - shift) for part, own, f in zip(parts, rows, features, strict=False))
+        missing = sum(off, start=np.zeros(len(taken)))
         shift = shift + along[taken].T @ (missing / lengths[taken])
         free = free - along[taken].T @ along[taken]
     return shift

@@ -15,7 +15,7 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedTogetherSpec,
 )
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
-from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
+from tol3d.assembly.grammar.tolerances.location import Composite, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Plane
 from tol3d.numerics.arrays import Array
@@ -75,35 +75,58 @@ def is_square(normal: Array, axis: Array) -> bool:
 def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bool:
     """True if the gauge of the last datum only shifts: its hole or pin is perpendicular to the orienting plane."""
     known = drawing.features[part]
-    if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None:
+    if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None or any(own.is_several for own in datums):
         return False
+    if not drawing.of(f"{part}.{datums[1].features[0]}", FeatureTolerance):
+        return False  # nothing orients it to the plane
     plane, hole = (known.get(own.features[0]) for own in datums)
     if plane is None or hole is None or (plane.kind, hole.kind) != ("plane", "cylinder"):
         return False
     return is_square(plane.frame[:3, 2], hole.frame[:3, 2])
 
 
-def earlier_zone(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> float | None:
-    """Width of the zone of a datum feature at its precedence [mm]; None without one.
+def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int) -> float | None:
+    """Width of the zone of a feature of a datum at its precedence [mm]; 0 without any, None with others alone.
 
     It is its location zone to just the datums before it, whatever their modifiers; if these only orient it, as a plane
-    perpendicular to it does, its orientation zone to them.
+    perpendicular to it does, its orientation zone to them. One of several features has its location zone, to whatever
+    datums, or the lower segment of that to just the datums before it: these hold the features to each other.
+
+    Args:
+        drawing: of the scene.
+        feature: with its part.
+        datums: of the frame.
+        k: the number of the datum.
     """
-    names = [own.features for own in earlier]
+    located = [own.spec for own in drawing.of(feature, LocationSpec) if isinstance(own.spec, LocationSpec)]
+    zones = [*located, *drawing.of(feature, OrientationSpec), *drawing.of(feature, PlusMinusSpec)]
+    earlier = datums[:k]
+    if not zones or (k == 0 and not datums[k].is_several):
+        return 0.0
+    if datums[k].is_several and located:
+        lower = located[0].lower_segment if isinstance(located[0], Composite) else None
+        to_these = lower is not None and _names(lower.datums or ()) == _names(earlier)
+        return lower.zone.size if lower is not None and to_these else located[0].zone.size
+    names = _names(earlier)
     location: tuple[type[FeatureTolerance], ...] = (LocationSpec,)
     orientation: tuple[type[FeatureTolerance], ...] = (OrientationSpec,)
     kinds = orientation + location if _orients_only(drawing, feature, earlier) else location
     for kind in kinds:
         for own in drawing.of(feature, kind):
             spec = own.spec
-            if isinstance(spec, OrientationSpec | LocationSpec) and [d.features for d in spec.named_datums] == names:
+            if isinstance(spec, OrientationSpec | LocationSpec) and _names(spec.named_datums) == names:
                 return spec.zone.size
     return None
 
 
+def _names(datums: Sequence[DatumSpec]) -> list[tuple[str, ...]]:
+    return [own.features for own in datums]
+
+
 def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) -> bool:
     """True if datums leave a feature free across itself: they are one plane perpendicular to it."""
-    plane, own = drawing.features[part_of(feature)].get(earlier[0].features[0]), drawing.kind(feature)
+    plane = drawing.features[part_of(feature)].get(earlier[0].features[0]) if earlier else None
+    own = drawing.kind(feature)
     if len(earlier) != 1 or plane is None or plane.kind != "plane":
         return False
     normal, z = plane.frame[:3, 2], own.frame[:3, 2]
@@ -111,7 +134,14 @@ def _orients_only(drawing: Drawing, feature: str, earlier: Sequence[DatumSpec]) 
 
 
 def _unfit(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...], k: int, place: KeyPath) -> Iterator[Problem]:
-    own = f"{part}.{datums[k].features[0]}"
+    for feature in datums[k].features:
+        yield from _unfit_feature(drawing, f"{part}.{feature}", datums, k, place)
+
+
+def _unfit_feature(
+    drawing: Drawing, own: str, datums: tuple[DatumSpec, ...], k: int, place: KeyPath
+) -> Iterator[Problem]:
+    part = part_of(own)
     if own not in drawing.names or drawing.kind(own).kind not in ("cylinder", "slot"):
         return  # reported already
     later = [later for later in datums[k + 1 :] if later.mmb is None]
@@ -127,7 +157,7 @@ def _unfit(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...], k: int, p
         if drawing.of(own, PlusMinusSpec) or drawing.datums(own)[:1] != datums[:1]:
             words = f"expected a zone of {own!r} to {datums[0].features[0]!r} first, for that orients the gauge"
             yield place, f"{words}; add a position or perpendicularity to it"
-    elif k > 0 and earlier_zone(drawing, own, datums[:k]) is None:
+    elif earlier_zone(drawing, own, datums, k) is None:
         words = f"expected a zone of {own!r} to {to}, which makes its virtual condition there"
         yield place, f"{words}; add a position to these datums, or an orientation"
 

@@ -23,7 +23,7 @@ def _joined(value: Any) -> Any:
 
 
 class DatumSpec(Strict):
-    """A datum: a feature of the part, or several as a common datum, and its contact with the simulator."""
+    """A datum: a feature of the part, or several as a common datum or pattern, and its contact with the simulator."""
 
     words: ClassVar[str] = "a datum"
 
@@ -32,25 +32,32 @@ class DatumSpec(Strict):
         listed("features", 1, 10),
         BeforeValidator(_joined, json_schema_input_type=str | tuple[OwnName, ...]),
     ] = Field(alias="feature", description="its name; of a common datum all, such as bore 1-bore 2")
-    simulator: Simulator = Field(default="contact", description="how a later plane lies in the orientation left to it")
+    simulator: Simulator = Field(
+        default="contact",
+        description="how a later plane lies in the orientation left to it; pattern: several features as one datum, by "
+        "least squares of their places",
+    )
     targets: Annotated[tuple[Vector, ...], listed("points", 1, 3)] = Field(
         default=(), description="points of the part that touch, for simulator: targets"
     )
 
     mmb: Literal["random", "centred", "least"] | None = Field(
         default=None,
-        description="at its maximum material boundary: how the gauge lies in the room that it has there; least, of a "
-        "measure, where it is best; default: regardless of size",
+        description="at its maximum material boundary: how the gauge lies in the room that it has there, of several "
+        "features a gauge of as many pins; least, of a measure, where it is best; default: regardless of size",
     )
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """Kinds of feature that it may be of."""
-        if len(self.features) > 1:
-            return ("point", "sphere", "cylinder", "axis")
         if self.mmb is not None:
             return ("cylinder", "slot")
         return ("plane",) if self.targets else ()
+
+    @property
+    def is_several(self) -> bool:
+        """True of several features that lie as one."""
+        return len(self.features) > 1
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:
@@ -58,8 +65,15 @@ class DatumSpec(Strict):
             raise refused("targets", "simulator: targets beside them", f"simulator: {self.simulator}")
         if not self.targets and self.simulator == "targets":
             raise refused("targets", "the points that touch, such as [[10 mm, 0 mm, 5 mm]]", "none")
-        if self.mmb is not None and (len(self.features) > 1 or self.simulator != "contact"):
-            raise refused("mmb", "it at a single hole, pin, slot or tab", "a common datum or a simulator of planes")
+        if self.simulator == "pattern" and not self.is_several:
+            expected = "two to ten features as one datum, such as hole 1-hole 2"
+            raise refused("feature", expected, f"one, {self.features[0]!r}; name it alone, without simulator")
+        if len(set(self.features)) < len(self.features):
+            raise refused("feature", "each feature once", "-".join(self.features))
+        if self.mmb is not None and self.simulator not in ("contact", "pattern"):
+            raise refused("mmb", "it at holes, pins, slots or tabs", f"simulator: {self.simulator}, of planes")
+        if self.targets and self.is_several:
+            raise refused("targets", "them on one plane", "-".join(self.features))
         return self
 
 

@@ -40,9 +40,9 @@ class GaugeRoom:
     grows: bool
 
 
-Simulator = Literal["contact", "fitted", "targets"]
+Simulator = Literal["contact", "fitted", "targets", "pattern"]
 """Contact of a later plane, in the orientation left to it: at its outermost corner out of the material, at its centre,
-or at its stated points."""
+or at its stated points. Of several features: as a pattern."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,8 @@ class Datum:
 
     Args:
         features: names; of several the line through their centres counts, of three or more by least squares.
-        simulator: how it lies on what holds it.
+        simulator: how it lies on what holds it; "pattern" of several lays their places on the nominal ones, by least
+            squares of what they are off: ends of axes across them, corners of planes along their normals, centres.
         targets: (points, 3) in the frame of the feature [mm], for "targets".
     """
 
@@ -68,7 +69,7 @@ class Gauges:
         slot or tab they lie within +-(size - virtual) / 2 of it.
 
     Args:
-        rooms: one of each of these datums, in order.
+        rooms: one of each feature of these datums, in order.
         floating: their position within the common clearance, which makes the frame; None if each measure decides: the
             frame is then that of the datums regardless of their sizes.
     """
@@ -105,3 +106,9 @@ class DatumFrame:
     datums: tuple[Datum, ...]
     shifted_by: tuple[Contribution, ...] = ()
     gauges: Gauges | None = None
+
+    @property
+    def regardless(self) -> int:
+        """How many datums, the first ones, are met regardless of their sizes."""
+        at_boundary = {own.feature for own in self.gauges.rooms} if self.gauges is not None else set()
+        return sum(at_boundary.isdisjoint(own.features) for own in self.datums)

@@ -136,6 +136,12 @@ def actual(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
     return replace(found, centre=found.centre + _vector(*total(feature.grown_by, 3, columns)))
 
 
+def nominally(feature: Feature) -> ActualFeature:
+    """A feature without deviations, where it is nominally in its part."""
+    bare = Feature(feature.name, feature.part, feature.shape, feature.frame)
+    return actual(bare, Pose.of(feature.frame), np.zeros((0, 1)))
+
+
 def _deviating(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
     """By its shape's components."""
     shape = feature.shape

@@ -1,16 +1,17 @@
 """Seats of a frame's datums on their simulators: the part's features on nominal ones."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Feature, Part, Plane, RoundPlane, Slot
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual, total
+from tol3d.assembly.model import Axis, Datum, DatumFrame, Part, Plane, RoundPlane, Slot
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual, nominally, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, dot, unit
+from tol3d.assembly.placing.seen_motions import Pattern, pattern
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
@@ -38,6 +39,7 @@ class DatumSeats:
         alignment: of the ties, in order.
         nominal: the nominal features of its datums.
         datums: number of each tie's datum.
+        patterns: the datums that are patterns, by number.
         gauged: the gauges on which the part lies, if any.
     """
 
@@ -45,6 +47,7 @@ class DatumSeats:
     alignment: Alignment
     nominal: Mapping[str, ActualFeature]
     datums: tuple[int, ...]
+    patterns: Mapping[int, Pattern]
     gauged: OnGauges | None = None
 
     def pose(self, features: Actual, columns: Array) -> tuple[Pose, Codes]:
@@ -56,7 +59,7 @@ class DatumSeats:
 
     def of(self, features: Actual) -> list[Seat]:
         """The seats of its ties in their trials."""
-        return [seat for _, _, seat in _asked(self.frame, features, self.nominal)]
+        return [seat for _, _, seat in _asked(self.frame, features, self.nominal, self.patterns)]
 
 
 def datum_seats(part: Part) -> dict[str, DatumSeats]:
@@ -65,14 +68,15 @@ def datum_seats(part: Part) -> dict[str, DatumSeats]:
     Raises:
         InputError: a datum takes no freedom, or cannot be met at its precedence.
     """
-    nominal = {feature.name: _nominal(feature) for feature in part.features}
+    nominal = {feature.name: nominally(feature) for feature in part.features}
     return {frame.name: _of(frame, nominal) for frame in part.datum_frames}
 
 
 def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
     _refuse_few_targets(frame)
     _refuse_scattered(frame, nominal)
-    datums, ties, seats = zip(*_asked(frame, nominal.__getitem__, nominal), strict=True)
+    patterns = _patterns(frame, nominal)
+    datums, ties, seats = zip(*_asked(frame, nominal.__getitem__, nominal, patterns), strict=True)
     alignment = aligned(ties, seats, IDENTITY)
     taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
     for k, datum in enumerate(frame.datums):
@@ -81,7 +85,7 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
                 f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
                 "that it could take; leave it out"
             )
-    return DatumSeats(frame, alignment, nominal, tuple(datums))
+    return DatumSeats(frame, alignment, nominal, tuple(datums), patterns)
 
 
 def _refuse_few_targets(frame: DatumFrame) -> None:
@@ -100,7 +104,7 @@ def _refuse_few_targets(frame: DatumFrame) -> None:
 def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> None:
     """Refuse a common datum of several whose centres lie on no line, or two of them in one place, nominally."""
     for datum in frame.datums:
-        if len(datum.features) < 2:
+        if len(datum.features) < 2 or datum.simulator == "pattern":
             continue
         places = np.concatenate([nominal[name].origin.reshape(3, -1)[:, :1] for name in datum.features], axis=1).T
         name = "-".join(own.partition(".")[2] for own in datum.features)
@@ -108,7 +112,8 @@ def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -
         if len(places) > 2 and spread[1] > ABREAST:
             raise InputError(
                 f"datum frame {frame.name}: the centres of the common datum {name} lie off a line nominally, by "
-                f"{spread[1]:.3g} mm: expected them on one; name two of them, or single ones in order"
+                f"{spread[1]:.3g} mm: expected them on one; beside each other they are a pattern, write {{feature: "
+                f"{name}, simulator: pattern}}"
             )
         along = np.sort(places @ ways[0])
         if len(places) > 2 and np.diff(along).min() < ABREAST:
@@ -117,20 +122,38 @@ def _refuse_scattered(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -
             )
 
 
-def _nominal(feature: Feature) -> ActualFeature:
-    bare = Feature(feature.name, feature.part, feature.shape, feature.frame)
-    return actual(bare, Pose.of(feature.frame), np.zeros((0, 1)))
-
-
 def _asked(
-    frame: DatumFrame, features: Actual, nominal: Mapping[str, ActualFeature]
+    frame: DatumFrame, features: Actual, nominal: Mapping[str, ActualFeature], patterns: Mapping[int, Pattern]
 ) -> Iterator[tuple[int, Tie, Seat]]:
     """Number of the datum, its constraint, and the seat."""
+    seats: list[Seat] = []
     for k, datum in enumerate(frame.datums):
         own = [features(name) for name in datum.features]
         simulators = [nominal[name] for name in datum.features]
-        for tie, seat in _line(own, simulators) if len(own) > 1 else _single(datum, k, own[0], simulators[0]):
-            yield k, Tie(f"datum frame {frame.name}: {'-'.join(datum.features)}", *tie), seat
+        asks: Iterable[tuple[Asks, Seat]]
+        if k in patterns:
+            asks = zip(patterns[k].ties, patterns[k].seats(seats, own), strict=True)
+        else:
+            asks = _line(own, simulators) if len(own) > 1 else _single(datum, k, own[0], simulators[0])
+        for tie, seat in list(asks):
+            seats.append(seat)
+            yield k, Tie(_name(frame, datum), *tie), seat
+
+
+def _name(frame: DatumFrame, datum: Datum) -> str:
+    return f"datum frame {frame.name}: {'-'.join(datum.features)}"
+
+
+def _patterns(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> dict[int, Pattern]:
+    """The patterns among its datums, by their numbers."""
+    found: dict[int, Pattern] = {}
+    for k, datum in enumerate(frame.datums):
+        if datum.simulator == "pattern":
+            first = replace(frame, datums=frame.datums[:k])
+            asked = list(_asked(first, nominal.__getitem__, nominal, found))
+            ties, seats = [tie for _, tie, _ in asked], [seat for _, _, seat in asked]
+            found[k] = pattern(_name(frame, datum), ties, seats, [nominal[name] for name in datum.features])
+    return found
 
 
 def _line(own: Sequence[ActualFeature], simulators: Sequence[ActualFeature]) -> Iterator[tuple[Asks, Seat]]:

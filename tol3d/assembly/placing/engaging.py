@@ -16,7 +16,16 @@ from tol3d.assembly.placing.engaged_places import at_places, engaged_arrays
 from tol3d.assembly.placing.engaged_poses import engaged_poses_found
 from tol3d.assembly.placing.floats import Floats, floats_of
 from tol3d.assembly.placing.mating import KeptRelations, Mating, kept_motions, kept_of, mating
-from tol3d.assembly.placing.poses import Codes, Pose, column, cross, dot, product, rotated, rotated_back
+from tol3d.assembly.placing.poses import (
+    Codes,
+    Pose,
+    column,
+    full,
+    moved_about,
+    product,
+    rotated,
+    rotated_back,
+)
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
@@ -71,7 +80,7 @@ class Engaging:
         """The world after the move, and status codes (n,)."""
         start, seats = Pose.of(world.assembly.part[self.move.part].pose), self.mating.seats(world)
         pose, codes = self.mating.poses(world, seats, start)
-        pose, count = _full(pose, world.trials), world.trials
+        pose, count = full(pose, world.trials), world.trials
         if self.nudge is not None:
             pose, _ = self.mating.poses(world, seats, self._moved(pose, self.nudge[:, None] * np.ones(count)))
             return world.with_part_at(self.move.part, pose), codes
@@ -157,27 +166,6 @@ class Engaging:
         return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
 
 
-def moved_about(pose: Pose, middle: Array, shift: Array, turn: Array) -> Pose:
-    """A pose turned further about a middle (3,) by a vector (3, n), of angle 2 atan(length / 2), and shifted (3, n)."""
-    half = turn / 2
-    share = 2.0 / (1.0 + dot(half, half))
-
-    def turned(vector: Array) -> Array:
-        across = cross(half, vector)
-        return np.asarray(vector + share * (across + cross(half, across)))
-
-    arm = pose.shift - column(middle)
-    columns = [turned(pose.turn[:, k]) for k in range(3)]
-    return Pose(np.stack(columns, axis=1), column(middle) + turned(arm) + shift)
-
-
-def _full(pose: Pose, trials: int) -> Pose:
-    """With a trial of its own each."""
-    return Pose(
-        np.array(np.broadcast_to(pose.turn, (3, 3, trials))), np.array(np.broadcast_to(pose.shift, (3, trials)))
-    )
-
-
 def engaging(move: Engage, nominal: World) -> Engaging:
     """A move with play.
 
@@ -254,7 +242,7 @@ def _free(mate: Mating, world: World, start: Pose, middle: Array, reach: float) 
     ends, seats = [], mate.seats(world)
     for sign in (1.0, -1.0):
         motion = sign * NUDGE * np.eye(6)
-        many = moved_about(_full(start, 6), middle, motion[:, :3].T, motion[:, 3:].T / reach)
+        many = moved_about(full(start, 6), middle, motion[:, :3].T, motion[:, 3:].T / reach)
         poses = [Pose(many.turn[:, :, k : k + 1], many.shift[:, k : k + 1]) for k in range(6)]
         ends.append([mate.poses(world, seats, pose)[0] for pose in poses])
     made = np.empty((6, 6))

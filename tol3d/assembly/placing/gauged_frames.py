@@ -11,15 +11,14 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Engage, Floating, Gauges
+from tol3d.assembly.model import Engage, Floating, Gauges
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
-from tol3d.assembly.placing.alignment import Alignment, Seat, Tie
+from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.datum_seats import DatumSeats
-from tol3d.assembly.placing.engaging import SEEN, moved_about
-from tol3d.assembly.placing.freedoms import aligned
-from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, column, dot
+from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.placing.seen_motions import SeenMotions, seen_motions
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 12
@@ -63,7 +62,7 @@ class GaugeFloats:
         size = np.sqrt(sum(own * own for own in along))
         along = along / np.where(size > 0.0, size, 1.0)
         way = self._way(offsets, clearances, rows, centred, along)
-        share = drawn[6] ** (1.0 / len(centred)) * way
+        share = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(centred)) * way  # slopes ask beyond its ends
         return np.asarray(centred + np.where((slacks > 0.0) & (size > 0.0), share, 0.0) * along)
 
     def _way(self, offsets: Array, clearances: Array, rows: Array, centred: Array, along: Array) -> Array:
@@ -85,37 +84,16 @@ class GaugeFloats:
         return np.where(np.isfinite(way), way, 0.0)
 
 
-HELD: Final = 1e-6
-"""Part of a motion that affects earlier datums, below which they do not hold it."""
-
-
 @dataclass(frozen=True, eq=False)
-class GaugedFrame:
-    """The gauges of a datum frame, as they lie nominally.
+class GaugedFrame(SeenMotions):
+    """The gauges of a datum frame, as they lie nominally: as the datum features at their boundary see the part.
 
     Args:
         gauges: the gauges.
-        kept: of the datums before them, in order.
-        count: how many ties these make.
-        nominal: the datum features at their boundary, in order.
-        middle: of all places (3,) [mm].
-        reach: of them about it [mm].
-        freedoms: motions that earlier datums leave and gauges see: shift of the middle, turn times reach (6, freedoms),
-            orthonormal.
-        motions: by these, with the least turn and the least shift of the middle that gauges do not see (6, freedoms).
-        rows: change of each offset by them (cones, 2, freedoms).
         floats: position of the part within the clearance.
     """
 
     gauges: Gauges
-    kept: Alignment
-    count: int
-    nominal: tuple[ActualFeature, ...]
-    middle: Array
-    reach: float
-    freedoms: Array
-    motions: Array
-    rows: Array
     floats: GaugeFloats
 
     def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
@@ -147,28 +125,6 @@ class GaugedFrame:
         lost = ~(found & (lacking < LOST))
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
 
-    def as_kept(self, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Codes]:
-        """A pose corrected to keep the datums before the gauges."""
-        pose, codes = self.kept.poses(seats[: self.count], start)
-        return full(pose, start.shift.shape[1]), codes
-
-    def moved(self, pose: Pose, steps: Array) -> Pose:
-        """A pose after steps (freedoms, n) as finite motions."""
-        motion = np.einsum("rf,fn->rn", self.motions, steps, optimize=False)
-        return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
-
-    def offsets(self, pose: Pose, features: Sequence[ActualFeature], trials: int) -> Array:
-        """Offsets of the datum features from their gauges (cones, 2, n) [mm]."""
-        found = np.zeros((len(self.rows), 2, trials))
-        k = 0
-        for own, nominal in zip(features, self.nominal, strict=True):
-            seen = own.moved(pose)
-            for end, place in zip(seen.ends, nominal.ends, strict=True):
-                for r, across in enumerate(_across(nominal)):
-                    found[k, r] = dot(column(across), end - place)
-                k += 1
-        return found
-
     def clearances(self, features: Sequence[ActualFeature], columns: Array) -> Array:
         """Clearance of each offset (cones, n) [mm]."""
         found = np.empty((len(self.rows), columns.shape[1]))
@@ -192,69 +148,10 @@ def with_gauges(seats: Mapping[str, DatumSeats]) -> dict[str, DatumSeats]:
 def _gauged(seats: DatumSeats, gauges: Gauges) -> GaugedFrame:
     """The gauges of a datum frame, by its nominal geometry."""
     frame, nominal = seats.frame, [seats.nominal[own.feature] for own in gauges.rooms]
-    at = np.concatenate([np.array([end[:, 0] for end in own.ends]) for own in nominal])
-    middle = at.mean(axis=0)
-    reach = max(float(np.linalg.norm(at - middle, axis=1).max()), 1.0)
-    first = len(frame.datums) - len(gauges.rooms)
-    ties = [tie for tie, k in zip(seats.alignment.ties, seats.datums, strict=True) if k < first]
+    ties = [tie for tie, k in zip(seats.alignment.ties, seats.datums, strict=True) if k < frame.regardless]
     its = seats.of(seats.nominal.__getitem__)[: len(ties)]
-    ways = np.concatenate([np.array([_rows_of(own, end, middle, reach) for end in own.ends]) for own in nominal])
-    free = _left(ties, its, middle, reach)
-    _, sizes, right = np.linalg.svd((ways @ free).reshape(-1, free.shape[1]), full_matrices=True)
-    rank = int(np.sum(sizes > SEEN))
-    freedoms = free @ right[:rank].T
-    motions = _least_motions(freedoms, free @ right[rank:].T)
+    seen = seen_motions(ties, its, nominal)
     floating = gauges.floating or Floating("centred")
+    freedoms = seen.freedoms
     floats = GaugeFloats(Engage(frame.name, frame.part, (), (), floating), freedoms, np.zeros(freedoms.shape[1]))
-    rows, kept = np.ascontiguousarray(ways @ freedoms), aligned(ties, its, IDENTITY)
-    return GaugedFrame(gauges, kept, len(ties), tuple(nominal), middle, reach, freedoms, motions, rows, floats)
-
-
-def _least_motions(seen: Array, unseen: Array) -> Array:
-    """Motions that are seen (6, motions), with unseen ones (6, unseen) so that they turn, then shift least."""
-    found, left = seen, unseen
-    for rows in (np.eye(6)[3:], np.eye(6)[:3]):
-        acts = np.where(np.abs(rows @ left) < HELD, 0.0, rows @ left)
-        found = found - left @ np.linalg.pinv(acts, rcond=HELD) @ rows @ found
-        left = left @ np.linalg.svd(acts)[2][int(np.linalg.matrix_rank(acts, HELD)) :].T
-    return found
-
-
-def _across(nominal: ActualFeature) -> Array:
-    """Directions in which a gauge is limited: two of a pin, one of a blade (directions, 3)."""
-    frame = nominal.feature.frame[:3, :3].T
-    return frame[:2] if isinstance(nominal.feature.shape, Axis) else frame[2:]
-
-
-def _rows_of(nominal: ActualFeature, end: Array, middle: Array, reach: float) -> Array:
-    """Change of an offset per shift of the middle and turn times reach (2, 6)."""
-    found = np.zeros((2, 6))
-    for r, across in enumerate(_across(nominal)):
-        found[r] = point_row(end[:, 0] - middle, across, reach)
-    return found
-
-
-def point_row(arm: Array, direction: Array, reach: float) -> Array:
-    """Displacement of a point along a direction per shift of the middle and turn times reach (6,)."""
-    return np.concatenate([direction, np.cross(arm, direction) / reach])
-
-
-def _left(ties: Sequence[Tie], seats: Sequence[Seat], middle: Array, reach: float) -> Array:
-    """Orthonormal motions (6, free) that ties leave."""
-    rows = [np.zeros((0, 6))]
-    for tie, seat in zip(ties, seats, strict=True):
-        toward = np.eye(3)[:, :1] if seat.toward is None else seat.toward
-        sides = np.linalg.svd(toward.T)[2][1:]
-        held = {"all": np.eye(3), "along": toward.T, "across": sides}[tie.held]
-        rows.append(np.array([point_row(seat.target[:, 0] - middle, own, reach) for own in held]))
-        if tie.turning == "direction":
-            rows.append(np.hstack([np.zeros((2, 3)), sides]))
-    _, sizes, right = np.linalg.svd(np.concatenate(rows))
-    return np.asarray(right[int(np.sum(sizes > HELD)) :].T)
-
-
-def full(pose: Pose, trials: int) -> Pose:
-    """With a trial of its own each."""
-    return Pose(
-        np.array(np.broadcast_to(pose.turn, (3, 3, trials))), np.array(np.broadcast_to(pose.shift, (3, trials)))
-    )
+    return GaugedFrame(**vars(seen), gauges=gauges, floats=floats)

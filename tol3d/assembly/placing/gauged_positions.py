@@ -13,9 +13,10 @@ import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame, full, point_row
-from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot
+from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame
+from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot, full
 from tol3d.assembly.placing.rooms import room_found
+from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
 

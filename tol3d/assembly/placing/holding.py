@@ -13,6 +13,7 @@ from tol3d.assembly.model import (
     Datum,
     DatumFrame,
     Engage,
+    Feature,
     Locate,
     Mate,
     Move,
@@ -25,10 +26,12 @@ from tol3d.assembly.model import (
     Touch,
 )
 from tol3d.assembly.placing import contact_equations
+from tol3d.assembly.placing.actual_feature import nominally
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.mating import asked_of
 from tol3d.assembly.placing.plan import Placing
 from tol3d.assembly.placing.resting import Resting
+from tol3d.assembly.placing.seen_motions import sides_of
 from tol3d.assembly.placing.touching import Touching
 from tol3d.numerics.arrays import Array
 
@@ -184,6 +187,8 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
     features = [assembly.features[name] for name in datum.features]
     frame = features[0].frame
     at, z = frame[:3, 3], frame[:3, 2]
+    if datum.simulator == "pattern":
+        return np.concatenate([own for each in features for own in _of_places(each)])
     if len(features) > 1:
         line = features[-1].frame[:3, 3] - at
         return _line(at, line / np.linalg.norm(line))
@@ -194,6 +199,12 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
     if datum.simulator == "targets" and datum.targets is not None and place > 0:
         return np.concatenate([_point(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])
     return np.concatenate([_point(at, z[None]), _direction(z)])
+
+
+def _of_places(feature: Feature) -> Iterator[Array]:
+    """The rows of a feature of a pattern: of each of its places, along the directions in which that counts."""
+    nominal = nominally(feature)
+    return (_point(end[:, 0], np.array(sides)) for end in nominal.ends for sides in sides_of(nominal))
 
 
 def held_by(assembly: Assembly, plan: Placing) -> Freedoms:

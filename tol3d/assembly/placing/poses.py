@@ -144,3 +144,24 @@ class Pose:
 
 IDENTITY = Pose.of(np.eye(4))
 """Nothing is moved."""
+
+
+def moved_about(pose: Pose, middle: Array, shift: Array, turn: Array) -> Pose:
+    """A pose turned further about a middle (3,) by a vector (3, n), of angle 2 atan(length / 2), and shifted (3, n)."""
+    half = turn / 2
+    share = 2.0 / (1.0 + dot(half, half))
+
+    def turned(vector: Array) -> Array:
+        across = cross(half, vector)
+        return np.asarray(vector + share * (across + cross(half, across)))
+
+    arm = pose.shift - column(middle)
+    columns = [turned(pose.turn[:, k]) for k in range(3)]
+    return Pose(np.stack(columns, axis=1), column(middle) + turned(arm) + shift)
+
+
+def full(pose: Pose, trials: int) -> Pose:
+    """With a trial of its own each."""
+    return Pose(
+        np.array(np.broadcast_to(pose.turn, (3, 3, trials))), np.array(np.broadcast_to(pose.shift, (3, trials)))
+    )

@@ -59,7 +59,9 @@ def _without_any(datums: Sequence[Sequence[Displaced]], columns: Columns) -> Fre
 def _take(freedoms: Freedoms, datum: Datum, features: Sequence[Displaced], columns: Columns) -> None:
     """Take what a datum holds, and the turn to it, about its centre: of several the middle of theirs."""
     (feature, torsor), *others = features
-    if others:
+    if datum.simulator == "pattern":
+        _take_pattern(freedoms, features)
+    elif others:
         _take_line(freedoms, features)
     else:
         _take_one(freedoms, datum, feature, torsor, columns)
@@ -158,6 +160,22 @@ def _take_line(freedoms: Freedoms, features: Sequence[Displaced]) -> None:
     _take_axis(freedoms, middle, perpendicular(apart / np.linalg.norm(apart)), torsor)
 
 
+def _take_pattern(freedoms: Freedoms, features: Sequence[Displaced]) -> None:
+    """A pattern: least squares of what its places are off, of each feature where and as its position is judged."""
+    rows, values = [], []
+    for feature, torsor in features:
+        turn, shape = feature.frame[:3, :3], feature.shape
+        if isinstance(shape, RoundPlane):
+            ends = shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+        else:
+            ends = shape.ends
+        sides = turn.T[:2] if isinstance(shape, Axis) else turn.T if isinstance(shape, Point) else turn.T[2:]
+        for end in ends:
+            rows.append(sides @ shift_at(turn @ end + feature.frame[:3, 3]))
+            values.append(rows[-1] @ torsor)
+    freedoms.take(np.concatenate(rows), np.concatenate(values))
+
+
 class PartTorsors:
     """Displacements of a part's features and datum frames, in the part's frame.
 
@@ -211,7 +229,7 @@ class PartTorsors:
             frame = self._frames[name]
             assert frame.gauges is not None
             rooms, datums = frame.gauges.rooms, self._datums(frame)
-            kept = kept_by(frame, datums, self._columns, len(datums) - len(rooms))
+            kept = kept_by(frame, datums, self._columns, frame.regardless)
             its = [(self._features[own.feature], self.feature(own.feature)) for own in rooms]
             self._rooms[name] = gauges_room(rooms, its, kept, self.size, self._columns)
         return self._rooms[name]
