@@ -85,6 +85,14 @@ CALLOUTS: Final[Mapping[str, tuple[Frame, ...]]] = {
         Frame("position", (("⌀0.2", "A", "BⓂ"),), "near", ("SIM REQT",)),
         Frame("position", (("⌀0.1", "A", "BⓂ"),), "far", ("SIM REQT",)),
     ),
+    "pattern_datum": (
+        Frame("position", (("⌀0.3", "A"),), "4 × ⌀8", ("the pattern is datum B",)),
+        Frame("position", (("⌀0.1", "A", "B"),), "bore", ("regardless of the sizes of the holes",)),
+        Frame("position", (("⌀0.1", "A", "BⓂ"),), "rim", ("on a gauge of four pins",)),
+    ),
+    "datum_targets": (
+        Frame("position", (("⌀0.3", "A", "B", "C"),), "hole", ("A at A1, A2, A3; B at B1, B2; C at C1",)),
+    ),
     "common_datum": (Frame("coaxiality", (("⌀0.02", "A-B-C"),), "nose", ("to the line through three bores",)),),
 }
 """Frames of each picture, one below the other."""

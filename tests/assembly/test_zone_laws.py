@@ -122,7 +122,8 @@ def test_check_and_run_tell_the_sigma_of_the_middle_under_each_law(law: str, tol
     path, count = tmp_path / "scene.yaml", 20_000
     path.write_text(text, encoding="utf-8")
     _, checked, _ = tol3d("check", str(path))
-    _, shown, _ = tol3d("run", str(path), "--trials", str(count), "--no-picture", "--out", str(tmp_path / "run"))
+    told = ("run", str(path), "-v", "--trials", str(count), "--no-picture", "--out", str(tmp_path / "run"))
+    _, shown, _ = tol3d(*told)
     run = open_run(tmp_path / "run").summary["measures"]
     for name, tolerance, sigma in zip(("height", "aside"), ("profile", "position"), SIGMAS[law], strict=True):
         assert run[name]["law_sigmas_um"] == pytest.approx({tolerance: sigma}, rel=1e-7)

@@ -14,6 +14,7 @@ import pytest
 import typer
 from fixtures import Command
 from places import ROOT, SCENES
+from typer.core import TyperGroup
 
 from tol3d import load_scene
 from tol3d.cli import app
@@ -56,7 +57,9 @@ def is_read_only(command: str, later: Sequence[str]) -> bool:
     return any(re.search(own, command) for own in READ_ONLY)
 
 
-COMMANDS: Final = typer.main.get_command(app).commands  # type: ignore[attr-defined]  # of a group
+GROUP: Final = typer.main.get_command(app)
+assert isinstance(GROUP, TyperGroup)
+COMMANDS: Final = GROUP.commands
 PAGES: Final[Mapping[str, list[str]]] = {
     page.name: commands
     for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))

@@ -115,7 +115,7 @@ def test_tables_call_failures_by_the_mechanism_s_own_words(run: Run) -> None:
     assert run.summary["status_words"] == {"clashes": "clashing"}
     text = printed(run_report(run.found), 160)
     assert row_of(text, "trials clashing")[-1] == str(counted["clashes"])
-    assert f"{counted['ok']} seated, {counted['clashes']} clashing (" in text
+    assert f"{counted['ok']} assembled, {counted['clashes']} could not be assembled (" in text
     assert "a build that is clashing is below every lower limit" in " ".join(text.split())
     assert worst_words(run.found) == "clashing, the deepest by least gap or slide"
 
