@@ -36,6 +36,8 @@ def elsewhere(scene: Mapping[str, Any]) -> Mapping[str, Any]:
     def renamed(value: Any, key: str = "") -> Any:
         if isinstance(value, dict):
             return {own: renamed(what, own) for own, what in value.items()}
+        if key == "targets":
+            return [shifted(own) for own in value]
         if isinstance(value, list):
             return [renamed(own, key) for own in value]
         return pattern.sub(lambda found: names[found[1]], value) if key in REFERENCES else value
