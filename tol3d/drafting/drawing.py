@@ -295,7 +295,9 @@ class Drawing:
     def say_of(self, tolerance: Tolerance, meaning: Meaning, group: Group, datums: tuple[tuple[str, str], ...]) -> None:
         """A tolerance of one group of features."""
         kind = self.kind_of(tolerance, meaning, group)
-        remark = source(tolerance)
+        alike = [each.id for each, its in self.tolerances if each.above == tolerance.id and its.kind == meaning.kind]
+        segments = ", ".join(f"#{own}" for own in alike)
+        remark = (f"(lower segment {segments}) " if alike else "") + source(tolerance)
         name = self.names.new(tolerance.name or kind.replace("_", " "), kind, len(group.members))
         locates = tolerance.kind in LOCATIONS and kind not in TURNED and kind not in FORMS
         if locates and kind not in INSPECTED and group.name in self.located:
