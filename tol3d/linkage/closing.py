@@ -161,7 +161,7 @@ def newton(model: Any, state: Any, scale: Any, length: float, work: Any, room: A
         copy_matrix(square, matrix)
         copy(vector, right)
         sign, least = eliminated(square, vector)
-        if sign == 0.0 or not np.isfinite(vector[0]):
+        if sign == 0.0 or (count > 0 and not np.isfinite(vector[0])):  # a loop of its input alone has no column
             return -1, sign, least
         taken = stepped(model, state, scale, vector, moved, room)
         if not taken < np.inf:
