@@ -86,7 +86,7 @@ def as_the_site_reads(app: Any, name: str, source: list[str]) -> None:
 
 
 def first_sentence(app: Any, what: str, name: str, found: object, options: object, lines: list[str]) -> None:
-    """Of a module's docstring only what it is: the rest is for readers of its source."""
+    """Keep the first line of a module's docstring: the rest is for readers of its source."""
     if what == "module":
         del lines[1:]
 

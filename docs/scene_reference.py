@@ -244,12 +244,12 @@ class Reference:
 
 
 def _is_word(field: str, node: Node) -> bool:
-    """Whether a field is the word by which its definition is chosen."""
+    """True if a field is the word by which its definition is chosen."""
     return field == "kind" and "const" in node
 
 
 def _loaded(text: str) -> Any:
-    """What a text says; nothing if it is none of YAML, as what is printed in a page."""
+    """Data of a YAML text; None for other text, such as output printed on a page."""
     try:
         return yaml.load(text, LOADER)
     except yaml.YAMLError:

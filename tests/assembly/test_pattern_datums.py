@@ -51,7 +51,7 @@ def tip(assembly: Assembly, rows: Array) -> tuple[Array, Array]:
 
 
 def off(draft: Draft, row: Array, count: int) -> Array:
-    """How far centres of holes lie off (count, 2) [mm]."""
+    """Offsets of the centres of holes (count, 2) [mm]."""
     own = dict(zip(draft.columns, row, strict=True))
     return np.array([[(own[f"p.h{k} start {c}"] + own[f"p.h{k} end {c}"]) / 2 for c in "xy"] for k in range(count)])
 
@@ -62,7 +62,7 @@ def with_floor_still(draft: Draft, rows: Array) -> Array:
 
 
 def carried(start: Array, end: Array) -> Array:
-    """Where the tip lies (2,) after the rotation and shift of least squares from places to places (Kabsch 1976)."""
+    """Place of the tip (2,) after the rotation and shift of least squares from places to places (Kabsch 1976)."""
     a, b = start - start.mean(axis=0), end - end.mean(axis=0)
     left, _, right = np.linalg.svd(a.T @ b)
     turn = (left @ np.diag([1.0, np.linalg.det(left @ right)]) @ right).T
@@ -190,6 +190,26 @@ def test_what_lies_to_a_pattern_is_inspected_within_its_zone(drawn: str, read: s
     for method in ("exact", "analytic"):
         values = made.drawn(2000, method)["off"]
         assert 0.9 * 0.1 < values.max() <= 0.1 + 1e-6
+
+
+def test_a_datum_without_a_zone_of_its_own_has_a_gauge_of_its_mmc_size(tmp_path: Path) -> None:
+    """A pin of 8 mm leaves a hole of 8 + s half of s: a bore that is d aside is inspected at 2 max(0, |d| - s/2)."""
+    text = SCENE.replace("        pattern: {rows: 2, columns: 2, pitch: [40 mm, 20 mm]}\n", "")
+    text = text.replace("[-20 mm, -10 mm, 5 mm]", "[-40 mm, 0 mm, 5 mm]")
+    start, end = text.index("  holes: "), text.index("  hole size: ")
+    text = text[:start] + text[end:]
+    zone = text[text.index("  bore: {kind: position") : text.index("moves:")]
+    law = "distribution: {kind: uniform, lower: -0.1 mm, upper: 0.1 mm}"
+    text = text.replace(zone, f"  aside: {{kind: plus_minus, of: plate.bore, along: [1, 0, 0], {law}}}\n")
+    read = "  size: {kind: inspected_size, of: plate.hole}\n"
+    read += "  x: {kind: gap, from: plate.hole, to: plate.bore, along: [1, 0, 0]}\n"
+    text = text.replace("READ", "{feature: hole, mmb: least}").replace("  off: ", f"{read}  off: ")
+    made = assembled(text, tmp_path)
+    for method in ("exact", "analytic"):
+        found = made.drawn(500, method)
+        wanted = 2 * np.maximum(0.0, np.abs(found["x"] - 40) - (found["size"] - 8) / 2)
+        np.testing.assert_allclose(found["off"], wanted, atol=1e-6, rtol=0)
+        assert wanted.max() > 0.15
 
 
 @pytest.mark.parametrize(

@@ -349,7 +349,7 @@ class Meanings:
         return "; ".join(lost)
 
     def boundary_loss(self, tolerance: Tolerance) -> str:
-        """What is lost of datums at their boundary: it counts from a size, which has to have limits."""
+        """Loss of datums at their boundary in words: their bonus counts from a size, which has to have limits."""
         references = [own for each in tolerance.datums for own in each.references if set(own.modifiers) & MATERIAL]
         known = [self.datum(own) for own in references]
         if all(own is not None and self.has_size(self.datum_features[own.id]) for own in known):

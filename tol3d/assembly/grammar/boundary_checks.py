@@ -77,7 +77,7 @@ def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bo
     known = drawing.features[part]
     if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None or any(own.is_several for own in datums):
         return False
-    if not drawing.of(f"{part}.{datums[1].features[0]}", FeatureTolerance):
+    if not _has_place(drawing, f"{part}.{datums[1].features[0]}"):
         return False  # nothing orients it to the plane
     plane, hole = (known.get(own.features[0]) for own in datums)
     if plane is None or hole is None or (plane.kind, hole.kind) != ("plane", "cylinder"):
@@ -99,9 +99,8 @@ def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k:
         k: the number of the datum.
     """
     located = [own.spec for own in drawing.of(feature, LocationSpec) if isinstance(own.spec, LocationSpec)]
-    zones = [*located, *drawing.of(feature, OrientationSpec), *drawing.of(feature, PlusMinusSpec)]
     earlier = datums[:k]
-    if not zones or (k == 0 and not datums[k].is_several):
+    if not _has_place(drawing, feature) or (k == 0 and not datums[k].is_several):
         return 0.0
     if datums[k].is_several and located:
         lower = located[0].lower_segment if isinstance(located[0], Composite) else None
@@ -117,6 +116,12 @@ def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k:
             if isinstance(spec, OrientationSpec | LocationSpec) and _names(spec.named_datums) == names:
                 return spec.zone.size
     return None
+
+
+def _has_place(drawing: Drawing, feature: str) -> bool:
+    """True if a tolerance other than of its size is of a feature: without one its gauge is of its MMC size."""
+    kinds: tuple[type[FeatureTolerance], ...] = (LocationSpec, OrientationSpec, PlusMinusSpec)
+    return any(drawing.of(feature, kind) for kind in kinds)
 
 
 def _names(datums: Sequence[DatumSpec]) -> list[tuple[str, ...]]:

@@ -109,6 +109,6 @@ class DatumFrame:
 
     @property
     def regardless(self) -> int:
-        """How many datums, the first ones, are met regardless of their sizes."""
+        """Number of datums, the first ones, that are met regardless of their sizes."""
         at_boundary = {own.feature for own in self.gauges.rooms} if self.gauges is not None else set()
         return sum(at_boundary.isdisjoint(own.features) for own in self.datums)

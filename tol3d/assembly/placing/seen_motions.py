@@ -24,7 +24,7 @@ SEEN: Final = 1e-6
 HELD: Final = 1e-6
 """Part of a motion that earlier datums see, under which they do not hold it."""
 ROUNDS: Final = 5
-"""Of least squares; each leaves a turn's share, 1e-3 or less, of what it corrects."""
+"""Rounds of least squares; each leaves a turn's share, 1e-3 or less, of what it corrects."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class SeenMotions:
         return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
 
     def offsets(self, pose: Pose, features: Sequence[ActualFeature], trials: int) -> Array:
-        """How far the features lie off their nominal places (cones, 2, n) [mm]."""
+        """Offsets of the features from their nominal places (cones, 2, n) [mm]."""
         found = np.zeros((len(self.rows), 2, trials))
         for k, (end, place, sides) in enumerate(self._places(pose, features)):
             for r, across in enumerate(sides):
@@ -107,7 +107,7 @@ class Pattern(SeenMotions):
             yield Seat(point, middle, rotated_back(pose.turn, toward), toward)
 
     def _laid(self, before: Sequence[Seat], features: Sequence[ActualFeature]) -> Pose:
-        """Where the part has the least squares (n,)."""
+        """Pose of the part with the least sum of squares (n,)."""
         trials = max([own.origin.shape[1] for own in features] + [own.point.shape[1] for own in before])
         size, middle = self.motions.shape[1], column(self.middle)
         pose, _ = self.as_kept(before, full(IDENTITY, trials))
@@ -207,7 +207,7 @@ def sides_of(nominal: ActualFeature) -> Sequence[Array]:
 
 
 def _rows_of(end: Array, sides: Array, middle: Array, reach: float) -> Array:
-    """How an offset changes with the shift of the middle and turn times reach (2, 6)."""
+    """Change of an offset with the shift of the middle and turn times reach (2, 6)."""
     found = np.zeros((2, 6))
     for r, across in enumerate(sides):
         found[r] = point_row(end[:, 0] - middle, across, reach)
@@ -215,7 +215,7 @@ def _rows_of(end: Array, sides: Array, middle: Array, reach: float) -> Array:
 
 
 def point_row(arm: Array, direction: Array, reach: float) -> Array:
-    """How a point moves along a direction with the shift of the middle and turn times reach (6,)."""
+    """Motion of a point along a direction with the shift of the middle and turn times reach (6,)."""
     return np.concatenate([direction, np.cross(arm, direction) / reach])
 
 
