@@ -295,9 +295,9 @@ class Drawing:
     def say_of(self, tolerance: Tolerance, meaning: Meaning, group: Group, datums: tuple[tuple[str, str], ...]) -> None:
         """A tolerance of one group of features."""
         kind = self.kind_of(tolerance, meaning, group)
-        alike = [each.id for each, its in self.tolerances if each.above == tolerance.id and its.kind == meaning.kind]
-        segments = ", ".join(f"#{own}" for own in alike)
-        remark = (f"(lower segment {segments}) " if alike else "") + source(tolerance)
+        below = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
+        segments = ", ".join(f"#{own.id}" for own in below)
+        remark = (f"(lower segment {segments}) " if below else "") + source(tolerance)
         name = self.names.new(tolerance.name or kind.replace("_", " "), kind, len(group.members))
         locates = tolerance.kind in LOCATIONS and kind not in TURNED and kind not in FORMS
         if locates and kind not in INSPECTED and group.name in self.located:
@@ -310,7 +310,6 @@ class Drawing:
         wordings = list(self.wordings(tolerance, kind, group, datums, has_law=has_law))
         if not has_law or kind in FORMS:  # a form has a law only where a contact reads it
             wordings += self.wordings(tolerance, kind, group, datums, has_law=not has_law)
-        below = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
         entry = Entry(
             "tolerances", scalar(name), [Wording((line,), remark, lost) for line, lost in wordings],
             tolerance.id, remark, below=tuple(each.id for each in below),
