@@ -215,7 +215,7 @@ def command(names: dict[str, Any]) -> Callable[..., str]:
 @pytest.mark.slow
 def test_the_command_runs_shows_and_compares_it(names: dict[str, Any], command: Callable[..., str]) -> None:
     """Installed, it is as any other: the tables hold what the run from Python found."""
-    printed = command("run", "pin_gauge.yaml", "--out", "runs/again", "--workers", "2")
+    printed = command("run", "pin_gauge.yaml", "-v", "--out", "runs/again", "--workers", "2")
     sample = names["run"].summary["measures"]["smallest gap"]["geometric"]
     row = next(line for line in printed.splitlines() if line.startswith("mean "))
     assert float(row.split()[-1]) == round(sample["mean"], 3)

@@ -101,7 +101,7 @@ def test_plates_that_overlap_have_the_status_and_no_value(blocks: Assembled) -> 
 def test_an_overlap_counts_as_below_the_limit(tmp_path: Path, tol3d: Command) -> None:
     text = BLOCKS.replace("width: 0.4 mm", "width: 1.4 mm").replace("to: upper}", "to: upper, lower_limit: 0 mm}")
     (tmp_path / "scene.yaml").write_text(text, "utf-8")
-    code, out, err = tol3d("run", str(tmp_path / "scene.yaml"), "--no-picture", "--out", str(tmp_path / "run"))
+    code, out, err = tol3d("run", str(tmp_path / "scene.yaml"), "-v", "--no-picture", "--out", str(tmp_path / "run"))
     assert code == 0, err
     assert "a build that is overlapping is below every lower limit" in " ".join(out.split())
     assert "clearance from lower to upper, within 2 um by their meshes" in out
