@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from assembly_trials import assembled
+from scipy import sparse
 from scipy.optimize import linprog
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
@@ -122,6 +123,51 @@ def test_a_position_takes_its_least_over_the_shift_in_a_bore_alone(tmp_path: Pat
         np.testing.assert_allclose(found, 2 * left, atol=1e-9)
 
 
+SIZES = {"bore": "{kind: constant, value: 0.06 mm}, limits: [0 mm, 0.1 mm]", "slot": "{kind: constant, value: 0.05 mm}"}
+UNIFORM = "{kind: uniform, lower: 0 mm, upper: 0.1 mm}"
+
+
+@pytest.mark.parametrize("inner", [True, False])
+@pytest.mark.parametrize("key", ["mmb", "lmb"])
+def test_a_thousand_builds_on_gauges_at_both_boundaries_are_a_linear_programme(
+    tmp_path: Path, inner: bool, key: str
+) -> None:
+    """Four times 250 builds, in one programme: |y| <= c, |y + 72 turn|, |y + 88 turn| <= c', |y + 110 turn - f| <= t.
+
+    A hole of radius R holds the gauge of radius r off by e if e + r <= R, at its maximum material boundary. At the
+    least one a circle in the material about it holds the hole: e + R <= r. Of pins each is the other way round.
+    """
+    count = 250
+    text = plate("[floor, bore, slot]", BOTH.format("least").replace("mmb", key))
+    text = text.replace("near off", "near on").replace(SIZES["bore"], UNIFORM)
+    text = text.replace(f"{SIZES['slot']}, limits: [0 mm, 0.1 mm]", UNIFORM)
+    far = "far off: {kind: plus_minus, of: plate.far, along: [0, 1, 0], datums: [floor, bore, slot], distribution: "
+    text = text.replace(far + constant(0.0), far + "{kind: uniform, lower: -0.4 mm, upper: 0.4 mm}")
+    if not inner:
+        text = text.replace("hole: true", "hole: false").replace("width: 8 mm", "width: 8 mm, tab: true")
+    made = assembled(text, tmp_path)
+    trials = drawn(made.simulation, 0, count)
+    named = {own.name: trials.deviations[:, where][:, 0] for own, where in made.slices}
+    bore, slot = named["bore size"], named["slot size"]
+    holds = inner == (key == "mmb")  # larger features leave more room
+    rooms = [(s + t) / 2 if holds else (0.1 - s + t) / 2 for s, t in ((bore, 0.02), (slot, 0.03), (slot, 0.03))]
+    rows = np.array([[1.0, 0.0, 0.0], [1.0, 72.0, 0.0], [1.0, 88.0, 0.0], [1.0, 110.0, -1.0]])
+    limits = np.stack([*rooms, named["far off"]])
+    both = [rows, -rows * np.array([1.0, 1.0, -1.0])]  # t counts on both sides
+    sides = [limits, np.stack([*rooms, -named["far off"]])]
+    most = linprog(
+        np.tile([0.0, 0.0, 1.0], count),
+        sparse.vstack([sparse.kron(sparse.eye(count), own) for own in both]),
+        np.concatenate([own.T.ravel() for own in sides]),
+        bounds=[(None, None), (None, None), (0.0, None)] * count,
+    )
+    expected = 2 * most.x[2::3]
+    assert (expected > 1e-3).mean() > 0.3
+    assert (expected < 1e-9).any()
+    for method, within in (("analytic", 1e-6), ("exact", 1e-4)):
+        np.testing.assert_allclose(made.values(trials, method)["least"], expected, atol=within, rtol=0)
+
+
 def test_centred_gauges_read_as_datums_regardless_of_size_where_these_lie_true(tmp_path: Path) -> None:
     centred, plain = (
         assembled(plate(own, far=0.02), tmp_path) for own in (BOTH.format("centred"), "[floor, bore, slot]")
@@ -157,7 +203,13 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "{feature: slot, mmb: random}",
         "{feature: slot, mmb: centred}",
         "tolerances.near off.datums",
-        "expected one mmb for all datums of a frame, for their gauges are of one piece",
+        "expected one mmb (or lmb) for all datums of a frame, for their gauges are of one piece",
+    ),
+    "both boundaries": (
+        "{feature: slot, mmb: random}",
+        "{feature: slot, mmb: random, lmb: random}",
+        "tolerances.near off.datums[2].lmb",
+        "expected one boundary: mmb or lmb, got both",
     ),
     "without a size": (
         "  slot size: {kind: size, of: plate.slot, distribution: {kind: constant, value: 0.05 mm}, "

@@ -181,12 +181,19 @@ ALL = "hole 1-hole 2-hole 3-hole 4"
 
 
 @pytest.mark.parametrize(
-    ("drawn", "read"), [("simulator: pattern", "simulator: pattern"), ("mmb: random", "mmb: least")]
+    ("drawn", "read", "modifier"),
+    [
+        ("simulator: pattern", "simulator: pattern", ""),
+        ("mmb: random", "mmb: least", ""),
+        ("lmb: random", "lmb: least", ""),
+        ("lmb: random", "lmb: least", "modifier: mmc, "),  # holes of LMC size may be farther off, and have a gauge
+    ],
 )
-def test_what_lies_to_a_pattern_is_inspected_within_its_zone(drawn: str, read: str, tmp_path: Path) -> None:
-    made = assembled(
-        SCENE.replace("DRAWN", f"{{feature: {ALL}, {drawn}}}").replace("READ", f"{{feature: {ALL}, {read}}}"), tmp_path
-    )
+def test_what_lies_to_a_pattern_is_inspected_within_its_zone(
+    drawn: str, read: str, modifier: str, tmp_path: Path
+) -> None:
+    text = SCENE.replace("DRAWN", f"{{feature: {ALL}, {drawn}}}").replace("READ", f"{{feature: {ALL}, {read}}}")
+    made = assembled(text.replace("of: plate.hole, zone", f"of: plate.hole, {modifier}zone"), tmp_path)
     for method in ("exact", "analytic"):
         values = made.drawn(2000, method)["off"]
         assert 0.9 * 0.1 < values.max() <= 0.1 + 1e-6

@@ -186,6 +186,29 @@ def named(model: str) -> str:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("word", "key"), [(b"LEAST", "lmb"), (b"MAXIMUM", "mmb")])
+def test_datums_at_their_boundaries_are_gauges_of_both_kinds(word: bytes, key: str, tmp_path: Path) -> None:
+    """Holes B and C of CTC-01 at one boundary or the other: all that is to them lies in its zone on its gauge."""
+    content = nist_file("ctc_01")
+    modified = rb"\1,(SIMPLE_DATUM_REFERENCE_MODIFIER(.%s_MATERIAL_REQUIREMENT.)))" % word
+    data = re.sub(rb"(DATUM_REFERENCE_COMPARTMENT\([^;]*#3[89]),\$\)", modified, content.content)
+    (tmp_path / content.path.name).write_bytes(data)
+    text, _ = scene_from([FileContent(content.path, data)])
+    text = text.replace("distribution: {kind: normal,", "distribution: {kind: uniform,")  # within the limits
+    on_gauges = f"datums: [A, {{feature: B, {key}: random}}, {{feature: C, {key}: random}}]"
+    assert text.count(on_gauges) == 4
+    values, limits = measured(text, tmp_path, TRIALS)
+    read = [
+        name
+        for name, own in yaml.safe_load(text)["measures"].items()
+        if own["datums"][-1] == {"feature": "C", key: "least"}
+    ]
+    assert len(read) == 3
+    for name in read:
+        assert values["exact"][name].max() <= limits[name] + WITHIN, name
+
+
+@pytest.mark.slow
 def test_parts_of_one_file_have_datums_of_their_own_letters() -> None:
     """Two models in one file, their numbers shifted: both have datums A, B and C, which are others."""
     first, second = nist_file("ctc_01"), nist_file("ctc_05")

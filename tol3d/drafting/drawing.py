@@ -284,9 +284,10 @@ class Drawing:
                 raise StepError(f"datum {', '.join(missing)} is no feature of this scene")
             name = scalar("-".join(self.datums[own] for own in letters))
             plain.append(f"{{feature: {name}, simulator: pattern}}" if self.meanings.is_pattern(each) else name)
-            boundary = any(set(own.modifiers) & MATERIAL for own in each.references)
-            said.append(f"{{feature: {name}, mmb: random}}" if boundary else plain[-1])
-            read.append(f"{{feature: {name}, mmb: least}}" if boundary else plain[-1])
+            words = sorted({word for own in each.references for word in own.modifiers} & MATERIAL)
+            boundary = "lmb" if words and "least" in words[0] else "mmb"
+            said.append(f"{{feature: {name}, {boundary}: random}}" if words else plain[-1])
+            read.append(f"{{feature: {name}, {boundary}: least}}" if words else plain[-1])
         pairs = [(", ".join(said), ", ".join(read))]
         if said != plain:
             pairs.append((", ".join(plain), ", ".join(plain)))

@@ -230,8 +230,6 @@ class Meanings:
                 return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
             if set(each.modifiers) - MATERIAL:
                 return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
-            if any("least" in word for word in each.modifiers):
-                return f"datum {each.letter} at its least material boundary"
             shapes.append(shape)
         return self.together_obstacle(compartment, shapes)
 
@@ -248,9 +246,9 @@ class Meanings:
             return f"{what} of {len(surfaces)} features: a datum has {MOST_TOGETHER} at most"
         if not all(aligned(surfaces[0].direction, own.direction) for own in surfaces):
             return f"{what} of features that are not parallel"
-        bounded = [bool(set(each.modifiers) & MATERIAL) for each in compartment.references]
-        if any(bounded) and not all(bounded):
-            return f"{what} at the boundary of some of its features alone"
+        bounded = [set(each.modifiers) & MATERIAL for each in compartment.references]
+        if any(own != bounded[0] for own in bounded):
+            return f"{what} at different boundaries of its features"
         return ""
 
     def is_pattern(self, compartment: Compartment) -> bool:

@@ -1,4 +1,4 @@
-"""Datums at their maximum material boundary: the gauge of virtual condition, and how it shifts the datum frame."""
+"""Datums at their material boundaries: the gauge of virtual condition, and how it shifts the datum frame."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -12,8 +12,6 @@ from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shif
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
-from tol3d.assembly.grammar.tolerances.location import LocationSpec, OrientationSpec
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
@@ -31,7 +29,7 @@ HALF_DIFFERENCE = 0.5 * np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0]])
 
 @dataclass(frozen=True)
 class Boundary:
-    """A datum at its maximum material boundary, as a tolerance of its part names it.
+    """A datum at a material boundary, as a tolerance of its part names it.
 
     Args:
         feature: with its part.
@@ -47,15 +45,15 @@ class Boundary:
 def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
     """Add the shift of datum frames by their gauges: one contributor each, common to all features of the frame."""
     for name, boundary in _boundaries(drawing, frames).items():
-        if boundary.own.mmb == "random":
+        if boundary.own.gauge == "random":
             frame = frames.made[name]
             frames.made[name] = replace(frame, shifted_by=(_shift(scene, drawing, effects, frame, boundary),))
     drawn = dict.fromkeys(_named_by_tolerances(drawing, frames))
     for name in dict.fromkeys((*drawn, *frames.made)):
         frame, datums = frames.made[name], frames.specs[name]
-        if datums[-1].mmb is not None and (name not in drawn or not shifts_alone(drawing, frame.part, datums)):
+        if datums[-1].gauge is not None and (name not in drawn or not shifts_alone(drawing, frame.part, datums)):
             rooms = rooms_of(scene, drawing, frame.part, datums)
-            floating = None if datums[-1].mmb == "least" else _floating(effects, frame, datums)
+            floating = None if datums[-1].gauge == "least" else _floating(effects, frame, datums)
             frames.made[name] = replace(frame, gauges=Gauges(rooms, floating))
 
 
@@ -68,15 +66,15 @@ def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]
 
 def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) -> Floating:
     """Position of a frame's gauges within their clearances."""
-    if datums[-1].mmb != "random":
+    if datums[-1].gauge != "random":
         return Floating("centred")
     own, to = (
-        ", ".join("-".join(each.features) for each in datums if (each.mmb is None) is earlier)
+        ", ".join("-".join(each.features) for each in datums if (each.gauge is None) is earlier)
         for earlier in (False, True)
     )
     draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
     name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "")
-    words = "of the gauges at the maximum material boundary of datums"
+    words = f"of the gauges at the {_boundary(datums)} material boundary of datums"
     return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))
 
 
@@ -97,15 +95,19 @@ def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
 def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
     """Datum shift allowed to each gauge of the datums at their boundary."""
     found = []
-    for k, name in ((k, name) for k, own in enumerate(datums) if own.mmb is not None for name in own.features):
+    for k, name in ((k, name) for k, own in enumerate(datums) if own.gauge is not None for name in own.features):
         feature = f"{part}.{name}"
-        shape, bonus = drawing.kind(feature).shape, sized_by(scene, drawing, feature, "mmc").bonus
+        shape, (virtual, grows) = drawing.kind(feature).shape, _virtual(scene, drawing, feature, datums, k)
         assert isinstance(shape, Axis | Slot)
-        tolerance = earlier_zone(drawing, feature, datums, k) or 0.0
-        virtual = bonus.low - tolerance if shape.inner else bonus.high + tolerance
         nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
-        found.append(GaugeRoom(feature, nominal + virtual, shape.inner))
+        found.append(GaugeRoom(feature, nominal + virtual, grows))
     return tuple(found)
+
+
+def _boundary(datums: Sequence[DatumSpec]) -> str:
+    """The boundaries of the gauges of a frame, in words."""
+    words = {"mmc": "maximum", "lmc": "least"}
+    return " or ".join(dict.fromkeys(words[own.boundary] for own in datums if own.gauge is not None))
 
 
 def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
@@ -117,10 +119,7 @@ def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ..
     measured = drawing.kind(of)
     if measured.kind not in ("cylinder", "axis") or not is_square(*_axes(drawing, boundary.feature, of)):
         return None
-    shape = drawing.kind(boundary.feature).shape
-    assert isinstance(shape, Axis)
-    assert shape.diameter is not None
-    return GaugeRoom(boundary.feature, shape.diameter + _virtual(scene, drawing, boundary), shape.inner)
+    return rooms_of(scene, drawing, part, datums)[0]
 
 
 def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
@@ -128,12 +127,18 @@ def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
     return first, second
 
 
-def _virtual(scene: Scene, drawing: Drawing, boundary: Boundary) -> float:
-    """Virtual condition, as a deviation from nominal [mm]."""
-    shape = drawing.kind(boundary.feature).shape
-    bonus = sized_by(scene, drawing, boundary.feature, "mmc").bonus
-    tolerance = own_tolerance(drawing, boundary)
-    return bonus.low - tolerance if isinstance(shape, Axis) and shape.inner else bonus.high + tolerance
+def _virtual(scene: Scene, drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int) -> tuple[float, bool]:
+    """Virtual condition of a feature of a datum, as a deviation from nominal [mm], and whether larger ones leave room.
+
+    At the maximum material boundary a hole holds its gauge, and a pin is held by it; at the least one the gauge lies
+    inside the material: a hole lies within its gauge, and a pin holds it. Features that may be farther off at this
+    size, by a bonus from the other condition, have all of it in their gauge.
+    """
+    boundary = datums[k].boundary
+    bonus = sized_by(scene, drawing, feature, boundary).bonus
+    tolerance, modifier = earlier_zone(drawing, feature, datums, k) or (0.0, None)
+    tolerance += bonus.most if modifier not in (None, boundary) else 0.0
+    return bonus.low - tolerance if bonus.grows else bonus.high + tolerance, bonus.grows
 
 
 def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, boundary: Boundary) -> Contribution:
@@ -141,7 +146,7 @@ def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, 
     to = ", ".join(name for datum in boundary.earlier for name in datum.features)
     name = f"shift of {boundary.feature} to {to}"
     columns = slice(effects.width, effects.width + len(draw.components))
-    words = "of the gauge at the maximum material boundary of a datum"
+    words = f"of the gauge at the {_boundary((boundary.own,))} material boundary of a datum"
     effects.contributors.append(PlainContributor(name, "datum_shift", draw, description=words))
     effects.width = columns.stop
     across = drawing.kind(boundary.feature).frame[:3, :2]
@@ -149,11 +154,11 @@ def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, 
 
 
 def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) -> GaugeShift:
-    shape = drawing.kind(boundary.feature).shape
-    assert isinstance(shape, Axis)
-    sized = sized_by(scene, drawing, boundary.feature, "mmc")
-    virtual, inner = _virtual(scene, drawing, boundary), shape.inner
-    bonus = Bonus(virtual if inner else virtual - ANY, virtual + ANY if inner else virtual, grows=inner)
+    sized = sized_by(scene, drawing, boundary.feature, boundary.own.boundary)
+    virtual, grows = _virtual(
+        scene, drawing, boundary.feature, (*boundary.earlier, boundary.own), len(boundary.earlier)
+    )
+    bonus = Bonus(virtual if grows else virtual - ANY, virtual + ANY if grows else virtual, grows=grows)
     zone = catalogue.point_in_disc(0.0)
     draws = {own.name: own.draw for own in effects.contributors}
     leaning = []
@@ -167,16 +172,3 @@ def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) 
 def _tilts(matrix: Array, draw: ZoneDraw) -> bool:
     """True if a contributor ever displaces the ends of the datum feature from each other."""
     return bool((matrix @ draw.covariance @ matrix.T).any() or (matrix @ draw.mean_vector).any())
-
-
-def own_tolerance(drawing: Drawing, boundary: Boundary) -> float:
-    """Tolerance between maximum material size and virtual condition of the datum feature at this precedence [mm].
-
-    The width of its orientation zone to the datums before it, or of its location zone to just these; 0 without.
-    """
-    kinds: tuple[type[FeatureTolerance], ...] = (OrientationSpec, LocationSpec)
-    for kind in kinds:
-        for own in drawing.of(boundary.feature, kind):
-            if isinstance(own.spec, OrientationSpec | LocationSpec) and own.spec.named_datums == boundary.earlier:
-                return own.spec.zone.size
-    return 0.0

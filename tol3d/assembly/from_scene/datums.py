@@ -44,7 +44,7 @@ class DatumFrames:
         names = tuple(f"{part}.{feature}" for feature in spec.features)
         if not spec.targets:
             flat = any(self.features[part][own].kind in ("plane", "slot") for own in spec.features)
-            pattern = spec.is_several and (flat or spec.mmb is not None)
+            pattern = spec.is_several and (flat or spec.gauge is not None)
             return Datum(names, "pattern" if pattern else spec.simulator)
         into = np.linalg.inv(self.features[part][spec.features[0]].frame)
         points = np.array([[*(own.internal for own in target), 1.0] for target in spec.targets])
@@ -59,8 +59,8 @@ def _letter(spec: DatumSpec) -> str:
     own = "-".join(spec.features)
     if spec.targets:
         return f"{own} at " + "; ".join(" ".join(f"{x.internal:.9g}" for x in target) for target in spec.targets)
-    if spec.mmb is not None:
-        return f"{own} mmb {spec.mmb}"
+    if spec.gauge is not None:
+        return f"{own} {spec.key} {spec.gauge}"
     return own if spec.simulator == "contact" else f"{own} {spec.simulator}"
 
 

@@ -24,7 +24,7 @@ def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFra
         f"{own.part}.{feature}"
         for name, own in frames.made.items()
         for datum in frames.specs[name]
-        if datum.mmb is not None
+        if datum.gauge is not None
         for feature in datum.features
     }
     for own in drawing.stated:

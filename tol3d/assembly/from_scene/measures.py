@@ -54,7 +54,7 @@ def _inspected(
     frame = frames.named(part_of(features[0]), spec.named_datums)
     several = spec if isinstance(spec, InspectedTogetherSpec) else None
     room = None if several else room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
-    over_gauges = room is None and any(own.mmb is not None for own in spec.named_datums)
+    over_gauges = room is None and any(own.gauge is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else found.gauge
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
     zones = tuple(own.internal for own in several.zones) if several else ()

@@ -1,4 +1,4 @@
-"""Checks of datums at their maximum material boundary: orientation of the gauge, and a size."""
+"""Checks of datums at their material boundaries: orientation of the gauge, and a size."""
 
 from collections.abc import Iterator, Sequence
 
@@ -18,6 +18,7 @@ from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
 from tol3d.assembly.grammar.tolerances.location import Composite, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Plane
+from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -33,11 +34,12 @@ def unfit_boundaries(scene: Scene) -> Iterator[Problem]:
     for name, spec in scene.tolerances.items():
         if isinstance(spec, FeatureTolerance):
             for k, datum in enumerate(spec.named_datums):
-                if datum.mmb is not None:
+                if datum.gauge is not None:
                     place: KeyPath = ("tolerances", name, "datums")
                     yield from _unfit(drawing, part_of(spec.of), spec.named_datums, k, place)
-                    if datum.mmb == "least":
-                        yield place, "expected mmb: random or mmb: centred, for least is of what is inspected"
+                    if datum.gauge == "least":
+                        key = datum.key
+                        yield place, f"expected {key}: random or {key}: centred, for least is of what is inspected"
     for name, measure in scene.measures.items():
         if isinstance(measure, FeatureMeasureSpec):
             yield from _of_measure(drawing, name, measure)
@@ -46,10 +48,10 @@ def unfit_boundaries(scene: Scene) -> Iterator[Problem]:
 def _of_measure(drawing: Drawing, name: str, spec: FeatureMeasureSpec) -> Iterator[Problem]:
     place: KeyPath = ("measures", name, "datums")
     for k, datum in enumerate(spec.named_datums):
-        if datum.mmb is None:
+        if datum.gauge is None:
             continue
-        if not isinstance(spec, InspectedPositionSpec | InspectedTogetherSpec) or datum.mmb != "least":
-            yield place, "expected datums without mmb, or mmb: least of what is inspected"
+        if not isinstance(spec, InspectedPositionSpec | InspectedTogetherSpec) or datum.gauge != "least":
+            yield place, f"expected datums without {datum.key}, or {datum.key}: least of what is inspected"
             continue
         yield from _unfit(drawing, part_of(spec.of_what[0]), spec.named_datums, k, place)
         across = isinstance(spec, InspectedPositionSpec) and spec.across is not None
@@ -75,7 +77,8 @@ def is_square(normal: Array, axis: Array) -> bool:
 def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bool:
     """True if the gauge of the last datum only shifts: its hole or pin is perpendicular to the orienting plane."""
     known = drawing.features[part]
-    if len(datums) != 2 or datums[0].mmb is not None or datums[1].mmb is None or any(own.is_several for own in datums):
+    gauged = [own.gauge is not None for own in datums]
+    if gauged != [False, True] or any(own.is_several for own in datums):
         return False
     if not _has_place(drawing, f"{part}.{datums[1].features[0]}"):
         return False  # nothing orients it to the plane
@@ -85,8 +88,12 @@ def shifts_alone(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> bo
     return is_square(plane.frame[:3, 2], hole.frame[:3, 2])
 
 
-def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int) -> float | None:
-    """Width of the zone of a feature of a datum at its precedence [mm]; 0 without any, None with others alone.
+def earlier_zone(
+    drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int
+) -> tuple[float, Modifier | None] | None:
+    """Width of the zone of a feature of a datum at its precedence [mm], and what widens it.
+
+    It is 0 without any tolerance of the place, None with others alone.
 
     It is its location zone to just the datums before it, whatever their modifiers; if these only orient it, as a plane
     perpendicular to it does, its orientation zone to them. One of several features has its location zone, to whatever
@@ -101,11 +108,12 @@ def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k:
     located = [own.spec for own in drawing.of(feature, LocationSpec) if isinstance(own.spec, LocationSpec)]
     earlier = datums[:k]
     if not _has_place(drawing, feature) or (k == 0 and not datums[k].is_several):
-        return 0.0
+        return 0.0, None
     if datums[k].is_several and located:
         lower = located[0].lower_segment if isinstance(located[0], Composite) else None
         to_these = lower is not None and _names(lower.datums or ()) == _names(earlier)
-        return lower.zone.size if lower is not None and to_these else located[0].zone.size
+        zone = lower.zone if lower is not None and to_these else located[0].zone
+        return zone.size, _modifier(located[0])
     names = _names(earlier)
     location: tuple[type[FeatureTolerance], ...] = (LocationSpec,)
     orientation: tuple[type[FeatureTolerance], ...] = (OrientationSpec,)
@@ -114,8 +122,12 @@ def earlier_zone(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k:
         for own in drawing.of(feature, kind):
             spec = own.spec
             if isinstance(spec, OrientationSpec | LocationSpec) and _names(spec.named_datums) == names:
-                return spec.zone.size
+                return spec.zone.size, _modifier(spec)
     return None
+
+
+def _modifier(spec: FeatureTolerance) -> Modifier | None:
+    return spec.modifier if isinstance(spec, Modified) else None
 
 
 def _has_place(drawing: Drawing, feature: str) -> bool:
@@ -149,13 +161,13 @@ def _unfit_feature(
     part = part_of(own)
     if own not in drawing.names or drawing.kind(own).kind not in ("cylinder", "slot"):
         return  # reported already
-    later = [later for later in datums[k + 1 :] if later.mmb is None]
+    later = [later for later in datums[k + 1 :] if later.gauge is None]
     to = ", ".join("-".join(earlier.features) for earlier in datums[:k])
     if later:
         words = f"expected datums at their maximum material boundary last, got {later[0].features[0]!r} after {own!r}"
         yield place, f"{words}; give it mmb as well, or name it first"
-    elif len({before.mmb for before in datums[: k + 1] if before.mmb is not None}) > 1:
-        yield place, "expected one mmb for all datums of a frame, for their gauges are of one piece"
+    elif len({before.gauge for before in datums[: k + 1] if before.gauge is not None}) > 1:
+        yield place, "expected one mmb (or lmb) for all datums of a frame, for their gauges are of one piece"
     elif not drawing.of(own, SizeSpec):
         yield place, f"expected a tolerance of the size of {own!r}, which makes the gauge's room; add one of kind size"
     elif shifts_alone(drawing, part, datums):

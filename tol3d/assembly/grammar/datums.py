@@ -5,11 +5,14 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import OwnName
-from tol3d.assembly.model.datum_frame import Simulator
+from tol3d.assembly.model.datum_frame import Modifier, Simulator
 from tol3d.scene.listed import listed
 from tol3d.scene.vector import Vector
 from tol3d.strict import Strict, refused
 from tol3d.units import shown
+
+Lying = Literal["random", "centred", "least"]
+"""How a gauge lies in its room; least, of a measure, where that is best."""
 
 
 def _joined(value: Any) -> Any:
@@ -41,16 +44,36 @@ class DatumSpec(Strict):
         default=(), description="points of the part that touch, for simulator: targets"
     )
 
-    mmb: Literal["random", "centred", "least"] | None = Field(
+    mmb: Lying | None = Field(
         default=None,
         description="at its maximum material boundary: how the gauge lies in the room that it has there, of several "
         "features a gauge of as many pins; least, of a measure, where it is best; default: regardless of size",
     )
 
+    lmb: Lying | None = Field(
+        default=None,
+        description="the same at its least material boundary: the gauge lies inside the material of the feature",
+    )
+
+    @property
+    def gauge(self) -> Lying | None:
+        """How its gauge lies, at either boundary; None regardless of size."""
+        return self.lmb if self.mmb is None else self.mmb
+
+    @property
+    def boundary(self) -> Modifier:
+        """Condition of the size from which its gauge is counted."""
+        return "mmc" if self.lmb is None else "lmc"
+
+    @property
+    def key(self) -> Literal["mmb", "lmb"]:
+        """The key of its boundary."""
+        return "mmb" if self.lmb is None else "lmb"
+
     @property
     def kinds(self) -> tuple[str, ...]:
         """Kinds of feature that it may be of."""
-        if self.mmb is not None:
+        if self.gauge is not None:
             return ("cylinder", "slot")
         return ("plane",) if self.targets else ()
 
@@ -70,8 +93,10 @@ class DatumSpec(Strict):
             raise refused("feature", expected, f"one, {self.features[0]!r}; name it alone, without simulator")
         if len(set(self.features)) < len(self.features):
             raise refused("feature", "each feature once", "-".join(self.features))
-        if self.mmb is not None and self.simulator not in ("contact", "pattern"):
-            raise refused("mmb", "it at holes, pins, slots or tabs", f"simulator: {self.simulator}, of planes")
+        if self.mmb is not None and self.lmb is not None:
+            raise refused("lmb", "one boundary: mmb or lmb", "both")
+        if self.gauge is not None and self.simulator not in ("contact", "pattern"):
+            raise refused(self.key, "it at holes, pins, slots or tabs", f"simulator: {self.simulator}, of planes")
         if self.targets and self.is_several:
             raise refused("targets", "them on one plane", "-".join(self.features))
         return self

@@ -32,7 +32,8 @@ class GaugeRoom:
     Args:
         feature: the hole, pin, slot or tab, with its part.
         virtual: diameter or width of the gauge [mm].
-        grows: True if larger features leave more clearance: holes and slots.
+        grows: True if larger features leave more clearance: holes and slots at their maximum material boundary, pins
+            and tabs at the least one, whose gauge they contain.
     """
 
     feature: str

@@ -189,8 +189,8 @@ class InspectedSetSpec(FeatureMeasureSpec):
         _refuse_other_features(self.features)
         if self.modifier is not None and self.surfaces:
             raise refused("modifier", "none of surfaces, which count with their size", self.modifier)
-        if any(own.mmb is not None for own in self.named_datums):
-            raise refused("datums", "datums regardless of size, for an inspected set takes no gauge", "mmb")
+        if (own := next((own for own in self.named_datums if own.gauge is not None), None)) is not None:
+            raise refused("datums", "datums regardless of size, for an inspected set takes no gauge", own.key)
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
@@ -207,8 +207,8 @@ class InspectedSetSpec(FeatureMeasureSpec):
 class InspectedTogetherSpec(FeatureMeasureSpec):
     """The largest position less its zone of 2 to 8 features of one frame: together they are within their `zones` at 0.
 
-    Gauges of datums with `mmb: least` take one place for all of them, as simultaneous requirements say; with a
-    `modifier` each is less the bonus of its size as well.
+    Gauges of datums with `mmb: least` (or `lmb`) take one place for all of them, as simultaneous requirements say; with
+    a `modifier` each is less the bonus of its size as well.
     """
 
     reads: ClassVar[Reading] = Reading(
