@@ -77,7 +77,7 @@ MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
 NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*")
 DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
-COMMA_SEPARATES: Final = "decimals have a point, for a comma begins another entry"
+COMMA_SEPARATES: Final = "write decimals with a point: a comma starts a new entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
 WRITTEN_DIGITS: Final = 10  # of what is computed and written for users
 KEPT: Final = 4096  # quantities of which a text is read once

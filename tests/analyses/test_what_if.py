@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fixtures import Command
-from formulas import formula
+from formulas import Array, formula
 from linear_stacks import stack
 from scipy.stats import norm
 from toys.parabola import PARABOLA
@@ -18,7 +18,10 @@ from tol3d.analyses.changes import Change, change_of, changed, factor_of
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.what_if import WhatIf, first_order_ppm, what_if
+from tol3d.analyses.what_if_table import what_if_report
+from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.distributions.normal import Normal
+from tol3d.report.sheet import as_text
 from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
 from tol3d.system.copula import Block
@@ -50,6 +53,38 @@ def test_correlated_contributors_add_up_by_their_correlation() -> None:
     found = what_if(own, [Change("x0", factor=2.0)], trials=0).measures["value"]
     assert found.before.sigma_by_rates == pytest.approx(math.sqrt(9 + 4 + 2 * 0.6 * 6), rel=1e-9)
     assert found.after.sigma_by_rates == pytest.approx(math.sqrt(36 + 4 + 2 * 0.6 * 12), rel=1e-9)
+
+
+def test_a_float_in_a_random_direction_has_no_rates() -> None:
+    """Its measure jumps at the mean build, where a central difference is the jump over its step; trials know sigma.
+
+    The offset along one of three freedoms is f d / |d|, f the cube root of a uniform number: its variance is 1/5.
+    """
+    laws = FloatDraw(("direction", "fraction"), (*(f"d{k}" for k in range(6)), "fraction"))
+
+    def offset(x: Array) -> Array:
+        size = np.linalg.norm(x[:, :3], axis=1)
+        return np.asarray(x[:, 0] / np.where(size > 0, size, 1.0) * np.cbrt(x[:, 6]) + x[:, 7])
+
+    own = formula(offset, [laws, Scalar(Normal(0.0, 0.5))], high=1.0)
+    found = what_if(own, [Change("x1", factor=0.5)], trials=4000, draws=400)
+    state = found.measures["value"].before
+    assert state.sigma_by_rates is None
+    assert state.limits["high"].first_order is None
+    assert state.sigma == pytest.approx(math.sqrt(0.2 + 0.25), rel=4 / math.sqrt(2 * 4000))
+    assert "floats in a random direction" in as_text(what_if_report("play", found), 80).replace("\n ", " ")
+    quick = what_if(own, [Change("x1", factor=0.5)], trials=0, draws=0)
+    assert "value: known only by simulation" in as_text(what_if_report("play", quick), 80)
+
+
+def test_the_answer_is_printed_first() -> None:
+    """Sigma, and the fraction out of limits, before and after, above every table."""
+    found = what_if(stack([1.0], [2.0], low=-5.0), [Change("x0", factor=0.5)], trials=0, draws=0)
+    ppm = 1e6 * norm.cdf([-2.5, -5.0])
+    lines = as_text(what_if_report("stack", found), 80).splitlines()
+    assert (
+        lines[2] == f"gap: sigma 2.0000 mm → 1.0000 mm (-50 %); out of limits {ppm[0] / 1e4:.4g} % → {ppm[1]:.3g} ppm"
+    )
 
 
 def test_both_sides_see_the_same_draws() -> None:

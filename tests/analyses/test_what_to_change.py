@@ -305,7 +305,7 @@ def test_nothing_is_said_where_all_is_ok(tmp_path: Path) -> None:
     assert estimated_changes(run, simulation_of(load("spur_pair"))) is None
     none = changes_of(response_of(simulation_of(load("spur_pair"))))
     assert not none.measures
-    assert "nothing: no measure leaves its limits" in as_text(changes_report("pair", none), 100)
+    assert "nothing: no measure is out of its limits" in as_text(changes_report("pair", none), 100)
 
 
 def test_it_prints_what_it_found(changes: Changes) -> None:
@@ -317,6 +317,10 @@ def test_it_prints_what_it_found(changes: Changes) -> None:
     row = next(line for line in text.splitlines() if line.startswith(f"half {half.contributor}"))
     assert f"{half.share_percent:.1f} % of variance" in row
     assert f"{half.after.sigma:.3f}" in row
+    narrow = as_text(changes_report("pair", changes), 80).splitlines()
+    assert next(k for k, line in enumerate(narrow) if line.startswith("  shift the mean by")) < 5
+    assert max(map(len, narrow)) <= 80
+    assert len(narrow) < 40
     brief = as_text(page(*changes_lines(changes, "runs/pair")), 140)
     assert "tol3d changes runs/pair" in brief
     assert len(brief.splitlines()) < 10

@@ -112,5 +112,5 @@ def test_a_datum_with_its_part_is_answered_without_it(datums: str, own: str, got
 def test_a_move_with_play_without_a_float_is_answered_with_the_choices(tmp_path: Path) -> None:
     pins = "  cover on pins: {kind: pin_and_hole, part: cover, pairs: [{from: cover.hole, to: base.hole}]}\n"
     found = refused(COVER.replace(SECOND, pins), tmp_path)
-    assert "expected where in its room the part lies, which has no default: {kind: centred}, {kind: random}" in found
+    assert "expected the position of the part within its play (no default): {kind: centred}, {kind: random}" in found
     assert "moves.cover on pins.float" in found

@@ -293,8 +293,8 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str]] = {
             ("  slot size: {kind: size", "  #"),
             (" of: plate.slot, distribution: {kind: normal, mean: 0 um, sigma: 10 um}}\n", "\n"),
         ],
-        "moves.plate on the pins.pairs[1].from: expected a size tolerance of 'plate.slot', for its play follows from "
-        "its size, got none; a size that does not vary "
+        "moves.plate on the pins.pairs[1].from: expected a size tolerance of 'plate.slot', because the play "
+        "depends on it, got none; a size that does not vary "
         "is {kind: size, ..., distribution: {kind: constant, value: 0 mm}}",
     ),
     "smaller than its pin": (
@@ -318,12 +318,13 @@ WRONG: dict[str, tuple[Sequence[tuple[str, str]], str]] = {
     ),
     "no float": (
         [("    float: {kind: random} ", "    # ")],
-        "moves.plate on the pins.float: expected where in its room the part lies, which has no default: "
+        "moves.plate on the pins.float: expected the position of the part within its play (no default): "
         "{kind: centred}, {kind: random} or {kind: toward, along: …, at: …}, got none",
     ),
     "float as a word": (
         [("float: {kind: random} ", "float: random ")],
-        "moves.plate on the pins.float: expected where in its room the part lies, such as {kind: random}, got 'random'",
+        "moves.plate on the pins.float: expected the position of the part within its play, such as {kind: random}, "
+        "got 'random'",
     ),
     "outside": (
         [("hole: {kind: cylinder, at: [0 mm, 0 mm, 4 mm]", "hole: {kind: cylinder, at: [0 mm, 0 mm, 40 mm]")],

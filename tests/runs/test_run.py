@@ -272,6 +272,10 @@ def test_draws_below_zero_of_a_clearance_are_kept_and_counted(tmp_path: Path) ->
 def test_damaged_runs_are_refused_by_name(spur_run: Run, tmp_path: Path) -> None:
     with pytest.raises(RunError, match="expected a run's folder"):
         open_run(tmp_path)
+    with pytest.raises(RunError, match=rf'did you mean "{spur_run.path.name}"'):
+        open_run(spur_run.path.with_name(f"{spur_run.path.name}s"))
+    with pytest.raises(RunError, match=r"tol3d run .*spur_pair\.yaml makes one"):
+        open_run(SPUR_PAIR)
     (tmp_path / "summary.json").write_text("[1, 2")
     with pytest.raises(RunError, match="cannot be read"):
         open_run(tmp_path)

@@ -93,7 +93,7 @@ CHANGES = {
     ),
     "a decimal comma": (
         ("module: 2.5 mm", "module: 2,5 mm"),
-        'parts.pinion.5 mm: expected a key, got "5 mm"; decimals have a point, for a comma begins another entry',
+        'parts.pinion.5 mm: expected a key, got "5 mm"; write decimals with a point: a comma starts a new entry',
     ),
     "unknown unit": (
         ("module: 2.5 mm", "module: 2.5 inch"),
@@ -321,7 +321,7 @@ CHANGES = {
     ),
     "tab": (
         ("    kind: tooth_thickness", "\tkind: tooth_thickness"),
-        "indent with blanks, not with tabs",
+        "indent with spaces, not with tabs",
     ),
     "control character": (
         ("scene: spur", "scene: \x1b[2Jspur"),
@@ -892,9 +892,9 @@ PLACE, LAW = "0 mm, 0 mm, 1 mm", ", distribution: {kind: constant, value: 0.1 mm
             "0 mm, 0 mm, 40,1 mm",
             "plus_minus",
             LAW,
-            "got a list of 4; decimals have a point, for a comma begins another",
+            "got a list of 4; write decimals with a point: a comma starts a new",
         ),
-        (PLACE, "plus_minus", LAW.replace("0.1", "0,1"), 'expected a key, got "1 mm"; decimals have a point'),
+        (PLACE, "plus_minus", LAW.replace("0.1", "0,1"), 'expected a key, got "1 mm"; write decimals with a point'),
         (PLACE, "true_position", LAW, "expected another word here, got 'true_position'; write position"),
         (
             PLACE,

@@ -14,6 +14,8 @@ PLACES: Final = 16
 """Positions at which slopes are taken."""
 MANY_PLACES: Final = 256
 """Positions at which the mean build is read."""
+JUMP: Final = 10.0
+"""Slope over the mean change within one sigma from which a measure jumps at the mean build."""
 
 
 def covariance_of(draw: Draw) -> Array:
@@ -33,7 +35,8 @@ class Rates:
     """Slopes of the measures of a response, for any tolerances of the same system.
 
     Args:
-        slopes: at the mean build, at some positions (places, measures, components), in measures' units a mm, rad or K.
+        slopes: at the mean build, at some positions (places, measures, components), in measures' units a mm, rad or K;
+            NaN where a measure jumps there.
         of_positions: variance of the mean build over positions (measures,).
     """
 
@@ -49,7 +52,7 @@ class Rates:
         return found
 
     def sigmas(self, response: Response) -> Array:
-        """Sigmas of the measures, positions included (measures,)."""
+        """Sigmas of the measures, positions included (measures,); NaN where a measure jumps at the mean build."""
         return np.asarray(np.sqrt(sum(self.variances(response).values(), self.of_positions) + self._together(response)))
 
     def _together(self, response: Response) -> Array:
@@ -72,4 +75,30 @@ def rates_of(response: Response) -> Rates:
         builds, positions = np.tile(mean, (count, 1)), response.positions(count, "drawn" if moves else "rest")
         read.append(response.values(builds, positions).values if read else response.gradient(builds, positions))
     slopes, values = read
+    slopes = _without_jumps(response, slopes)
     return Rates(slopes, np.asarray(np.nanvar(values, axis=0)) if moves else np.zeros(values.shape[1]))
+
+
+def _without_jumps(response: Response, slopes: Array) -> Array:
+    """Slopes with NaN for those by a share of a play that are jumps.
+
+    A part that floats in a random direction changes sides of its play as a component of the direction changes sign.
+    """
+    columns = [k for own in response.contributors if own.unit == "1" for k in _columns(response.slices[own.name])]
+    if not columns:
+        return slopes
+    draws = [response.draws[own.name] for own in response.contributors]
+    sigmas = np.concatenate([component_sigmas(draw) for draw in draws])
+    shifts = np.zeros((len(columns), response.components))
+    shifts[np.arange(len(columns)), columns] = sigmas[columns]
+    builds = response.mean + np.concatenate([shifts, -shifts])
+    positions = {name: np.repeat(own, len(builds), axis=0) for name, own in response.positions(1, "rest").items()}
+    up, down = response.values(builds, positions).values.reshape(2, len(columns), -1)
+    jumps = np.abs(slopes[:, :, columns]) * 2 * sigmas[columns] > JUMP * np.abs(up - down).T
+    found = slopes.copy()
+    found[:, :, columns] = np.where(jumps, np.nan, slopes[:, :, columns])
+    return found
+
+
+def _columns(of: slice) -> range:
+    return range(of.start, of.stop)

@@ -47,6 +47,7 @@ class LimitNumbers(Section):
     """Probability of leaving a limit [ppm]: by the first order, and by importance sampling.
 
     Trials that leave it are counted where draws have no map from normals; None of a simulation that was not asked for.
+    The first order is None where the measure jumps at the mean build.
     """
 
     first_order: Ppm | None
@@ -225,13 +226,15 @@ def _numbers(response: Response, by_rates: float, values: Array, edges: Array, d
         failed=len(values) - len(good),
         counts=np.histogram(good, edges)[0].astype(float).tolist(),
         limits={
-            side: _limit(response, side, limit, values, draws, seed)
+            side: _limit(response, side, limit, values, draws, seed, smooth=bool(np.isfinite(by_rates)))
             for side, limit in limits_of(response.measures[0]).items()
         },
     )
 
 
-def _limit(response: Response, side: Side, limit: float, values: Array, draws: int, seed: int) -> LimitNumbers:
+def _limit(
+    response: Response, side: Side, limit: float, values: Array, draws: int, seed: int, *, smooth: bool
+) -> LimitNumbers:
     if response.rough:
         with np.errstate(invalid="ignore"):
             within = values >= limit if side == "low" else values <= limit
@@ -239,12 +242,12 @@ def _limit(response: Response, side: Side, limit: float, values: Array, draws: i
         interval = list(counted.interval_ppm()) if len(values) else None
         return made(LimitNumbers, first_order=None, ppm=counted.ppm, interval=interval, beta=None)
     if not draws:
-        first, beta = first_order_ppm(response, side, limit, seed=seed)
+        first, beta = first_order_ppm(response, side, limit, seed=seed) if smooth else (None, None)
         return made(LimitNumbers, first_order=first, ppm=None, interval=None, beta=beta)
     event = rare_event(response, side, limit, draws=draws, seed=seed)
     return made(
         LimitNumbers,
-        first_order=None if event.first_order is None else 1e6 * event.first_order,
+        first_order=1e6 * event.first_order if smooth and event.first_order is not None else None,
         ppm=min(1e6 * event.probability, 1e6),
         interval=[1e6 * own for own in event.interval],
         beta=event.points[0].beta if event.points else None,

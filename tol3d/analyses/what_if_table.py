@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import Final
 
-from tol3d.analyses.what_if import LimitNumbers, MeasureWhatIf, WhatIf
-from tol3d.report.number import UNIT_SIGNS, limit_text, ppm_text, value_cell
+from tol3d.analyses.what_if import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
+from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, ppm_text, share_text, value_cell, with_unit
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
 
 HEADS: Final = (Heading("before"), Heading("after"), Heading("change"))
@@ -16,9 +16,13 @@ ROWS: Final = (
     ("high 99.865 %", "high"),
 )
 WORDS: Final = (
-    "by rates: slopes at the mean build and the spreads of the tolerances; first order: Φ(−β), β the distance of the "
-    "most likely build beyond the limit; by sampling: importance sampling about it, with its interval of 95 %; builds "
-    "that cannot be assembled fail; trials are drawn from the same numbers before and after"
+    "sigma by rates: from the slopes at the mean build; first order: Φ(−β), with β the distance to the most likely "
+    "build beyond the limit; by sampling: importance sampling around that build, with its 95 % interval; builds that "
+    "cannot be assembled count as out of limits; before and after use the same random numbers"
+)
+JUMPS: Final = (
+    "no sigma by rates and no first order where a part floats in a random direction: the measure has no slope at the "
+    "mean build"
 )
 
 
@@ -32,15 +36,48 @@ def what_if_report(name: str, found: WhatIf) -> Page:
     head = Line(((name, "bold"), (" · what if", "")))
     rows = [Row(own.contributor, (own.before, own.after)) for own in found.changes]
     changes = Table("", (Heading("before", words=True), Heading("after", words=True)), rows)
-    blocks: list[PageItem] = [head, BLANK, *titled("tolerances", changes)]
+    answers = [_answer(measure, own) for measure, own in found.measures.items()]
+    blocks: list[PageItem] = [head, BLANK, *answers, BLANK, *titled("tolerances", changes)]
     for measure, own in found.measures.items():
         blocks += [BLANK, *titled(f"{measure} [{UNIT_SIGNS.get(own.unit, own.unit)}]", what_if_table(own))]
     counted = f"{found.trials} trials, {found.draws} draws a limit, {found.evaluations} builds evaluated"
     blocks += [BLANK, note(WORDS)]
+    if any(own.before.sigma_by_rates is None for own in found.measures.values()):
+        blocks += [note(JUMPS)]
     if found.rough:
         words = f"{', '.join(found.rough)}: no smooth map from normals, so limits are counted in the trials"
         blocks += [note(words)]
     return page(*blocks, note(counted))
+
+
+def _answer(name: str, own: MeasureWhatIf) -> Line:
+    """Sigma and the fraction out of limits, before and after: by simulation, without one by rates."""
+    before, after = (_first(each.sigma, each.sigma_by_rates) for each in (own.before, own.after))
+    if before is None or after is None:
+        return Line(((name, "bold"), (": known only by simulation", "")))
+    told = [f"sigma {_named(before, own.unit)} → {_named(after, own.unit)}{_percent(before, after)}"]
+    if own.before.limits:
+        told.append(f"out of limits {_out(own.before)} → {_out(own.after)}")
+    return Line(((name, "bold"), (f": {'; '.join(told)}", "")))
+
+
+def _first(*values: float | None) -> float | None:
+    return next((value for value in values if value is not None), None)
+
+
+def _named(value: float, unit: str) -> str:
+    return with_unit(value_cell(value, unit), unit)
+
+
+def _percent(before: float, after: float) -> str:
+    return f" ({100 * (after / before - 1):+.0f} %)" if before else ""
+
+
+def _out(own: StateNumbers) -> str:
+    """Fraction beyond all limits."""
+    ppm = [_first(each.ppm, each.first_order) for each in own.limits.values()]
+    known = [each for each in ppm if each is not None]
+    return share_text(sum(known)) if len(known) == len(ppm) else NOTHING
 
 
 def what_if_table(own: MeasureWhatIf) -> Table:

@@ -4,11 +4,11 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.analyses.slopes import Rates
-from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread
+from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread, Target
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
-    bounded_share_text,
+    counted,
     limit_text,
     percent_cell,
     share_text,
@@ -27,15 +27,20 @@ ERRORS: Final = 1.96
 """Standard errors of an interval of 95 %."""
 BY: Final = {
     "simulation": (
-        "each change is simulated: the same draws with a nominal moved, or with a tolerance half as wide about its "
-        "middle; out of limits with its interval of 95 %"
+        "each change is simulated with the same draws: one nominal shifted, or one tolerance halved about its middle"
     ),
     "rates": (
-        "estimates: the run's trials shifted, or narrowed by the contributor's share of the variance; "
-        "tol3d changes simulates each"
+        "estimates: the trials of the run shifted, or narrowed by the contributor's share of the variance; "
+        "tol3d changes simulates each change"
     ),
 }
-AFTER: Final = (Heading("mean"), Heading("sigma"), Heading("fraction out of limits", words=True), Heading("Ppk"))
+AFTER: Final = (
+    Heading("mean"),
+    Heading("sigma"),
+    Heading("out of limits"),
+    Heading("95 % interval", optional=True),
+    Heading("Ppk"),
+)
 
 
 def changes_report(name: str, found: Changes) -> Page:
@@ -46,9 +51,9 @@ def changes_report(name: str, found: Changes) -> Page:
         found: in it.
     """
     head = Line(((name, "bold"), (f" · what to change · accepted: {share_text(found.accepted_ppm)} out of limits", "")))
-    blocks: list[PageItem] = [head]
+    blocks: list[PageItem] = [head, BLANK, *_answers(found)]
     if not found.measures:
-        blocks.append(line(" nothing: no measure leaves its limits more often than is accepted"))
+        blocks.append(line(" nothing: no measure is out of its limits more often than accepted"))
     for measure, own in found.measures.items():
         blocks += _of_measure(measure, own)
     blocks += [BLANK, note(BY[found.by]) if found.measures else BLANK]
@@ -86,8 +91,8 @@ def _taken_table(own: MeasureChanges) -> Table | None:
     rows = [Row(each.contributor, [_off(each.first_order, unit), _off(each.second_order, unit)]) for each in shown]
     if rest:
         sums = (sum(each.first_order for each in rest), sum(each.second_order for each in rest))
-        rows.append(Row(f"{len(rest)} others", [_off(value, unit) for value in sums]))
-    rows.append(Row("together, beyond these", ["", _with_error(own.taken_together, own.taken_error, unit)]))
+        rows.append(Row(counted(len(rest), "other"), [_off(value, unit) for value in sums]))
+    rows.append(Row("interactions and sampling", ["", _with_error(own.taken_together, own.taken_error, unit)]))
     corner = f"mean off nominal ({_valued(own.nominal, unit)})"
     return Table(corner, [Heading("by its mean"), Heading("by its spread")], rows)
 
@@ -109,7 +114,8 @@ def _after(own: Spread, unit: str) -> Sequence[Shown | str]:
     return [
         value_cell(own.mean, unit),
         sigma,
-        Shown(bounded_share_text(own.out_ppm, own.out_ppm_95), own.out_ppm),
+        Shown(share_text(own.out_ppm), own.out_ppm),
+        NOTHING if own.out_ppm_95 is None else " to ".join(map(share_text, own.out_ppm_95)),
         Shown(ppk, own.ppk),
     ]
 
@@ -158,25 +164,32 @@ def changes_lines(found: Changes, where: str) -> list[PageItem]:
         where: what `tol3d changes` is to be asked for the whole.
     """
     blocks: list[PageItem] = [title("what to change", f" · estimated; tol3d changes {where} simulates it")]
-    for name, own in found.measures.items():
-        ppk = NOTHING if own.now.ppk is None else unsigned_zero(f"{own.now.ppk:.2f}")
-        blocks.append(line(f" {name}: {share_text(own.now.out_ppm)} out of limits, Ppk {ppk}"))
-        blocks += map(note, _brief(own))
+    blocks += _answers(found)
     if found.further:
         dots = " …" if len(found.further) > BRIEF_TOLD else ""
         blocks.append(note(f"{len(found.further)} more NOT OK: {', '.join(found.further[:BRIEF_TOLD])}{dots}"))
     return blocks
 
 
+def _answers(found: Changes) -> Iterator[PageItem]:
+    for name, own in found.measures.items():
+        yield line(f" {name}: {share_text(own.now.out_ppm)} out of limits")
+        yield from map(note, _brief(own))
+
+
 def _brief(own: MeasureChanges) -> Iterator[str]:
     unit = own.unit
     for shift in own.shifts:
         by = " or ".join(f"{each.contributor} {_change(each)}" for each in shift.by[:2])
-        how = f", by {by}" if by else ""
-        yield f" mean {_signed(shift.shift, unit)} ({shift.target}){how}: {_told(shift.after)}"
+        how = f": {by}" if by else ""
+        yield f" shift the mean by {_signed(shift.shift, unit)} to {_aim(shift.target)}{how}; then {_told(shift.after)}"
     halves = [f"{each.contributor}: {_told(each.after)}" for each in own.halved[:BRIEF_TOLD]]
     if halves:
-        yield f" half {'; '.join(halves)}"
+        yield f" halve {'; or '.join(halves)}"
+
+
+def _aim(target: Target) -> str:
+    return target if target == "Ppk 1.33" else f"the {target}"
 
 
 def _told(after: Spread) -> str:

@@ -47,7 +47,7 @@ def new(
             raise InputError("--out: expected a kind of system before it; `tol3d new` lists them")
         for line in starter_lines(all_mechanisms()):
             tell(line)
-        err_console.print("tol3d new NAME writes that scene here, to start your own from")
+        err_console.print("tol3d new NAME writes the scene NAME.yaml as a starting point")
         return
     if len(words) > 1:
         raise InputError(f"expected one kind of system, got {len(words)}; STEP files stand behind --from")
@@ -116,4 +116,4 @@ def _write(path: Path, text: str, force: bool) -> None:
     except OSError as error:
         raise unwritable(path, error, "choose another file") from None
     tell(str(path))
-    err_console.print(f"tol3d check {path} tells what it means; tol3d run {path} simulates it")
+    err_console.print(f"tol3d check {path} explains it; tol3d run {path} simulates it")

@@ -37,6 +37,9 @@ RUN_OUT: Final = "write tooth_run_out: the run-out of teeth; run_out is of a sha
 COMPOSITE: Final = "write tooth_run_out of F_i'' - f_i'', and beside it tooth_to_tooth with limits: {size: f_i''}"
 DISTANCE: Final = "write centre_distance, with {fit: js7, of: …} for DIN 3964"
 SPAN, PINS = (f"write tooth_thickness with measured: {{{word}: …}}" for word in ("span", "pins"))
+ANY_GEAR: Final = "write spur_gear, bevel_gear or, of a ring, internal_gear"
+NO_HELIX: Final = "helical, spiral, hypoid and worm gears are not supported: docs/limits.md"
+
 OTHER_KINDS: Final = (
     *((word, RUN_OUT) for word in ("F_r", "Fr", "gear_run_out", "radial_run_out")),
     *((word, COMPOSITE) for word in ("F_i''", "F_i″", "Fi''", "radial_composite", "radial_composite_deviation")),
@@ -50,6 +53,11 @@ OTHER_KINDS: Final = (
     ("f_fa", "write profile_form"),
     ("f_sigma_delta", "write axis_in_plane"),
     ("f_sigma_beta", "write axis_out_of_plane"),
+    *((word, NO_HELIX) for word in ("helical_gear", "worm", "worm_gear", "hypoid_gear", "spiral_bevel_gear")),
+    *((word, ANY_GEAR) for word in ("gear", "pinion", "cylindrical_gear")),
+    ("backlash", "write normal_backlash, circumferential_backlash or angular_backlash"),
+    *((word, "write uniform") for word in ("rectangular", "rectangle", "flat", "equal")),
+    *((word, "write normal") for word in ("gauss", "gaussian")),
 )
 OTHER_KEYS: Final = (("balls", "write pins: over spur teeth balls of the same diameter give the same size"),)
 

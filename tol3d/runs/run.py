@@ -25,6 +25,7 @@ from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.text import missing_mechanism, parsed, typed
 from tol3d.runs.worst import worst_trial
+from tol3d.scene.nearest import nearest
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 
 if TYPE_CHECKING:
@@ -280,6 +281,15 @@ def open_run(path: Path | str, kinds: SummaryKinds | None = None) -> Run:
     return run
 
 
+def _no_run_hint(path: Path) -> str:
+    """Advice on a path that is no run; "" for none."""
+    if path.name.endswith(".partial"):
+        return "; it was not finished: run the scene again to go on"
+    if path.is_file():
+        return f"; tol3d run {path} makes one" if path.suffix == ".yaml" else ""
+    return nearest(path.name, (own.parent.name for own in path.parent.glob(f"*/{SUMMARY}")))
+
+
 def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
     """A run by its summary alone: its blocks may be damaged.
 
@@ -287,8 +297,7 @@ def read_run(path: Path, kinds: SummaryKinds | None = None) -> Run:
         RunError: not a run, or its summary is damaged or was changed since it was made.
     """
     if not (path / SUMMARY).exists():
-        hint = "; it was not finished: run the scene again to go on" if path.name.endswith(".partial") else ""
-        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{hint}")
+        raise RunError(f"{path}: expected a run's folder with {SUMMARY} in it{_no_run_hint(path)}")
     content = Manifest.read(path).content(SUMMARY, LARGEST_SUMMARY)
     run = Run(path, parsed(content, path / SUMMARY), kinds)
     _ = run.found  # refused here, if at all

@@ -21,6 +21,7 @@ SUCH_AS: Final[Mapping[object, str]] = {
     "distribution": ", such as {kind: normal, lower: -10 um, upper: 10 um}",
     "law": ", such as {kind: uniform}",
 }
+PLUS_MINUS: Final = re.compile(r"\s*(?:±|\+-|\+/-)")
 MOST_LISTED: Final = 28  # words of a message; tolerances are more
 
 
@@ -117,7 +118,10 @@ def _unknown_key(details: ErrorDetails) -> str:
     key = details["ctx"]["key"]
     if NUMBER_UNIT.fullmatch(key):
         return f'expected a key, got "{key_text(key)}"; {COMMA_SEPARATES}'
-    return f'unknown key "{key_text(key)}"{hint(key, details["ctx"]["known"])}'
+    known = details["ctx"]["known"]
+    if PLUS_MINUS.match(key) and {"lower", "upper"} <= set(known):
+        return f'unknown key "{key_text(key)}"; write both limits, such as lower: -15 um, upper: 15 um'
+    return f'unknown key "{key_text(key)}"{hint(key, known)}'
 
 
 def _missing(details: ErrorDetails) -> str:

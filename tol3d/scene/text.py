@@ -57,9 +57,9 @@ END: Final = (yaml.StreamEndEvent, ruamel_events.StreamEndEvent)
 
 HINTS: Final = {
     "mapping values are not allowed": 'a ":" too many or a wrong indent; text with ": " inside needs quotes',
-    r"character '\t'": "indent with blanks, not with tabs",
+    r"character '\t'": "indent with spaces, not with tabs",
     "expected <block end>": "look at the indents: keys of one level start in one column",
-    "could not find expected ':'": 'a key needs ":" and a blank behind it',
+    "could not find expected ':'": 'a key needs ":" and a space after it',
     "expected ',' or": "a comma or a closing bracket is missing",
     "unexpected end of stream": "a quote is opened and never closed",
     "found '<stream end>'": "a bracket is opened and never closed",

@@ -57,7 +57,7 @@ def unfit_engagements(scene: Scene) -> Iterator[Problem]:
             sized += [("bolt", bolt.of)] if bolt is not None and bolt.of is not None else []
             for end, own in sized:
                 if not drawing.is_sized(own):
-                    words = f"expected a size tolerance of {own!r}, for its play follows from its size, got none"
+                    words = f"expected a size tolerance of {own!r}, because the play depends on it, got none"
                     yield (*here, end), f"{words}; {NO_SIZE}"
 
 

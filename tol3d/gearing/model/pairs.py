@@ -145,8 +145,8 @@ def _internal_gear(spec: InternalGearSpec) -> InternalGear:
 def _(gear: SpurGear) -> str:
     if gear.undercut_radius > gear.base_radius:
         return (
-            f"a rack of addendum 1 undercuts it below profile_shift {gear.undercut_limit_shift:.4f}; "
-            f"its flank is lost up to {2 * gear.undercut_radius:.4f} mm, below the flank in use"
+            f"undercut by a rack of addendum 1, because profile_shift is below {gear.undercut_limit_shift:.4f}; "
+            f"the flank is lost up to diameter {2 * gear.undercut_radius:.4f} mm, which is below the flank in use"
         )
     return ""
 
@@ -206,8 +206,8 @@ def _bevel_gear(scene: Scene, name: str, pitch_angle: float) -> BevelGear:
 def _(gear: BevelGear) -> str:
     if gear.undercut_angle > gear.base_angle:
         return (
-            f"a crown rack of addendum 1 undercuts it below profile_shift {gear.undercut_limit_shift:.4f}; "
-            "its flank is lost below the flank in use"
+            f"undercut by a crown rack of addendum 1, because profile_shift is below {gear.undercut_limit_shift:.4f}; "
+            "the flank is lost only below the flank in use"
         )
     return ""
 

@@ -71,19 +71,19 @@ class PatternPairSpec(EngagementSpec):
 
 
 class CentredSpec(Strict):
-    """In the middle of its room."""
+    """Centred within its play."""
 
     kind: Literal["centred"]
 
 
 class RandomSpec(Strict):
-    """Anywhere in its room."""
+    """Anywhere within its play."""
 
     kind: Literal["random"]
 
 
 class TowardSpec(Strict):
-    """At the end of its room."""
+    """At one end of its play."""
 
     kind: Literal["toward"]
     along: Direction = Field(description="which way, in the frame of the part that `at` is of, as it lies nominally")
@@ -92,13 +92,13 @@ class TowardSpec(Strict):
 
 def _no_word(value: Any) -> Any:
     if isinstance(value, str):
-        raise refused("", "where in its room the part lies, such as {kind: random}", shown(value))
+        raise refused("", "the position of the part within its play, such as {kind: random}", shown(value))
     return value
 
 
 FloatUnion = Annotated[
     CentredSpec | RandomSpec | TowardSpec,
-    Field(discriminator="kind", description="where in its room the part lies: centred, random or toward a direction"),
+    Field(discriminator="kind", description="position within the play: centred, random or toward a direction"),
     BeforeValidator(_no_word),
 ]
 
@@ -118,7 +118,7 @@ class PlaySpec(PlacingSpec):
     def _refuse_no_float(cls, value: Any) -> Any:
         if isinstance(value, dict) and "float" not in value:
             choices = "{kind: centred}, {kind: random} or {kind: toward, along: …, at: …}"
-            raise refused("float", f"where in its room the part lies, which has no default: {choices}", "none")
+            raise refused("float", f"the position of the part within its play (no default): {choices}", "none")
         return value
 
     @property
