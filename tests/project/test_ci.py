@@ -77,16 +77,16 @@ def calls(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str]]:
     return [(line.partition("|")[0], line.partition("|")[2]) for line in told.read_text("utf-8").splitlines()]
 
 
-def test_ci_runs_the_readme_s_commands_one_after_the_other_each_in_a_copy_of_its_own(
+def test_ci_runs_the_readme_s_commands_each_in_a_copy_of_its_own(
     calls: list[tuple[str, str]],
 ) -> None:
     said = [words for _, words in calls]
-    first, second = (  # the oldest versions come meanwhile
+    first, second = (  # environments are made meanwhile
         [words for folder, words in calls if Path(folder).name == copy] for copy in ("first", "second")
     )
     assert first[:3] == ["python3 -m venv .venv", "pip install -e .", "tol3d run scenes/spur_pair.yaml"]
     assert second[:3] == ["python3 -m venv .venv", "pip install -e .[test]", "pytest "]
-    assert said.index(first[2]) < said.index(second[1])
+    assert said.index(first[-1]) < said.index(second[2])
     folders = {Path(folder).name for folder, words in calls if words.startswith(("pip", "tol3d", "pytest"))}
     assert folders == {"first", "oldest", "second", "wheel"}
     assert all("pip install" not in words or "[test]" not in words for f, words in calls if Path(f).name == "first")
@@ -113,10 +113,10 @@ def test_it_checks_style_types_and_layers_and_runs_the_slow_tests(calls: list[tu
     assert {"ruff check .", "mypy ", "lint-imports --no-cache", slow} <= set(last)
 
 
-def test_the_oldest_versions_are_tested_before_the_default(calls: list[tuple[str, str]]) -> None:
+def test_the_oldest_versions_are_tested(calls: list[tuple[str, str]]) -> None:
     tests = " ".join(output(sys.executable, str(OLDEST), "--tests"))
     said = [(Path(folder).name, words) for folder, words in calls]
-    assert said.index(("oldest", f"pytest {tests}")) < said.index(("second", "pytest "))
+    assert ("oldest", f"pytest {tests}") in said
 
 
 def test_it_asks_for_the_system_s_libraries_that_the_readme_lists(calls: list[tuple[str, str]]) -> None:

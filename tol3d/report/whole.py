@@ -45,6 +45,7 @@ PROBE_HEIGHT: Final = 480  # pixels of the pictures used only to test visibility
 LARGE_COUNTS: Final = 1 / 4  # power; of two corners with equal visibility, the one with the larger picture
 ALIKE: Final = 0.98  # of the best corner's score: near enough to it, so that trials of a run are seen from one corner
 HIDDEN: Final = " (hidden)"  # behind the name of what others hide
+FLARE: Final = 0.05  # relative luminance that is added to both colours of a contrast (WCAG 2.2)
 PEELS: Final = 12  # transparent faces in a row
 INSIDE_SHARE: Final = 0.6  # of the largest distance to the edge of a body's visible area: a label may point there
 
@@ -87,13 +88,28 @@ class Frame:
 
 @dataclass(frozen=True, eq=False)
 class Label:
-    """A text, its colours, the point (3,) [mm] that it names, and whether others hide all of that in a picture."""
+    """A text, the colour behind it, and the point (3,) [mm] that it names.
+
+    Args:
+        text: of a user.
+        colour: "#RRGGBB".
+        point: what it names.
+        hidden: others hide all of that in a picture.
+        part: it names a part, no point or arrow.
+    """
 
     text: str
     colour: str
-    ink: str
     point: Array
     hidden: bool = False
+    part: bool = False
+
+    @property
+    def ink(self) -> str:
+        """The colour of the letters: dark for a part, unless white has more contrast to its colour."""
+        behind = _luminance(self.colour)
+        dark = (behind + FLARE) / (_luminance(EDGE_COLOUR) + FLARE)
+        return EDGE_COLOUR if self.part and dark >= (1.0 + FLARE) / (behind + FLARE) else "white"
 
 
 class Named(NamedTuple):
@@ -131,12 +147,12 @@ def draw_whole(
         plotter.renderer.SetMaximumNumberOfPeels(PEELS)
     eye, named = _best_eye(world, width_by_height)
     frame = _frame(world, eye, width_by_height)
-    labels = [Label(own.name, own.colour, EDGE_COLOUR, *named[own.name]) for own in world.bodies]
-    labels += [Label(name, CONTACT_COLOUR, "white", point) for name, point in {**world.points, **marks}.items()]
+    labels = [Label(own.name, own.colour, *named[own.name], part=True) for own in world.bodies]
+    labels += [Label(name, CONTACT_COLOUR, point) for name, point in {**world.points, **marks}.items()]
     for name, shown in world.arrows.items():
         length = ARROW_SHARE * frame.height
         plotter.add_mesh(arrow(shown.place, shown.direction, length), color=GAP_COLOUR, ambient=0.6)
-        labels.append(Label(name, GAP_COLOUR, "white", shown.place + length * shown.direction))
+        labels.append(Label(name, GAP_COLOUR, shown.place + length * shown.direction))
     _look(plotter, eye, frame)
     (_label_beside if plotter.off_screen else _label_in_place)(plotter, Whole(eye, frame, tuple(labels)))
 
@@ -144,7 +160,7 @@ def draw_whole(
 def _label_in_place(plotter: pv.Plotter, picture: Whole) -> None:
     """Name the parts where they are, for a window in which they can be turned."""
     for label in picture.labels:
-        add_label(plotter, label.point, label.text, EDGE_COLOUR if label.ink == EDGE_COLOUR else label.colour)
+        add_label(plotter, label.point, label.text, EDGE_COLOUR if label.part else label.colour)
 
 
 def _label_beside(plotter: pv.Plotter, picture: Whole) -> None:
@@ -274,8 +290,7 @@ def _add_line(plotter: pv.Plotter, picture: Whole, label: Label, place: Array) -
     eye, frame = picture.eye, picture.frame
     ends = (place, eye.seen(label.point)[:2])
     begin, end = (eye.world(np.array([*point, frame.front])) for point in ends)
-    part = label.ink == EDGE_COLOUR
-    colour, radius = (EDGE_COLOUR, DOT_SHARE) if part else (label.colour, MARK_SHARE)
+    colour, radius = (EDGE_COLOUR, DOT_SHARE) if label.part else (label.colour, MARK_SHARE)
     plotter.add_mesh(pv.Line(begin, end), color=colour, line_width=1.5, lighting=False)
     if not label.hidden:
         plotter.add_mesh(pv.Sphere(radius=radius * frame.height, center=end), color=colour, lighting=False)
@@ -293,6 +308,12 @@ def _add_text(plotter: pv.Plotter, label: Label, frame: Frame, place: Array, siz
         actor.GetSize(plotter.renderer, extent := [0.0, 0.0])
         if extent[0] <= room:
             break
+
+
+def _luminance(colour: str) -> float:
+    """The relative luminance of a colour, 0 to 1 (WCAG 2.2)."""
+    share = np.array(pv.Color(colour).float_rgb)
+    return float(np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4) @ (0.2126, 0.7152, 0.0722))
 
 
 def _spread(wanted: Array, frame: Frame) -> Array:
