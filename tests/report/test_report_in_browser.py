@@ -15,8 +15,6 @@ from tol3d.notebook import write_report
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides
 
-pytestmark = pytest.mark.slow
-
 READY = "document.querySelector('figure.view').dataset.ready === 'yes'"
 STAGE = ".stage"
 LARGEST = 2_000_000
@@ -53,6 +51,7 @@ def _hues(picture: np.ndarray) -> dict[str, np.ndarray]:
     return {"pinion": lively & (blue > red) & (blue > green), "wheel": lively & (red > green) & (green > blue)}
 
 
+@pytest.mark.slow
 def test_parts_are_seen_whole_in_their_colours_and_can_be_hidden(page: Page, written: Path) -> None:
     page.open(written)
     page.wait(READY)
@@ -74,6 +73,7 @@ def test_parts_are_seen_whole_in_their_colours_and_can_be_hidden(page: Page, wri
     page.ask("document.querySelector('[name=part][value=\"0\"]').click()")
 
 
+@pytest.mark.slow
 def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, written: Path) -> None:
     page.open(written)
     page.wait(READY)
@@ -91,6 +91,7 @@ def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, writte
     assert np.abs(moved[0] - moved[1]).max() > 60
 
 
+@pytest.mark.slow
 def test_a_page_says_nothing_asks_nothing_and_fits(page: Page, written: Path) -> None:
     page.told.clear()
     page.asked.clear()
@@ -106,6 +107,7 @@ def test_a_page_says_nothing_asks_nothing_and_fits(page: Page, written: Path) ->
     assert all(own == written.resolve().as_uri() for own in page.asked if own.startswith("file"))
 
 
+@pytest.mark.slow
 def test_numbers_in_the_page_are_those_of_the_summary_to_the_digits_shown(page: Page, spur: Run, written: Path) -> None:
     page.open(written)
     cells = page.ask(
@@ -122,6 +124,7 @@ def test_numbers_in_the_page_are_those_of_the_summary_to_the_digits_shown(page: 
         assert abs(value - float(text)) <= 0.5001 * 10.0 ** -len(text.partition(".")[2])
 
 
+@pytest.mark.slow
 def test_a_bar_lists_its_trials_with_the_commands_that_show_them(page: Page, spur: Run, written: Path) -> None:
     page.open(written)
     page.ask(
@@ -136,6 +139,7 @@ def test_a_bar_lists_its_trials_with_the_commands_that_show_them(page: Page, spu
     assert ((values > low - 0.051) & (values < high + 0.051)).all(), "bars are told to 0.1 µm"
 
 
+@pytest.mark.slow
 def test_code_that_is_put_into_a_page_does_nothing(page: Page, written: Path, tmp_path: Path) -> None:
     attacks = (
         "<script>window.struck = 1</script><img src=x onerror='window.struck = 1'>"
@@ -149,6 +153,7 @@ def test_code_that_is_put_into_a_page_does_nothing(page: Page, written: Path, tm
     page.told.clear()
 
 
+@pytest.mark.slow
 def test_a_page_prints_with_its_tables_and_a_still_picture(page: Page, written: Path) -> None:
     page.open(written)
     page.wait(READY)
@@ -161,6 +166,7 @@ def test_a_page_prints_with_its_tables_and_a_still_picture(page: Page, written: 
     assert b"/DCTDecode" in pdf, "the still picture, where nothing can be turned"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["bevel_pair", "gearbox_in_housing"])
 def test_pages_are_small_and_soon_ready(name: str, page: Page, tmp_path: Path) -> None:
     run = run_scene(name, overrides=Overrides(trials=100, witness=0), out=tmp_path / name)
