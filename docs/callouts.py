@@ -36,7 +36,7 @@ SYMBOLS: Final[Mapping[str, str]] = {
 }
 """In a square of 20 px."""
 DIAMETER: Final = "⌀"
-CIRCLED: Final = {"Ⓜ": "M", "Ⓛ": "L", "Ⓟ": "P", "Ⓣ": "T"}
+CIRCLED: Final = {"Ⓜ": "M", "Ⓛ": "L", "Ⓟ": "P", "Ⓣ": "T", "Ⓔ": "E"}
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,9 @@ CALLOUTS: Final[Mapping[str, tuple[Frame, ...]]] = {
         Frame("run_out", (("0.03", "A"),), "shoulder", ("axial run-out",)),
         Frame("flatness", (("0.004",),), "shoulder"),
         Frame("straightness", (("0.01/20",),), "rail", ("every 20 mm",)),
+    ),
+    "size_and_form": (
+        Frame("straightness", (("⌀0.02",),), "⌀10 0/-0.05 Ⓔ", ("axis of the pin, no more than the size leaves",)),
     ),
     "orientation": (
         Frame("perpendicularity", (("⌀0.05Ⓟ16", "A"),), "tapped hole", ("over the projected length of its stud",)),

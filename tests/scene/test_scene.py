@@ -150,7 +150,11 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
         for own in ("grade: 7", "size: 9 um")
     ]
     measured = f"tolerances: {{span: {span}, pins: {pins}, graded: {teeth[0]}, sized: {teeth[1]}}}"
-    said |= set(fields_said(load(tmp_path, f"{SMALL}default_law: {{kind: uniform}}\ngeneral: mK\n{measured}\n", GEARS)))
+    said |= set(
+        fields_said(
+            load(tmp_path, f"{SMALL}default_law: {{kind: uniform}}\nenvelope: false\ngeneral: mK\n{measured}\n", GEARS)
+        )
+    )
     heights = ", ".join(f"{name}: {{kind: tooth_thickness, of: {name[0]}, {TIGHT}}}" for name in ("a1", "b1"))
     both = "{between: [a1, b1], rho: 0.5}, {between: [a1, b1], matrix: [[1, 0.5], [0.5, 1]]}"
     said |= set(fields_said(load(tmp_path, f"{SMALL}tolerances: {{{heights}}}\ncorrelations: [{both}]\n", GEARS)))

@@ -59,7 +59,7 @@ OTHER_KEYS: Final = (
     ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
     ("st", "statistical tolerances (ST) are not supported: name the law of the process"),
     ("non_uniform", "non-uniform profiles are not supported: `outward` makes one unequal"),
-    ("envelope", "the envelope of a size (Rule #1) does not limit its form here: write straightness or flatness"),
+    ("rule_1", "write envelope: true, of the scene or of a size"),
 )
 
 ASSEMBLY: Final = Mechanism(

@@ -27,7 +27,7 @@ from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.first_order import Slopes
 from tol3d.assembly.witnessed import reads
-from tol3d.assembly.zones import ZoneDraw, laws_told
+from tol3d.assembly.zones import EnvelopedForm, ZoneDraw, laws_told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -178,7 +178,7 @@ class AssemblySystem(PlainSystem):
 
     def _closed_form(self, measure: Measure) -> ClosedForm | None:
         slopes = self.slopes_of(measure.name)
-        if slopes.bends:
+        if not self.is_linear(measure):
             return None
         slices = component_slices(self)
         shares: list[Share] = []
@@ -193,8 +193,13 @@ class AssemblySystem(PlainSystem):
         return ClosedForm(slopes.nominal, middle, sigma, tuple(shares))
 
     def is_linear(self, measure: Measure) -> bool:
-        """True if a measure is linear in all deviations by the analytic method, which then has a closed form."""
-        return not self.slopes_of(measure.name).bends
+        """True if a measure is linear in all deviations by the analytic method, which then has a closed form.
+
+        A form within the envelope of a size goes with the size, so that their variances do not add up.
+        """
+        if self.slopes_of(measure.name).bends:
+            return False
+        return not any(isinstance(own.draw, EnvelopedForm) for own in self.acting(measure))
 
     def slopes_of(self, name: str) -> Slopes:
         """Slopes of a measure of the assembly for each deviation, at the means."""

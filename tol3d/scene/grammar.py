@@ -207,6 +207,8 @@ class Grammar:
 
     def problems(self, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
         """Errors that the vocabularies find across entries."""
+        if scene.envelope and not any("envelope" in type(own).model_fields for own in scene.tolerances.values()):
+            yield ("envelope",), "expected a size tolerance, whose limits bound a form, found none; take it out"
         for vocabulary in self.vocabularies:
             for check in vocabulary.checks:
                 yield from check(scene)

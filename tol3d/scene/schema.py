@@ -229,6 +229,11 @@ class Scene(Strict):
         default=None,
         description="general tolerances of ISO 2768-1 for dimensions without one of their own, such as m or mK",
     )
+    envelope: bool = Field(
+        default=False,
+        description="whether limits of size bound the form of what they are of (Rule #1 of ASME Y14.5), unless the "
+        "size says else; default: they do not (ISO 8015)",
+    )
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)
     correlations: Annotated[tuple[CorrelationSpec, ...], listed("correlations", 0)] = Field(

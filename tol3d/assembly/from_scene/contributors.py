@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from tol3d.assembly.from_scene.segments import motion_of
-from tol3d.assembly.from_scene.zones import drawn_in
+from tol3d.assembly.from_scene.zones import drawn_in, enveloped, sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
@@ -16,8 +16,9 @@ from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Axis, Contribution, Point
+from tol3d.assembly.model import Axis, Contribution, Point, Slot
 from tol3d.assembly.model.feature import nominal_size
+from tol3d.assembly.zones import EnvelopedForm
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution
 from tol3d.import_path import named
@@ -39,14 +40,17 @@ class Effects:
         drawing: its tolerances by feature.
         touching: the pairs at which each feature touches, by what touches it there; the same for all pairs of two
             features.
+        fitting: features that engage with play.
     """
 
     scene: Scene
     drawing: Drawing
     touching: Mapping[str, Mapping[str, Sequence[Touch]]]
+    fitting: frozenset[str] = frozenset()
     contributors: list[PlainContributor] = field(default_factory=list)
     moved_by: dict[str, list[Contribution]] = field(default_factory=dict)
     size_by: dict[str, list[Contribution]] = field(default_factory=dict)
+    formed_by: dict[str, list[Contribution]] = field(default_factory=dict)
     grown_by: dict[str, list[Contribution]] = field(default_factory=dict)
     locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
     heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
@@ -179,7 +183,10 @@ class Effects:
     def _form(self, own: Stated, spec: FormSpec) -> None:
         others = self.touching.get(own.feature, {})
         alike = [each.feature for each in self.drawing.stated if isinstance(each, Stated) and each.entry == own.entry]
-        if not others and (own.alike or any(self.touching.get(feature) for feature in alike)):
+        if own.feature in self.fitting:
+            self._form_in_fit(own, spec)
+            return
+        if not others and (own.alike or any(self.touching.get(each) or each in self.fitting for each in alike)):
             return  # a copy of the toleranced part, or one of a pattern, without a touch
         if not others:
             raise self.scene.refuse(("tolerances", own.entry, "law"), self._untouched(own))
@@ -196,6 +203,30 @@ class Effects:
             matrix[0, k] = 1.0
             for touch in touches:
                 self.heights.setdefault(touch, []).append(Contribution(own.name, columns, matrix))
+
+    def _form_in_fit(self, own: Stated, spec: FormSpec) -> None:
+        """The form by which a fit sees a larger pin or tab, or a smaller hole or slot."""
+        assert spec.law is not None
+        if not spec.law.fitting:
+            words = f"expected uniform or normal, got {spec.law.kind} of a {spec.kind} of {own.feature!r}"
+            raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words}, whose form takes of a fit")
+        others = [each for each in self.drawing.of(own.feature, FormSpec) if getattr(each.spec, "law", None)]
+        if other := next((each for each in others if each.entry != own.entry), None):
+            words = (
+                f"expected one form of {own.feature!r} with a law, for they do not add up in a fit, got {other.entry!r}"
+            )
+            raise self.scene.refuse(("tolerances", own.entry, "law"), f"{words} too; leave out that of the wider one")
+        shape, law = self.drawing.kind(own.feature).shape, named(spec.law.fitting)
+        assert isinstance(shape, Axis | Slot)
+        form = whole_form(spec, shape)
+        draw: Draw = Scalar(law(spec.law, form, self.scene.files))
+        if self.drawing.is_enveloped(own.feature):
+            size = sized_by(self.scene, self.drawing, own.feature, "mmc")
+            share = law(spec.law, 1.0, self.scene.files)
+            draw = EnvelopedForm(share, spec.law.kind, enveloped(size, self.drawing, own.feature, form))
+        columns = self._added(own.name, spec.kind, spec.description, draw)
+        sign = np.array([[-1.0 if shape.inner else 1.0]])
+        self.formed_by.setdefault(own.feature, []).append(Contribution(own.name, columns, sign))
 
     def _untouched(self, own: Stated) -> str:
         words = f"expected a feature that touches a point in a move, got {own.feature!r}"
@@ -225,7 +256,7 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
     Raises:
         SceneError: a zone does not fit its feature, or the file of a law is invalid.
     """
-    effects = Effects(scene, drawing, _touching(scene))
+    effects = Effects(scene, drawing, _touching(scene), _fitting(scene))
     for own in drawing.stated:
         effects.add(own)
         if isinstance(own, Stated) and (pattern := drawing.composite(own)) and own is pattern[-1]:
@@ -238,6 +269,13 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
             drawn = move.contributors(name, scene)
             effects.stated[name] = {own.name: effects.added(own) for own in drawn}
     return effects
+
+
+def _fitting(scene: Scene) -> frozenset[str]:
+    moves = [move for move in scene.moves.values() if isinstance(move, PlaySpec)]
+    pairs = [pair for move in moves for pair in move.engaged]
+    bolts = (pair.bolt.of for pair in pairs if isinstance(pair, PatternPairSpec) and pair.bolt is not None)
+    return frozenset([*(own for pair in pairs for own in (pair.from_, pair.to)), *(own for own in bolts if own)])
 
 
 def _touching(scene: Scene) -> Mapping[str, Mapping[str, Sequence[Touch]]]:

@@ -36,6 +36,7 @@ def features_of(drawing: Drawing, effects: Effects, frames: DatumFrames) -> dict
             tuple(effects.size_by.get(name, ())),
             tuple(effects.grown_by.get(name, ())),
             face=faces.get(name, ""),
+            formed_by=tuple(effects.formed_by.get(name, ())),
         )
     return found
 

@@ -28,5 +28,5 @@ def idle_forms(drawing: Drawing) -> Iterator[str]:
         turned = any(isinstance(each.spec, AxialRunOutSpec) for each in drawing.of(own.feature, OrientationSpec))
         if own.spec.law is None and not turned and (alone or not located):
             why = f"it has no law, and {own.feature!r} has no {zones} that it could narrow"
-            mend = "give a law to the form of a face that touches points in a move, or take it out"
+            mend = "give a law to the form of a face that touches points, or of a pin or hole with play, or take it out"
             yield f"{own.name}: this {own.spec.kind} acts on nothing, for {why}; {mend}"

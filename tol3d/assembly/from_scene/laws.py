@@ -23,6 +23,11 @@ def uniform_form(law: LawSpec, half: float, files: Files) -> Distribution:
     return Uniform(-half, half)
 
 
+def uniform_fit(law: LawSpec, form: float, files: Files) -> Distribution:
+    """Any part of the form."""
+    return Uniform(0.0, form)
+
+
 def normal(law: LawSpec, zone: Zone, files: Files) -> Confined:
     """The middle first, then tilts."""
     return normal_in(zone)
@@ -31,6 +36,11 @@ def normal(law: LawSpec, zone: Zone, files: Files) -> Confined:
 def normal_form(law: LawSpec, half: float, files: Files) -> Distribution:
     """Cut off at the form's zone."""
     return TruncatedNormal(0.0, half / SIGMAS, -half, half)
+
+
+def normal_fit(law: LawSpec, form: float, files: Files) -> Distribution:
+    """The size of a normal law, cut off at the form."""
+    return TruncatedNormal(0.0, form / SIGMAS, 0.0, form)
 
 
 def ring(law: LawSpec, zone: Zone, files: Files) -> Confined:

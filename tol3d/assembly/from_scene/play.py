@@ -100,7 +100,7 @@ def _bolted(
         by: tuple[Contribution, ...] = (effects.bolts[name, k],)
     else:
         shank = features[spec.of]
-        diameter, by = nominal_size(shank.shape) or 0.0, shank.size_by
+        diameter, by = nominal_size(shank.shape) or 0.0, shank.mating_by
     mean = diameter + _mean_deviation(effects, by)
     for own in holes:
         short = mean - _mean_size(effects, own)
@@ -129,7 +129,7 @@ def _floating(name: str, spec: PlaySpec, effects: Effects) -> Floating:
 
 def _mean_size(effects: Effects, feature: Feature) -> float:
     """At the means of its tolerances [mm]."""
-    return (nominal_size(feature.shape) or 0.0) + _mean_deviation(effects, feature.size_by)
+    return (nominal_size(feature.shape) or 0.0) + _mean_deviation(effects, feature.mating_by)
 
 
 def _mean_deviation(effects: Effects, size_by: Sequence[Contribution]) -> float:

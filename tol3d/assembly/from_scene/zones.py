@@ -23,6 +23,7 @@ from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
     Bonus,
     Confined,
+    Envelope,
     JudgedProcess,
     Process,
     SizedBy,
@@ -62,7 +63,7 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
             zone = _orientation(spec.zone, feature, drawing.oriented(own))
     except InputError as error:
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
-    draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing)
+    draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing, zone)
     matrix = draw.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ draw.matrix
     if size is None:
         return draw, matrix
@@ -110,18 +111,26 @@ def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
     return seen_from_projected(shape.length, projected.internal)
 
 
-def _size(scene: Scene, own: Stated, drawing: Drawing) -> SizedBy | None:
-    """The size that widens a zone; None without a modifier on it or on its refinements."""
+def _size(scene: Scene, own: Stated, drawing: Drawing, zone: Zone) -> SizedBy | None:
+    """The size that widens a zone; None without a modifier on it or on its refinements, and a form that it bounds."""
     spec = own.spec
     of_zone = spec.modifier if isinstance(spec, Modified) else None
     refining = drawing.of(own.feature, OrientationSpec) if isinstance(spec, LocationSpec) else ()
     of_orientation = next((each.spec.modifier for each in refining if isinstance(each.spec, Modified)), None)
-    modifier = of_zone or of_orientation
-    if modifier is None:
+    modifier, is_enveloped = of_zone or of_orientation, zone.form > 0.0 and drawing.is_enveloped(own.feature)
+    if modifier is None and not is_enveloped:
         return None
-    found = sized_by(scene, drawing, own.feature, modifier)
+    found = sized_by(scene, drawing, own.feature, modifier or "mmc")
     bonus = replace(found.bonus, of_zone=of_zone is not None, of_orientation=of_orientation is not None)
-    return replace(found, bonus=bonus)
+    size = replace(found, bonus=bonus)
+    return enveloped(size, drawing, own.feature, zone.form) if is_enveloped else size
+
+
+def enveloped(size: SizedBy, drawing: Drawing, feature: str, form: float) -> SizedBy:
+    """A size that bounds the form of its feature, whose tolerance of form is so wide [mm]."""
+    shape, bonus = drawing.kind(feature).shape, size.bonus
+    assert isinstance(shape, Axis | Slot)
+    return replace(size, bonus=replace(bonus, envelope=Envelope(bonus.low, bonus.high, shape.inner, form)))
 
 
 def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:

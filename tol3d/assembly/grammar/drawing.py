@@ -245,6 +245,12 @@ class Drawing:
         surfaces = (own for own in self.of(feature, LocationSpec) if is_of_round_surface(own.spec, kind))
         return bool(self.of(feature, SizeSpec)) or any(surfaces)
 
+    def is_enveloped(self, feature: str) -> bool:
+        """True if limits of size bound its form: its size says so, or else the scene."""
+        specs = [own.spec for own in self.of(feature, SizeSpec)]
+        said = next((spec.envelope for spec in specs if isinstance(spec, SizeSpec)), False)
+        return self.scene.envelope if said is None else said
+
     def datums(self, feature: str) -> tuple[DatumSpec, ...]:
         """Datums of its location tolerance; those of its orientation if it has none."""
         for spec in (LocationSpec, PlusMinusSpec, OrientationSpec):

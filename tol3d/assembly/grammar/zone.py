@@ -84,11 +84,13 @@ class LawSpec(Strict):
 
     `draws` makes the draw of a feature's displacement (Confined or Process) from the law, a zone without bonus and
     files; `touching` makes the distribution of a point that touches from the law, half of a form's zone [mm] and files;
-    "" if forms cannot have it: `lies` says why.
+    "" if forms cannot have it: `lies` says why. `fitting` makes that of the form that a fit sees from the law, the
+    form's tolerance [mm] and files, likewise.
     """
 
     draws: ClassVar[str]
     touching: ClassVar[str] = ""
+    fitting: ClassVar[str] = ""
     lies: ClassVar[str] = "that is no law of a form"
 
     kind: str
@@ -104,7 +106,8 @@ class LawSpec(Strict):
     @classmethod
     def lacking(cls) -> Iterator[str]:
         """Import paths named by the law that cannot be imported."""
-        for what, path in (("draws", getattr(cls, "draws", "")), ("touching", cls.touching)):
+        for what in ("draws", "touching", "fitting"):
+            path = getattr(cls, what, "")
             if path or what == "draws":
                 yield from () if is_named(path) else (f"`{what}` of the law {cls.__name__}, got {path!r}",)
 
@@ -114,6 +117,7 @@ class UniformLawSpec(LawSpec):
 
     draws: ClassVar[str] = f"{DRAWS}:uniform"
     touching: ClassVar[str] = f"{DRAWS}:uniform_form"
+    fitting: ClassVar[str] = f"{DRAWS}:uniform_fit"
 
     kind: Literal["uniform"]
 
@@ -123,6 +127,7 @@ class NormalLawSpec(LawSpec):
 
     draws: ClassVar[str] = f"{DRAWS}:normal"
     touching: ClassVar[str] = f"{DRAWS}:normal_form"
+    fitting: ClassVar[str] = f"{DRAWS}:normal_fit"
 
     kind: Literal["normal"]
 

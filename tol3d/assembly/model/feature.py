@@ -149,6 +149,7 @@ class Feature:
         parent: name of the datum frame to which its location is toleranced; "" for the part's frame.
         moved_by: contributions to its shape's components, which make delta; they add up.
         size_by: contributions to its size (1, components of the contributor); positive is a larger diameter or width.
+        formed_by: contributions of its form to the size that a fit sees (1, components): larger pins, smaller holes.
         grown_by: contributions to where its origin lies as its part grows (3, components), in its frame [mm].
         is_named: whether a drawing names it; a point that a move makes of one is not.
         plane: of a point where a plane of its part is touched, the name of that plane, which it follows; else "".
@@ -166,6 +167,12 @@ class Feature:
     is_named: bool = True
     face: str = ""
     plane: str = ""
+    formed_by: tuple[Contribution, ...] = ()
+
+    @property
+    def mating_by(self) -> tuple[Contribution, ...]:
+        """Contributions to the size that a fit sees, its form with it (1, components)."""
+        return self.size_by + self.formed_by
 
     @property
     def is_still(self) -> bool:

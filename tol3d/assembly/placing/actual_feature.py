@@ -166,6 +166,11 @@ def actual_size(feature: Feature, columns: Array) -> Array:
     return (nominal_size(feature.shape) or 0.0) + total(feature.size_by, 1, columns)[0]
 
 
+def mating_size(feature: Feature, columns: Array) -> Array:
+    """Its diameter or width that a fit sees, form included, in its trials (n,) or (1,) [mm]."""
+    return (nominal_size(feature.shape) or 0.0) + total(feature.mating_by, 1, columns)[0]
+
+
 def _vector(x: Array | float, y: Array | float, z: Array | float) -> Array:
     trials = max(1 if isinstance(own, float) else len(own) for own in (x, y, z))
     found = np.empty((3, trials))

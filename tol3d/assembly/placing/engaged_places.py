@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Engagement
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
+from tol3d.assembly.placing.actual_feature import ActualFeature, mating_size, total
 from tol3d.assembly.placing.one_sided_gaps import wrench
 from tol3d.assembly.placing.poses import column, dot
 from tol3d.assembly.placing.world import World
@@ -199,7 +199,7 @@ def at_places(
     own: Engagement, inner: ActualFeature, outer: ActualFeature, columns: Array
 ) -> list[tuple[list[Array], Array]]:
     """Offsets (one or two) and clearance at each place (n,) or (1,)."""
-    inside, outside = actual_size(inner.feature, columns), actual_size(outer.feature, columns)
+    inside, outside = mating_size(inner.feature, columns), mating_size(outer.feature, columns)
     found = []
     if isinstance(inner.feature.shape, Axis):
         x, y = inner.pose.turn[:, 0], inner.pose.turn[:, 1]
@@ -239,7 +239,7 @@ def engaged_arrays(
                     fixed.append(none if moves else hole.at(place) - column(middle))
                     axes.append((hole.pose.turn[:, 0], hole.pose.turn[:, 1]))
                     others.append(hole.pose.turn[:, 2])
-                    halves.append([actual_size(hole.feature, world.columns) / 2, half])
+                    halves.append([mating_size(hole.feature, world.columns) / 2, half])
                     inner_moves.append(moves)
                     kinds.append(BOLT_IN_HOLE)
                     bolt_of.append(len(bolts))
@@ -259,7 +259,7 @@ def engaged_arrays(
             fixed.append(points[1 if moves else 0] - column(middle))
             axes.append((frame[:, 0], frame[:, 1]) if round_ else (inner.direction, none))
             others.append(none if round_ else outer.direction)
-            halves.append([actual_size(each.feature, world.columns) / 2 for each in (inner, outer)])
+            halves.append([mating_size(each.feature, world.columns) / 2 for each in (inner, outer)])
             inner_moves.append(moves)
             kinds.append(PIN_IN_HOLE if round_ else PIN_IN_SLOT if pin else TAB_IN_SLOT)
             bolt_of.append(-1)

@@ -92,7 +92,7 @@ def _bolted(own: Engagement, bolt: Bolt, world: World, part: str) -> Sequence[tu
         frame, moves = world.frame(name), world.is_of_body(name, part)
         directions = frame[:3, :2].T
         spare = ((nominal_size(world.assembly.features[name].shape) or 0.0) - bolt.diameter) / 2.0
-        clearance = world.size(name) / 2.0 - radius + world.columns.constants(np.array([spare]))[0]
+        clearance = world.mating_size(name) / 2.0 - radius + world.columns.constants(np.array([spare]))[0]
         for place in places:
             point = frame[:3, :3] @ place + frame[:3, 3]
             at, height = directions @ shift_at(point), (point - bolt.frame[:3, 3]) @ bolt.frame[:3, 2]
@@ -113,7 +113,7 @@ def _places(own: Engagement, world: World, part: str) -> Sequence[tuple[Array, A
     sign = 1.0 if world.is_of_body(own.outer, part) else -1.0
     inner, outer = (nominal_size(features[name].shape) or 0.0 for name in (own.inner, own.outer))
     outer *= _leaning(own, world)
-    clearance = (world.size(own.inner) - world.size(own.outer)) / 2.0
+    clearance = (world.mating_size(own.inner) - world.mating_size(own.outer)) / 2.0
     clearance = clearance + world.columns.constants(np.array([(inner - outer) / 2.0]))[0]
     its_frame = world.frame(own.outer)
     found = []

@@ -241,6 +241,10 @@ class PartTorsors:
         """Deviation of a feature's size (columns,) [mm]."""
         return np.asarray(summed(self._features[name].size_by, 1, self._columns)[0])
 
+    def mating_size(self, name: str) -> Array:
+        """Deviation of the size of a feature that a fit sees (columns,) [mm]."""
+        return np.asarray(summed(self._features[name].mating_by, 1, self._columns)[0])
+
 
 def summed(contributions: Sequence[Contribution], components: int, columns: Columns) -> Array:
     """Summed effect of contributors on components (components, columns)."""

@@ -91,3 +91,7 @@ class World:
     def size(self, feature: str) -> Array:
         """Deviation of a feature's size (columns,) [mm]."""
         return self.own[self.part_of(feature)].size(feature)
+
+    def mating_size(self, feature: str) -> Array:
+        """Deviation of the size of a feature that a fit sees, form included (columns,) [mm]."""
+        return self.own[self.part_of(feature)].mating_size(feature)

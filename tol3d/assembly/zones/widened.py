@@ -28,6 +28,31 @@ SIZE_XTOL: Final = 1e-9  # mm; a support is stationary there, so its error is of
 
 
 @dataclass(frozen=True)
+class Envelope:
+    """min(form, |MMC - size|): how much form the limits of size leave (ASME Y14.5 Rule #1, ISO 14405-1 with an E).
+
+    Args:
+        low, high: limits of the size, as deviations from nominal [mm].
+        inner: whether the feature is a hole.
+        form: width of its tolerance of form [mm].
+    """
+
+    low: float
+    high: float
+    inner: bool
+    form: float
+
+    def of(self, size: Array) -> Array:
+        """Largest form (trials,) [mm] at deviations of size (trials,) [mm]; none past the maximum material size."""
+        return np.clip(size - self.low if self.inner else self.high - size, 0.0, self.form)
+
+    @property
+    def knee(self) -> float:
+        """The size from which on the tolerance of form decides [mm]."""
+        return self.low + self.form if self.inner else self.high - self.form
+
+
+@dataclass(frozen=True)
 class Bonus:
     """t = t0 + clip(±(size - origin), 0, most): how sizes widen a zone.
 
@@ -37,6 +62,7 @@ class Bonus:
         of_zone: whether the width of the zone has it.
         of_orientation: whether the orientation that refines the zone has it, by a modifier of its own; never beyond
             what the width of the zone leaves.
+        envelope: within which the form lies that a zone holds too; None where it takes its whole tolerance.
     """
 
     low: float
@@ -44,6 +70,7 @@ class Bonus:
     grows: bool
     of_zone: bool = True
     of_orientation: bool = False
+    envelope: Envelope | None = None
 
     def __post_init__(self) -> None:
         if not self.low <= self.high:
@@ -65,6 +92,15 @@ class Bonus:
         """The largest bonus [mm]: the whole tolerance of size."""
         return self.high - self.low
 
+    def within(self, low: float, high: float) -> Self:
+        """The same by other limits of size [mm]."""
+        envelope = None if self.envelope is None else replace(self.envelope, low=low, high=high)
+        return replace(self, low=low, high=high, envelope=envelope)
+
+    def spared(self, size: Array) -> Array:
+        """What the form leaves (trials,) [mm] of its tolerance at deviations of size (trials,) [mm]."""
+        return np.zeros(np.shape(size)) if self.envelope is None else self.envelope.form - self.envelope.of(size)
+
     def of(self, size: Array) -> Array:
         """Bonus (trials,) [mm] of deviations of size (trials,) [mm]; none past the size that has none."""
         room = size - self.low if self.grows else self.high - size
@@ -77,6 +113,7 @@ class Bonus:
         """
         own = self.of(size)
         width = zone.width + own if self.of_zone else np.full(np.shape(size), zone.width)
+        width += self.spared(size)
         return width, zone.orientation + own if self.of_orientation and zone.orientation is not None else None
 
     def zone_at(self, zone: Zone, size: float) -> Zone:
@@ -95,7 +132,8 @@ class Bonus:
             size: law of the deviation of size.
         """
         sizes = size.ppf((np.arange(SIZES) + 0.5) / SIZES)
-        _, firsts, counts = np.unique(self.of(sizes), return_index=True, return_counts=True)
+        widened = np.stack([self.of(sizes), self.spared(sizes)])
+        _, firsts, counts = np.unique(widened, axis=1, return_index=True, return_counts=True)
         zones = (self.zone_at(draw.zone, float(sizes[first])) for first in firsts)
         total = sum(count * replace(draw, zone=zone).covariance for count, zone in zip(counts, zones, strict=True))
         return np.asarray(total / SIZES)
@@ -104,7 +142,7 @@ class Bonus:
         """The largest value of gradient · components + per_size · size, over all sizes and the zones they leave.
 
         It is concave in the size between the sizes at which the bonus starts and ends, so that it is greatest at one
-        of them, at an end of the law of size, or where one of three spans has its only maximum.
+        of them, at an end of the law of size, or where one of the spans has its only maximum.
 
         Args:
             draw: of the zone without bonus.
@@ -116,7 +154,8 @@ class Bonus:
         def reached(own: float) -> float:
             return self.zone_at(draw.zone, own).support(gradient) + per_size * own
 
-        inner = (own for own in (self.low, self.high) if size.low < own < size.high)
+        knees = (self.low, self.high) + (() if self.envelope is None else (self.envelope.knee,))
+        inner = (own for own in knees if size.low < own < size.high)
         places = sorted({size.low, size.high, *inner})
         found = [reached(own) for own in places]
         for start, stop in pairwise(places):
@@ -155,7 +194,14 @@ class SizedBy:
                 f"{self.name}: expected a law with limits, from which a bonus counts, got {type(law).__name__}"
             )
         low, high = law.limits
-        return replace(self, law=law, bonus=replace(self.bonus, low=low, high=high))
+        return replace(self, law=law, bonus=self.bonus.within(low, high))
+
+    @property
+    def words(self) -> str:
+        """Its effect on a zone."""
+        bonus = f"the bonus of {self.name}" if self.bonus.of_zone or self.bonus.of_orientation else ""
+        form = "" if self.bonus.envelope is None else f"the form that {self.name} leaves"
+        return " and ".join(filter(None, (bonus, form)))
 
     def of(self, given: Given) -> Array:
         """Deviations of size (trials,) [mm]."""
@@ -178,7 +224,8 @@ class Widened(ZoneDraw):
     @property
     def words(self) -> str:
         """See ZoneDraw."""
-        return f"{self.confined.words}, widened by the bonus of {self.size.name}"
+        way = "widened by" if self.size.bonus.of_zone or self.size.bonus.of_orientation else "with"
+        return f"{self.confined.words}, {way} {self.size.words}"
 
     @property
     def reads(self) -> tuple[str, ...]:
@@ -226,8 +273,9 @@ class Widened(ZoneDraw):
 
     @cached_property
     def _widest(self) -> Confined:
-        ends = np.array([self.size.law.low, self.size.law.high])
-        return self._at(float(ends[np.argmax(self.size.bonus.of(ends))]))
+        ends, bonus = np.array([self.size.law.low, self.size.law.high]), self.size.bonus
+        wider = bonus.spared(ends) + (bonus.of(ends) if bonus.of_zone or bonus.of_orientation else 0.0)
+        return self._at(float(ends[np.argmax(wider)]))
 
     def _at(self, size: float) -> Confined:
         return replace(self.confined, zone=self.size.bonus.zone_at(self.zone, size))
@@ -269,7 +317,7 @@ class JudgedProcess(Process):
     @property
     def words(self) -> str:
         """See ZoneDraw."""
-        return f"its own process, judged with the bonus of {self.size.name}"
+        return f"its own process, judged with {self.size.words}"
 
     @property
     def reads(self) -> tuple[str, ...]:

@@ -218,10 +218,10 @@ def _area(value: Any) -> tuple[Any, ...]:
 
 
 class FlatnessSpec(FormSpec):
-    """Flatness of a plane, or of every piece of it `per` an area."""
+    """Flatness of a plane or of the median plane of a slot, or of every piece of it `per` an area."""
 
     words: ClassVar[str] = "a flatness tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane",)
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot")
 
     kind: Literal["flatness"]
     per: (

@@ -50,6 +50,11 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         description="lower and upper on the drawing, as deviations from nominal, from which a bonus counts; default: "
         "those of the distribution",
     )
+    envelope: bool | None = Field(
+        default=None,
+        description="whether the limits bound the form too (ISO: E in a circle), or not (ASME: I in a circle); "
+        "default: as the scene's `envelope` says",
+    )
 
     @model_validator(mode="after")
     def _refuse_limits_out_of_order(self) -> Self:
