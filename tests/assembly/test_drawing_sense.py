@@ -57,15 +57,36 @@ def test_an_orientation_in_another_frame_than_its_feature_is_refused(tmp_path: P
         assembled(BLOCK.format(tolerances=FLOOR + profile + refined, measures=SEEN), tmp_path)
 
 
-def test_a_flat_zone_does_not_refine_a_round_one(tmp_path: Path) -> None:
-    text = (
-        "  position: {kind: position, of: block.bore, zone: {diameter: 0.2 mm}, law: {kind: uniform}, "
-        "datums: [floor]}\n"
-        "  square: {kind: perpendicularity, of: block.bore, zone: {width: 0.05 mm, along: [1, 0, 0]}, "
-        "datums: [floor]}\n"
+@pytest.mark.parametrize(
+    ("located", "zone", "words"),
+    [
+        (("circular_run_out, zone: {width: 0.2 mm}",), "diameter: 0.05 mm", "in which the axis does not lean"),
+        (
+            (
+                "position, zone: {width: 0.2 mm, along: [1, 0, 0]}",
+                "position, zone: {width: 0.2 mm, along: [0, 1, 0]}",
+            ),
+            "diameter: 0.05 mm",
+            "a lean in both of these zones is not supported",
+        ),
+    ],
+)
+def test_a_lean_that_no_zone_of_location_has_is_refused(
+    located: tuple[str, ...], zone: str, words: str, tmp_path: Path
+) -> None:
+    datum = "shaft" if "run_out" in located[0] else "floor"
+    text = "".join(
+        f"  at {k}: {{kind: {own}, of: block.bore, law: {{kind: uniform}}, datums: [{datum}]}}\n"
+        for k, own in enumerate(located)
     )
-    with pytest.raises(SceneError, match=r"square\.zone: expected a zone of the shape of 'position'"):
-        assembled(BLOCK.format(tolerances=text, measures=SEEN), tmp_path)
+    kind = "parallelism" if datum == "shaft" else "perpendicularity"
+    text += f"  square: {{kind: {kind}, of: block.bore, zone: {{{zone}}}, datums: [{datum}]}}\n"
+    shaft = "      shaft: {kind: axis, at: AT, axis: [0, 0, 1], length: 10 mm}\n"
+    found = BLOCK.format(tolerances=text, measures=SEEN)
+    bore = next(line for line in found.splitlines() if line.startswith("      bore:"))
+    at = bore[bore.index("[") : bore.index("]") + 1]
+    with pytest.raises(SceneError, match=words):
+        assembled(found.replace("      bore:", f"{shaft.replace('AT', at)}      bore:", 1), tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -78,11 +78,11 @@ def columns(made: Assembled, count: int) -> dict[str, Array]:
 @pytest.mark.parametrize("modifier", ["", "mmc", "lmc"])
 def test_a_zone_loses_what_form_the_size_of_the_trial_leaves(modifier: str, tmp_path: Path) -> None:
     """Of a hole: t - min(f, size - MMC) and its bonus, reached and never left; without an envelope t - f."""
-    bonus = {"": lambda size: 0.0 * size, "mmc": lambda size: size, "lmc": lambda size: SIZE - size}[modifier]
     for envelope in ("envelope: true\n", ""):
         found = assembled(fit(envelope, modifier=modifier), tmp_path).drawn(COUNT, "analytic")
         size = found["hole diameter"] - 10.02
-        room = T0 + bonus(size) - (np.minimum(size, FORM) if envelope else FORM)
+        bonus = {"": 0.0, "mmc": size, "lmc": SIZE - size}[modifier]
+        room = T0 + bonus - (np.minimum(size, FORM) if envelope else FORM)
         assert (found["off"] <= room + 2e-9).all()
         assert (found["off"] / room).max() > 0.999
         # the middle of an upright axis is uniform in its disc, whatever the size

@@ -26,6 +26,8 @@ class ZoneSet:
         placed: points of a middle and a tilt; None where a point is one or the other.
         sizes: how many coordinates middle and tilt have.
         directed: whether the tilt has a uniform direction of its own, and is normal along it only.
+        squeezed: whether only the first coordinate of the tilt is limited to t_o / 2; its direction is uniform in units
+            of both limits.
     """
 
     inside: Inside
@@ -33,6 +35,7 @@ class ZoneSet:
     placed: Placed | None = None
     sizes: tuple[int, int] = (0, 0)
     directed: bool = False
+    squeezed: bool = False
 
     def reach(self, width: float, orientation: float) -> Array:
         """Largest value of each component."""
@@ -68,6 +71,9 @@ class ZoneSet:
             out = ~self.inside(placed(middle, np.zeros((count, tilted))), width, orientation)
         angle = rng.uniform(0.0, 2 * math.pi, count)
         direction = np.stack([np.cos(angle), np.sin(angle)], axis=1) if self.directed else np.eye(1, tilted)
+        limit = orientation
+        if self.squeezed:
+            direction, limit = direction * np.array([orientation / width, 1.0]), width
         reach, above = np.zeros((count, 1)), np.full((count, 1), width)
         for _ in range(HALVINGS):
             between = 0.5 * (reach + above)
@@ -79,7 +85,8 @@ class ZoneSet:
                 tilt[out] = (reach * direction)[out] * np.sqrt(rng.random((out.sum(), 1)))
             else:
                 tilt[out] = reach[out] * rng.uniform(-1.0, 1.0, (out.sum(), tilted))
-            kept = rng.random(count) < np.exp(-0.5 * (tilt**2).sum(axis=1) / (orientation / 6) ** 2)
+            lengths = (tilt**2).sum(axis=1) / (direction**2).sum(axis=1) if self.squeezed else (tilt**2).sum(axis=1)
+            kept = rng.random(count) < np.exp(-0.5 * lengths / (limit / 6) ** 2)
             fresh = out & kept & self.inside(placed(middle, tilt), width, orientation)
             out &= ~fresh
         return placed(middle, tilt)
@@ -110,6 +117,18 @@ def _both_heights(points: Array, width: float, orientation: float) -> NDArray[np
     return (np.abs(points).max(axis=1) <= width / 2) & (np.abs(end - start) <= orientation)
 
 
+def _round_ends_along(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
+    """Both ends in discs, their difference between two planes."""
+    return _both_ends(points, width, 2 * width) & (np.abs(points[:, 2] - points[:, 0]) <= orientation)
+
+
+def _flat_ends_round(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
+    """Both ends between two planes, half their difference in a disc."""
+    start, end, across = points.T
+    apart = np.sqrt(((end - start) / 2) ** 2 + across**2)
+    return (np.abs(points[:, :2]).max(axis=1) <= width / 2) & (apart <= orientation / 2)
+
+
 def _sum(points: Array, width: float, orientation: float) -> NDArray[np.bool_]:
     return np.abs(points).sum(axis=1) <= width / 2
 
@@ -124,6 +143,10 @@ def _beside(middle: Array, tilt: Array) -> Array:
 
 def _about(middle: Array, half: Array) -> Array:
     return np.concatenate([middle - half, middle + half], axis=1)
+
+
+def _about_and_across(middle: Array, half: Array) -> Array:
+    return np.concatenate([middle - half[:, :1], middle + half[:, :1], half[:, 1:]], axis=1)
 
 
 def _motion(shifts: int) -> Inside:
@@ -148,6 +171,8 @@ SETS = {
     "axis": ZoneSet(_both_ends, (False,) * 4, _about, (2, 2), directed=True),
     "axis' orientation": ZoneSet(_length, (False, False)),
     "axis at a section": ZoneSet(_length, (False, False)),
+    "axis along": ZoneSet(_round_ends_along, (False,) * 4, _about, (2, 2), directed=True, squeezed=True),
+    "flat axis round": ZoneSet(_flat_ends_round, (False, False, True), _about_and_across, (1, 2), directed=True),
     "flat axis": ZoneSet(_both_heights, (False, False), _about, (1, 1)),
     "flat axis' orientation": ZoneSet(_length, (False,)),
     "point in a sphere": ZoneSet(_length, (False,) * 3),
@@ -160,7 +185,7 @@ SETS = {
 }
 """By name."""
 
-REFINED = ("rectangle", "round face", "axis", "flat axis")
+REFINED = ("rectangle", "round face", "axis", "flat axis", "axis along", "flat axis round")
 """Those whose orientation may be refined."""
 
 
@@ -181,6 +206,14 @@ def facets(name: str, width: float, orientation: float, sides: int) -> tuple[Arr
         zero = np.zeros_like(round_)
         rows = [np.hstack([round_, zero]), np.hstack([zero, round_]), np.hstack([-round_, round_])]
         limits = [width / 2, width / 2, orientation]
+    elif name == "axis along":
+        zero, strip = np.zeros_like(round_), np.array([[-1.0, 0.0, 1.0, 0.0]])
+        rows = [np.hstack([round_, zero]), np.hstack([zero, round_]), strip, -strip]
+        limits = [width / 2, width / 2, orientation, orientation]
+    elif name == "flat axis round":
+        ends = np.hstack([np.eye(2), np.zeros((2, 1))])
+        rows = [ends, -ends, np.hstack([-round_[:, :1] / 2, round_[:, :1] / 2, round_[:, 1:]])]
+        limits = [width / 2, width / 2, orientation / 2]
     elif name == "flat axis":
         rows = [np.eye(2), -np.eye(2), np.array([[-1.0, 1.0], [1.0, -1.0]])]
         limits = [width / 2, width / 2, orientation]

@@ -28,6 +28,8 @@ ZONES: dict[str, Callable[..., Zone]] = {
     "axis' orientation": catalogue.axis_orientation,
     "axis at a section": catalogue.axis_section,
     "flat axis": lambda width, *refined: catalogue.flat_axis(width, (3.0, 4.0), *refined),
+    "axis along": lambda width, own=0.0, *form: catalogue.axis_along(width, (3.0, 4.0), own or width, *form),
+    "flat axis round": lambda width, own=0.0, *form: catalogue.flat_axis_round(width, (3.0, 4.0), own or width, *form),
     "flat axis' orientation": lambda width: catalogue.flat_axis_orientation(width, (3.0, 4.0)),
     "point in a sphere": catalogue.point_in_sphere,
     "point in a disc": catalogue.point_in_disc,
@@ -180,6 +182,8 @@ MIDDLES = {  # sigma of the middle in t / 6 by `normal`
     "rectangle": NORMAL_IN_WIDTH,
     "round face": NORMAL_IN_WIDTH,
     "flat axis": NORMAL_IN_WIDTH,
+    "axis along": NORMAL_IN_DISC,
+    "flat axis round": NORMAL_IN_WIDTH,
     "point between planes": NORMAL_IN_WIDTH,
     "point in a sphere": math.sqrt(chi2.cdf(9, 5) / chi2.cdf(9, 3)),
 }
@@ -263,14 +267,16 @@ def test_a_process_draws_what_it_is_and_the_zone_judges() -> None:
         (catalogue.axis_orientation(WIDTH), lambda x, y: (-x, -y, x, y)),
         (catalogue.axis_section(WIDTH), lambda x, y: (x, y, x, y)),
         (catalogue.flat_axis(WIDTH, (3.0, 4.0)), lambda s, e: (0.6 * s, 0.8 * s, 0.6 * e, 0.8 * e)),
+        (catalogue.axis_along(WIDTH, (3.0, 4.0), 0.05), lambda s, t: (0.6 * s - 0.8 * t, 0.8 * s + 0.6 * t, 0.0, 0.0)),
+        (catalogue.flat_axis_round(WIDTH, (3.0, 4.0), 0.05), lambda s, e: (0.6 * s, 0.8 * s, 0.6 * e, 0.8 * e)),
         (catalogue.flat_axis_orientation(WIDTH, (3.0, 4.0)), lambda e: (-0.6 * e, -0.8 * e, 0.6 * e, 0.8 * e)),
         (catalogue.point_in_disc(WIDTH), lambda x, y: (x, y, 0.0)),
         (catalogue.point_between_planes(WIDTH, (0.0, 3.0, -4.0)), lambda s: (0.0, 0.6 * s, -0.8 * s)),
     ],
 )
 def test_what_is_drawn_moves_the_feature_as_the_zone_allows(zone: Zone, expected: Callable[..., object]) -> None:
-    values = (0.7, -0.4)[: len(zone.components)]
-    assert zone.matrix @ np.array(values) == pytest.approx(np.array(expected(*values)))
+    values = np.resize((0.7, -0.4, 0.0, 0.0), len(zone.components))
+    assert zone.matrix @ values == pytest.approx(np.array(expected(*values[:2])))
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -28,6 +28,9 @@ COUNT = 100_000
 def zone_of(name: str, orientation: float) -> Zone:
     if name == "flat axis":
         return catalogue.flat_axis(WIDTH, (1.0, 0.0), orientation)
+    if name in ("axis along", "flat axis round"):
+        of_this = catalogue.axis_along if name == "axis along" else catalogue.flat_axis_round
+        return of_this(WIDTH, (1.0, 0.0), orientation)
     made: dict[str, Callable[[float, float], Zone]] = {
         "rectangle": catalogue.rectangle,
         "round face": catalogue.round_face,

@@ -1,7 +1,7 @@
 """The zone of a feature with all its refinements, and the draw by its law."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     ProfileSpec,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
-from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec
+from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec, are_alike
 from tol3d.assembly.model import Axis, Contribution, Feature, Slot
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
@@ -58,7 +58,7 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         if isinstance(spec.law, RingLawSpec):
             zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature, spec))
         elif isinstance(spec, LocationSpec):
-            zone = _location(spec, feature, _refined(spec, drawing, own.feature), drawing.form(own.feature, spec))
+            zone = _location(spec, feature, _refined(own, drawing), drawing.form(own.feature, spec))
         else:
             zone = _orientation(spec.zone, feature, drawing.oriented(own))
     except InputError as error:
@@ -71,11 +71,32 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
     return judged, matrix
 
 
-def _refined(spec: LocationSpec, drawing: Drawing, feature: str) -> float | None:
-    """Width to which the orientation within a location zone is refined [mm], at most that of the zone."""
-    found = drawing.orientation(feature)
-    lower = spec.lower_segment if isinstance(spec, Composite) else None
-    return None if found is None else min(found, spec.zone.size if lower is None else lower.zone.size)
+@dataclass(frozen=True)
+class Refined:
+    """The orientation zone within a location zone.
+
+    Args:
+        width: t_o, at most that of the location zone [mm].
+        zone: as it is stated.
+    """
+
+    width: float
+    zone: ZoneSpec
+
+
+def _refined(own: Stated, drawing: Drawing) -> Refined | None:
+    """How the orientation within a location zone is refined; not by a zone along another of two flat ones."""
+    spec = own.spec
+    assert isinstance(spec, LocationSpec)
+    beside = drawing.of(own.feature, LocationSpec)
+    for other in drawing.of(own.feature, OrientationSpec):
+        assert isinstance(other.spec, OrientationSpec)
+        if len(beside) > 1 and not are_alike(spec.zone, other.spec.zone):
+            continue
+        lower = spec.lower_segment if isinstance(spec, Composite) else None
+        width = min(drawing.oriented(other), spec.zone.size if lower is None else lower.zone.size)
+        return Refined(width, other.spec.zone)
+    return None
 
 
 def _refuse_no_ring(scene: Scene, own: Stated, drawing: Drawing) -> None:
@@ -178,7 +199,8 @@ def limited_along(spec: LocationSpec, feature: FeatureUnion) -> Array:
     return np.array([[x, y, 0.0]]) / math.hypot(x, y)
 
 
-def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | None, form: float) -> Zone:
+def _location(spec: LocationSpec, feature: FeatureUnion, refined: Refined | None, form: float) -> Zone:
+    orientation = None if refined is None else refined.width
     width, outward = spec.zone.size, None if spec.zone.outward is None else spec.zone.outward.internal
     if isinstance(spec, Composite) and spec.lower_segment is not None:  # about the middle of the upper zone
         own = spec.lower_segment.zone.size
@@ -196,9 +218,25 @@ def _location(spec: LocationSpec, feature: FeatureUnion, orientation: float | No
         return catalogue.point_between_planes(width, _seen(spec.zone.along, feature), outward)
     if isinstance(spec, CircularRunOutSpec):
         return catalogue.axis_section(width, form)
-    if spec.zone.along is not None:
-        return catalogue.flat_axis(width, _across(spec.zone.along, feature), orientation, form)
+    along = None if spec.zone.along is None else _across(spec.zone.along, feature)
+    if refined is not None and not are_alike(spec.zone, refined.zone):
+        return _mixed(width, along, refined, feature, form)
+    if along is not None:
+        return catalogue.flat_axis(width, along, orientation, form)
     return catalogue.axis(width, orientation, form)
+
+
+def _mixed(
+    width: float, along: tuple[float, float] | None, refined: Refined, feature: FeatureUnion, form: float
+) -> Zone:
+    """The zone of an axis, of a width flat along a direction or else round, refined by one of another shape."""
+    turned = None if refined.zone.along is None else _across(refined.zone.along, feature)
+    if along is None:
+        assert turned is not None, "both round are alike"
+        return catalogue.axis_along(width, turned, refined.width, form)
+    if turned is None:
+        return catalogue.flat_axis_round(width, along, refined.width, form)
+    return catalogue.flat_axis_along(width, along, turned, refined.width, form)
 
 
 def _orientation(zone: ZoneSpec, feature: FeatureUnion, width: float) -> Zone:

@@ -17,6 +17,7 @@ from tol3d.assembly.grammar.measures.inspected import (
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.tolerances.location import Composite, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.zone import are_alike
 from tol3d.assembly.model import Plane
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.numerics.arrays import Array
@@ -121,9 +122,18 @@ def earlier_zone(
     for kind in kinds:
         for own in drawing.of(feature, kind):
             spec = own.spec
-            if isinstance(spec, OrientationSpec | LocationSpec) and _names(spec.named_datums) == names:
+            fits = _names(spec.named_datums) == names and holds_all(drawing, own)
+            if fits and isinstance(spec, OrientationSpec | LocationSpec):
                 return spec.zone.size, _modifier(spec)
     return None
+
+
+def holds_all(drawing: Drawing, own: Stated) -> bool:
+    """True unless a zone of orientation limits other leans than the location zone of the same feature."""
+    if not isinstance(own.spec, OrientationSpec):
+        return True
+    located = (other.spec for other in drawing.of(own.feature, LocationSpec))
+    return all(are_alike(spec.zone, own.spec.zone) for spec in located if isinstance(spec, LocationSpec))
 
 
 def _modifier(spec: FeatureTolerance) -> Modifier | None:

@@ -228,10 +228,6 @@ class Drawing:
             return left
         return left * max(shape.reach) / radius.internal
 
-    def orientation(self, feature: str) -> float | None:
-        """Width of the zone to which its orientation is refined [mm], beside a location zone."""
-        return min((self.oriented(own) for own in self.of(feature, OrientationSpec)), default=None)
-
     def held_over(self, feature: str, zone: ZoneSpec) -> float:
         """The length over which a zone holds an axis [mm]: its own, or beyond its end; 1 of what has no ends."""
         if zone.projected is not None:

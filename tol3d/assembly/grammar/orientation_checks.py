@@ -7,7 +7,6 @@ import numpy as np
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features.nominal_frame import is_across
 from tol3d.assembly.grammar.tolerances.location import (
     AngularitySpec,
     AxialRunOutSpec,
@@ -19,7 +18,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     TotalRunOutSpec,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec
-from tol3d.assembly.grammar.zone import ZoneSpec
+from tol3d.assembly.grammar.zone import ZoneSpec, are_alike
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 
@@ -55,11 +54,21 @@ def _elsewhere(drawing: Drawing, own: Stated) -> Iterator[Problem]:
             here, there = (_words(each) or "those of its part" for each in (spec.datums, datums))
             words = f"expected the first datums of {located.entry!r}, in whose frame it lies ({there}), got {here}"
             yield ("tolerances", own.entry, "datums"), f"{words}; {_instead(drawing, own, located)}"
-        elif isinstance(located.spec, LocationSpec) and not _alike(located.spec.zone, spec.zone):
-            words = (
-                f"expected a zone of the shape of {located.entry!r}, which it refines: a diameter, or a width `along`"
-            )
-            yield ("tolerances", own.entry, "zone"), words
+    yield from _unfit_shape(drawing, own, spec.zone)
+
+
+def _unfit_shape(drawing: Drawing, own: Stated, zone: ZoneSpec) -> Iterator[Problem]:
+    """Refuse a lean beside a circular run-out, and one that two flat zones would share."""
+    located = [each for each in drawing.of(own.feature, LocationSpec) if isinstance(each.spec, LocationSpec)]
+    path = ("tolerances", own.entry, "zone")
+    if located and isinstance(located[0].spec, CircularRunOutSpec):
+        words = f"expected none beside {located[0].entry!r}, a circular run-out, in which the axis does not lean"
+        yield path, f"{words}; take it out, or write total_run_out"
+    elif len(located) > 1:
+        alike = [each for each in located if isinstance(each.spec, LocationSpec) and are_alike(each.spec.zone, zone)]
+        if not alike:
+            names = " or ".join(repr(each.entry) for each in located)
+            yield path, f"expected a width along that of {names}; a lean in both of these zones is not supported"
 
 
 def _instead(drawing: Drawing, own: Stated, located: Stated) -> str:
@@ -77,13 +86,6 @@ def _instead(drawing: Drawing, own: Stated, located: Stated) -> str:
 
 def _words(datums: tuple[DatumSpec, ...]) -> str:
     return ", ".join("-".join(datum.features) for datum in datums)
-
-
-def _alike(zone: ZoneSpec, other: ZoneSpec) -> bool:
-    """True if both zones are round, or both flat along one direction."""
-    if (zone.diameter is None) != (other.diameter is None) or (zone.along is None) != (other.along is None):
-        return False
-    return zone.along is None or other.along is None or not is_across(zone.along, other.along)
 
 
 def _other_angle(drawing: Drawing, own: Stated) -> Iterator[Problem]:

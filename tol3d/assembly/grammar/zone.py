@@ -5,6 +5,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Protocol, Self, Typ
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from tol3d.assembly.grammar.features.nominal_frame import is_across
 from tol3d.distributions import StatedDistribution
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
@@ -63,6 +64,13 @@ class ZoneSpec(Strict):
         if self.along is not None and self.width is None:
             raise refused("along", "a width with it", "a diameter")
         return self
+
+
+def are_alike(zone: ZoneSpec, other: ZoneSpec) -> bool:
+    """True if both zones of a feature are round, or flat along one direction; of a plane all are."""
+    if zone.along is None or other.along is None:
+        return zone.along is other.along
+    return not is_across(zone.along, other.along)
 
 
 DRAWS: Final = "tol3d.assembly.from_scene.laws"

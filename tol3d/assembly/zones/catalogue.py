@@ -13,11 +13,13 @@ from tol3d.assembly.zones.balls import Flat, Line, Sphere
 from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
 from tol3d.assembly.zones.ends import Ends, FlatEnds
 from tol3d.assembly.zones.face import Face
+from tol3d.assembly.zones.mixed import EndsAlong, FlatEndsAlong, FlatEndsRound
 from tol3d.assembly.zones.motions import Motions
 from tol3d.assembly.zones.round_surfaces import BallSurface, RoundSurface
 from tol3d.assembly.zones.zone import Shape, Zone
 from tol3d.errors import InputError
 
+LEAST_SINE = 1e-9  # of the angle of two directions; nearer ones are one
 PLANE = ("offset", "rise x", "rise y")
 AXIS = ("start x", "start y", "end x", "end y")
 POINT = ("x", "y", "z")
@@ -73,6 +75,36 @@ def flat_axis_orientation(width: float, along: tuple[float, float]) -> Zone:
     """Orientation zone of an axis between planes t apart whose normal is `along` (x, y), without location."""
     x, y = _unit(along)
     return Zone(Shape(Line(), ("end",), ((-x,), (-y,), (x,), (y,))), width)
+
+
+def axis_along(width: float, along: tuple[float, float], orientation: float, form: float = 0.0) -> Zone:
+    """Zone of an axis in a cylinder of diameter t, its orientation between planes t_o apart whose normal is `along`."""
+    x, y = _unit(along)
+    turn = ((x, -y, 0.0, 0.0), (y, x, 0.0, 0.0), (0.0, 0.0, x, -y), (0.0, 0.0, y, x))
+    names = ("start along", "start across", "end along", "end across")
+    return Zone(Shape(EndsAlong(), names, turn, (0.5, 0.0, 0.5, 0.0)), width, orientation, form=form)
+
+
+def flat_axis_round(width: float, along: tuple[float, float], orientation: float, form: float = 0.0) -> Zone:
+    """Zone of an axis between planes t apart whose normal is `along`, its orientation in a cylinder of diameter t_o."""
+    x, y = _unit(along)
+    ends = ((x, 0.0, y), (y, 0.0, -x), (0.0, x, -y), (0.0, y, x))
+    shape = Shape(FlatEndsRound(), ("start", "end", "across"), ends, (0.5, 0.5, 0.0))
+    return Zone(shape, width, orientation, form=form)
+
+
+def flat_axis_along(
+    width: float, along: tuple[float, float], turned: tuple[float, float], orientation: float, form: float = 0.0
+) -> Zone:
+    """Zone of an axis between planes t apart whose normal is `along`, its orientation between others along `turned`."""
+    (x, y), other = _unit(along), _unit(turned)
+    sine, cosine = x * other[1] - y * other[0], x * other[0] + y * other[1]
+    if abs(sine) < LEAST_SINE:
+        raise InputError("zone: expected two directions apart, got one twice")
+    across = np.array([[y], [-x], [-y], [x]]) @ np.array([[0.5 * cosine, -0.5 * cosine, 1.0]]) / sine
+    ends = np.array([[x, 0.0, 0.0], [y, 0.0, 0.0], [0.0, x, 0.0], [0.0, y, 0.0]]) + across
+    shape = Shape(FlatEndsAlong(), ("start", "end", "turned"), tuple(map(tuple, ends.tolist())), (0.5, 0.5, 0.0))
+    return Zone(shape, width, orientation, form=form)
 
 
 def point_in_sphere(width: float) -> Zone:
