@@ -81,7 +81,7 @@ def test_a_zone_loses_what_form_the_size_of_the_trial_leaves(modifier: str, tmp_
     for envelope in ("envelope: true\n", ""):
         found = assembled(fit(envelope, modifier=modifier), tmp_path).drawn(COUNT, "analytic")
         size = found["hole diameter"] - 10.02
-        bonus = {"": 0.0, "mmc": size, "lmc": SIZE - size}[modifier]
+        bonus = {"": 0.0 * size, "mmc": size, "lmc": SIZE - size}[modifier]
         room = T0 + bonus - (np.minimum(size, FORM) if envelope else FORM)
         assert (found["off"] <= room + 2e-9).all()
         assert (found["off"] / room).max() > 0.999
