@@ -159,7 +159,7 @@ BAD: dict[str, tuple[str, dict[str, str], str]] = {
     "a pattern of another kind": (
         GRID,
         {"kind: flatness, of: plate.floor": "kind: flatness, of: plate.hole"},
-        "13: tolerances.flat.of: expected a plane, got 'plate.hole', which is a cylinder",
+        "13: tolerances.flat.of: expected a plane or slot, got 'plate.hole', which is a cylinder",
     ),
     "a pattern and one of it": (
         GRID,
