@@ -122,9 +122,9 @@ def earlier_zone(
     for kind in kinds:
         for own in drawing.of(feature, kind):
             spec = own.spec
-            fits = _names(spec.named_datums) == names and holds_all(drawing, own)
-            if fits and isinstance(spec, OrientationSpec | LocationSpec):
-                return spec.zone.size, _modifier(spec)
+            if isinstance(spec, OrientationSpec | LocationSpec) and _names(spec.named_datums) == names:
+                holding = spec if holds_all(drawing, own) else located[0]
+                return holding.zone.size, _modifier(holding)
     return None
 
 
