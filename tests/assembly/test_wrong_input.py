@@ -84,7 +84,8 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "point with an orientation": (
         [added(TOLERANCES, "level: {kind: parallelism, of: base.rim, zone: {width: 0.1 mm}, datums: [floor]}")],
         "tolerances.level.of",
-        "expected a plane or slot or cylinder or axis, got 'base.rim', which is a point; did you mean \"base.floor\"?",
+        "expected a plane or slot or cylinder or axis or cone, got 'base.rim', which is a point; "
+        'did you mean "base.floor"?',
     ),
     "three locators on a line": (
         [("at: [60 mm, 70 mm, 0 mm]", "at: [60 mm, 10 mm, 0 mm]")],
@@ -311,10 +312,9 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
         'unknown key "width"; known here: kind, description, of, zone, law, datums, lower_segment, modifier',
     ),
     "a word of another kind of feature": (
-        [("      rim:   {kind: point", "      rim:   {kind: cone")],
+        [("      rim:   {kind: point", "      rim:   {kind: taper")],
         "parts.base.features.rim.kind",
-        "expected another word here, got 'cone'; write axis, whose `face` may be a cone; its "
-        "seating depth is not supported",
+        "expected another word here, got 'taper'; write cone, with its `diameters` at both ends",
     ),
     "gears and assemblies": (
         [added(PARTS, "pinion: {kind: spur_gear, teeth: 20, module: 1 mm, face_width: 10 mm}")],

@@ -46,7 +46,8 @@ OTHER_KINDS: Final = (
     ("dimension", "write plus_minus for where a feature lies, size for a diameter or a width"),
     ("diameter", "write size, or inspected_size of a measure"),
     ("width", "write size, or inspected_size of a measure"),
-    ("cone", "write axis, whose `face` may be a cone; its seating depth is not supported"),
+    ("taper", "write cone, with its `diameters` at both ends"),
+    ("countersink", "write cone, with its `diameters` at both ends and hole: true"),
     ("line", "write axis"),
     ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
 )

@@ -6,7 +6,8 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, Relation, RoundPlane
+from tol3d.assembly.model.cone_seat import cone_seat
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing.method import features_placed
 from tol3d.numerics.arrays import Array
@@ -67,6 +68,11 @@ def _missing(own: Relation, moving: Feature, target: Feature, pose: Array, its: 
     normal, off = its[:3, 2], ends - its[:3, 3]
     if isinstance(target.shape, Point):
         missing = np.linalg.norm(off, axis=1)
+    elif own.kind == "coincident" and isinstance(target.shape, Cone) and isinstance(moving.shape, Cone):
+        sign = float(np.sign(pose[:3, 2] @ normal))
+        seat = cone_seat(moving.shape, target.shape, sign)
+        assert seat is not None, "refused before"
+        missing = np.linalg.norm(off - np.outer(seat.height + sign * _ends(moving)[:, 2], normal), axis=1)
     elif isinstance(target.shape, Axis) and isinstance(moving.shape, Axis | Point):
         missing = np.linalg.norm(off - np.outer(off @ normal, normal), axis=1)
     elif isinstance(target.shape, Axis):  # a plane on a cylinder

@@ -53,6 +53,7 @@ class PickedFace:
         hole: whether the material lies outside the radius.
         nearest: the point of it that is nearest to where the pick asked.
         normal: there, out of the material.
+        radii: of a cone, at the start and at the end of its axis.
     """
 
     name: str
@@ -65,6 +66,7 @@ class PickedFace:
     hole: bool
     nearest: Triple
     normal: Triple
+    radii: tuple[float, float] = (0.0, 0.0)
 
     def axis(self, stated: Triple | None) -> Triple:
         """The direction of a round face, on the side of a stated one."""

@@ -1,6 +1,8 @@
 """Faces of a CAD solid by their names or places, and the properties of each."""
 
+import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import cadquery as cq
@@ -126,7 +128,12 @@ def _described(name: str, face: cq.Face, pick: Pick) -> PickedFace:
             round_face = surface.Cylinder()
             return _turned(name, kind, face, round_face.Axis(), float(round_face.Radius()), nearest, normal)
         case "cone":
-            return _turned(name, kind, face, surface.Cone().Axis(), 0.0, nearest, normal)
+            cone = surface.Cone()
+            found = _turned(name, kind, face, cone.Axis(), 0.0, nearest, normal)
+            apex, tangent = np.array(_triple(cone.Apex())), abs(math.tan(float(cone.SemiAngle())))
+            middle = (np.array(found.at) - apex) @ np.array(found.direction)
+            start, end = (tangent * abs(float(middle) + half * found.extent[0]) for half in (-0.5, 0.5))
+            return replace(found, radii=(start, end))
 
 
 def _turned(

@@ -57,6 +57,8 @@ class FoundFeature:
         names: of its faces in the file.
         colour: of its faces, "#RRGGBB"; "" if the file states none, or several.
         on: a point of it.
+        radii: of a cone, at the start and at the end of its axis.
+        outside: of a cone, whether the material lies outside.
     """
 
     faces: tuple[int, ...]
@@ -75,6 +77,8 @@ class FoundFeature:
     names: tuple[str, ...] = ()
     colour: str = ""
     on: Triple = (0.0, 0.0, 0.0)
+    radii: tuple[float, float] = (0.0, 0.0)
+    outside: bool = False
 
     @property
     def length(self) -> float:
@@ -84,7 +88,7 @@ class FoundFeature:
     @property
     def hollow(self) -> bool:
         """True if the material lies outside."""
-        return self.kind in ("hole", "fillet", "socket")
+        return self.outside or self.kind in ("hole", "fillet", "socket")
 
     def axis_distance(self, point: Array) -> float:
         """Distance of a point (3,) from the axis between its ends, or from the centre of a ball [mm]."""
@@ -300,7 +304,8 @@ class Shell:
         at, axis, length = self._axis(ids)
         slope = math.tan(face.half_angle) * (1.0 if np.dot(face.axis, axis) > 0.0 else -1.0)
         middle = face.radius + slope * float((at - np.array(face.at)) @ axis)
-        small, large = sorted((abs(middle - slope * length / 2), abs(middle + slope * length / 2)))
+        ends = abs(middle - slope * length / 2), abs(middle + slope * length / 2)
+        small, large = sorted(ends)
         return FoundFeature(
             tuple(ids),
             "cone",
@@ -312,6 +317,8 @@ class Shell:
             round(small, DECIMALS),
             abs(face.half_angle),
             self._turn_of_cone(ids),
+            radii=(round(ends[0], DECIMALS), round(ends[1], DECIMALS)),
+            outside=face.is_hollow,
         )
 
     def _turn_of_cone(self, ids: Sequence[int]) -> float:

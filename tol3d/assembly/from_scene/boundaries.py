@@ -12,6 +12,7 @@ from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shif
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
@@ -117,7 +118,7 @@ def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ..
         return None
     boundary = Boundary(f"{part}.{datums[-1].features[0]}", datums[:-1], datums[-1])
     measured = drawing.kind(of)
-    if measured.kind not in ("cylinder", "axis") or not is_square(*_axes(drawing, boundary.feature, of)):
+    if measured.kind not in AXES or not is_square(*_axes(drawing, boundary.feature, of)):
         return None
     return rooms_of(scene, drawing, part, datums)[0]
 

@@ -1,5 +1,6 @@
 """Contributors of a scene, and the effect of each on features and locators."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -9,14 +10,14 @@ from tol3d.assembly.from_scene.segments import motion_of
 from tol3d.assembly.from_scene.zones import drawn_in, enveloped, sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import PlaneSpec, PointSpec, SlotSpec, SphereSpec
+from tol3d.assembly.grammar.features import ConeSpec, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
 from tol3d.assembly.grammar.moves.locating import LocatingSpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Axis, Contribution, Point, Slot
+from tol3d.assembly.model import Axis, Cone, Contribution, Point, Slot
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones import EnvelopedForm
 from tol3d.assembly.zones.float_draw import FloatDraw, Law
@@ -142,6 +143,9 @@ class Effects:
         if isinstance(spec, SizeSpec):
             self._refuse_no_size(own, draw)
             self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))
+            if isinstance(shape := self.drawing.kind(own.feature).shape, Cone):
+                along = np.array([[0.0], [0.0], [0.0], [0.0], [shape.along_by_size]])
+                self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, along))
         else:
             matrix = self._along(own.feature, spec)[:, None]
             self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
@@ -168,7 +172,9 @@ class Effects:
         x, y, z = own.frame[:3, :3].T @ direction
         if isinstance(own, PointSpec | SphereSpec):
             return np.array([x, y, z])
-        return np.array([z, 0.0, 0.0]) if isinstance(own, PlaneSpec | SlotSpec) else np.array([x, y, x, y])
+        if isinstance(own, PlaneSpec | SlotSpec):
+            return np.array([z, 0.0, 0.0])
+        return np.array([x, y, x, y, z]) if isinstance(own, ConeSpec) else np.array([x, y, x, y])
 
     def _zone(self, own: Stated) -> None:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
@@ -178,6 +184,8 @@ class Effects:
             shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
             assert isinstance(shape, Axis | Point)
             larger[0, 0] = -2.0 if shape.inner else 2.0  # outward is out of the material
+            if isinstance(shape, Cone):
+                larger[0, 0] /= math.cos(shape.angle)
             self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, larger))
 
     def _form(self, own: Stated, spec: FormSpec) -> None:

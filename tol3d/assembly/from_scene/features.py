@@ -10,7 +10,7 @@ from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Contribution, Feature, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane
 from tol3d.assembly.picking.kept_picks import face_names
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -120,6 +120,8 @@ def _middle(feature: Feature) -> Array:
     match feature.shape:
         case Point():
             return np.eye(3)
+        case Cone():
+            return np.array([[0.5, 0.0, 0.5, 0.0, 0.0], [0.0, 0.5, 0.0, 0.5, 0.0], [0.0, 0.0, 0.0, 0.0, 1.0]])
         case Axis():
             return 0.5 * np.array([[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.0]])
         case Plane() | RoundPlane():

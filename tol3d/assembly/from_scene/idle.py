@@ -9,6 +9,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     FormSpec,
     LocationSpec,
     OrientationSpec,
+    ProfileSpec,
     RoundnessSpec,
     TotalRunOutSpec,
 )
@@ -22,9 +23,9 @@ def idle_forms(drawing: Drawing) -> Iterator[str]:
             continue
         located, shape = drawing.of(own.feature, LocationSpec), drawing.kind(own.feature).shape
         alone = isinstance(own.spec, RoundnessSpec) and not any(
-            isinstance(each.spec, CircularRunOutSpec | TotalRunOutSpec) for each in located
+            isinstance(each.spec, CircularRunOutSpec | TotalRunOutSpec | ProfileSpec) for each in located
         )
-        zones = "run-out" if isinstance(shape, Axis) and alone else "location zone"
+        zones = ("run-out or profile" if isinstance(shape, Axis) else "profile") if alone else "location zone"
         turned = any(isinstance(each.spec, AxialRunOutSpec) for each in drawing.of(own.feature, OrientationSpec))
         if own.spec.law is None and not turned and (alone or not located):
             why = f"it has no law, and {own.feature!r} has no {zones} that it could narrow"

@@ -18,7 +18,7 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.location import Composite
-from tol3d.assembly.model import Assembly, Axis, Feature, Part, Plane, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Part, Plane, RoundPlane
 from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.zones import ZoneDraw, catalogue
 from tol3d.numerics.arrays import Array
@@ -98,7 +98,8 @@ class Member:
         match shape:
             case Axis():
                 half = shape.length / 2
-                return np.concatenate([at((0.0, 0.0, -half))[:2], at((0.0, 0.0, half))[:2]])
+                ends = np.concatenate([at((0.0, 0.0, -half))[:2], at((0.0, 0.0, half))[:2]])
+                return np.vstack([ends, middle[2:]]) if isinstance(shape, Cone) else ends
             case Plane() | RoundPlane():
                 x, y = shape.reach
                 rises = [(at(end) - middle)[2] for end in ((x, 0.0, 0.0), (0.0, y, 0.0))]

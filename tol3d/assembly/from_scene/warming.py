@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Contribution, DatumFrame, Point
+from tol3d.assembly.model import Axis, Cone, Contribution, DatumFrame, Point
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -42,8 +42,8 @@ def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames
                 continue
             frame = frames.named(part_of(name), datums)
             shift = _shift(frames.made[frame], drawing) if frame else np.zeros(3)
-            own_frame = drawing.kind(name).frame
-            matrix = expansion * own_frame[:3, :3].T @ (own_frame[:3, 3] - shift)
+            turn = drawing.kind(name).frame[:3, :3]
+            matrix = expansion * turn.T @ (_grown(drawing.kind(name)) - shift)
             effects.grown_by.setdefault(name, []).append(Contribution(entry, columns, matrix[:, None]))
             if size := nominal_size(drawing.kind(name).shape):
                 larger = Contribution(entry, columns, np.array([[expansion * size]]))
@@ -63,11 +63,17 @@ def _shift(frame: DatumFrame, drawing: Drawing) -> Array:
         across, lengths, along = np.linalg.svd(held @ free)
         taken = np.flatnonzero(lengths > HELD)
         parts = np.split(across.T[taken], np.cumsum([len(own) for own in rows])[:-1], axis=1)
-        off = (part @ own @ (f.frame[:3, 3] - shift) for part, own, f in zip(parts, rows, features, strict=False))
+        off = (part @ own @ (_grown(f) - shift) for part, own, f in zip(parts, rows, features, strict=False))
         missing = sum(off, start=np.zeros(len(taken)))
         shift = shift + along[taken].T @ (missing / lengths[taken])
         free = free - along[taken].T @ along[taken]
     return shift
+
+
+def _grown(feature: FeatureUnion) -> Array:
+    """The point (3,) by whose growth a feature moves [mm]: its middle, of a cone its apex."""
+    shape, frame = feature.shape, feature.frame
+    return np.asarray(frame[:3, 3] + (shape.apex if isinstance(shape, Cone) else 0.0) * frame[:3, 2])
 
 
 def _held(feature: FeatureUnion, names: Sequence[str], drawing: Drawing) -> Array:
@@ -76,6 +82,6 @@ def _held(feature: FeatureUnion, names: Sequence[str], drawing: Drawing) -> Arra
     if len(names) == 2:
         line = drawing.kind(names[1]).frame[:3, 3] - frame[:3, 3]
         return np.asarray(np.linalg.svd(line[None])[2][1:])
-    if isinstance(shape, Point):
+    if isinstance(shape, Point | Cone):
         return frame[:3, :3].T
     return frame[:3, :2].T if isinstance(shape, Axis) else frame[:3, 2:3].T

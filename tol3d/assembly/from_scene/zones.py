@@ -6,7 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
-from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, PlaneSpec, PointSpec, SlotSpec, SphereSpec
+from tol3d.assembly.grammar.features import (
+    ConeSpec,
+    CylinderSpec,
+    FeatureUnion,
+    PlaneSpec,
+    PointSpec,
+    SlotSpec,
+    SphereSpec,
+)
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.tolerances.feature_tolerance import Modified
 from tol3d.assembly.grammar.tolerances.location import (
@@ -15,10 +23,11 @@ from tol3d.assembly.grammar.tolerances.location import (
     LocationSpec,
     OrientationSpec,
     ProfileSpec,
+    TotalRunOutSpec,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
 from tol3d.assembly.grammar.zone import LawSpec, RingLawSpec, ZoneSpec, are_alike
-from tol3d.assembly.model import Axis, Contribution, Feature, Slot
+from tol3d.assembly.model import Axis, Cone, Contribution, Feature, Slot
 from tol3d.assembly.model.datum_frame import Modifier
 from tol3d.assembly.zones import (
     Bonus,
@@ -56,7 +65,7 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         _refuse_no_ring(scene, own, drawing)
     try:
         if isinstance(spec.law, RingLawSpec):
-            zone = catalogue.axis_section(spec.zone.size, drawing.form(own.feature, spec))
+            zone = _section(spec, feature, drawing.form(own.feature, spec))
         elif isinstance(spec, LocationSpec):
             zone = _location(spec, feature, _refined(own, drawing), drawing.form(own.feature, spec))
         else:
@@ -65,6 +74,8 @@ def drawn_in(scene: Scene, own: Stated, drawing: Drawing) -> tuple[ZoneDraw, Arr
         raise scene.refuse(("tolerances", own.entry, "zone"), str(error)) from None
     draw, size = drawn_by(spec.law, zone, scene.files), _size(scene, own, drawing, zone)
     matrix = draw.matrix if spec.zone.projected is None else _projecting(scene, own, drawing) @ draw.matrix
+    if isinstance(feature.shape, Cone) and len(matrix) < len(feature.shape.components):  # it limits the axis alone
+        matrix = np.vstack([matrix, np.zeros((1, matrix.shape[1]))])
     if size is None:
         return draw, matrix
     judged = JudgedProcess(draw.zone, draw.laws, size) if isinstance(draw, Process) else Widened(draw.zone, draw, size)
@@ -122,7 +133,7 @@ def _projecting(scene: Scene, own: Stated, drawing: Drawing) -> Array:
     projected = own.spec.zone.projected
     assert projected is not None
     shape, path = drawing.kind(own.feature).shape, ("tolerances", own.entry, "zone", "projected")
-    if not isinstance(shape, Axis) or isinstance(own.spec, CircularRunOutSpec | ProfileSpec):
+    if not isinstance(shape, Axis) or isinstance(shape, Cone) or isinstance(own.spec, CircularRunOutSpec | ProfileSpec):
         words = (
             f"expected a location or an orientation of an axis or a cylinder, got {own.spec.kind} of {own.feature!r}"
         )
@@ -207,8 +218,10 @@ def _location(spec: LocationSpec, feature: FeatureUnion, refined: Refined | None
         width, outward = own, None if outward is None else outward + 0.5 * (own - width)
     if isinstance(spec, ProfileSpec) and isinstance(feature, CylinderSpec):
         return catalogue.cylinder_surface(width, outward, form)
+    if isinstance(spec, ProfileSpec) and isinstance(feature, ConeSpec):
+        return catalogue.cone_surface(width, feature.shape, outward, form)
     if isinstance(spec, ProfileSpec) and isinstance(feature, SphereSpec):
-        return catalogue.sphere_surface(width, outward)
+        return catalogue.sphere_surface(width, outward, form)
     if isinstance(feature, PlaneSpec | SlotSpec):
         made = catalogue.rectangle if feature.extent is not None else catalogue.round_face
         return made(width, orientation, outward, form)
@@ -217,7 +230,11 @@ def _location(spec: LocationSpec, feature: FeatureUnion, refined: Refined | None
             return catalogue.point_in_sphere(width)
         return catalogue.point_between_planes(width, _seen(spec.zone.along, feature), outward)
     if isinstance(spec, CircularRunOutSpec):
-        return catalogue.axis_section(width, form)
+        return _section(spec, feature, form)
+    if isinstance(spec, TotalRunOutSpec) and isinstance(feature, ConeSpec):
+        if orientation is not None:
+            raise InputError("expected no orientation beside the total run-out of a cone, which limits its lean too")
+        return catalogue.cone_run_out(width, feature.shape, form)
     along = None if spec.zone.along is None else _across(spec.zone.along, feature)
     if refined is not None and not are_alike(spec.zone, refined.zone):
         return _mixed(width, along, refined, feature, form)
@@ -237,6 +254,13 @@ def _mixed(
     if turned is None:
         return catalogue.flat_axis_round(width, along, refined.width, form)
     return catalogue.flat_axis_along(width, along, turned, refined.width, form)
+
+
+def _section(spec: LocationSpec | OrientationSpec, feature: FeatureUnion, form: float) -> Zone:
+    """The zone of an axis at one section; a run-out of a cone is read square to its surface."""
+    shape, is_read = feature.shape, isinstance(spec, CircularRunOutSpec)
+    slant = 1.0 / math.cos(shape.angle) if is_read and isinstance(shape, Cone) else 1.0
+    return catalogue.axis_section(spec.zone.size, form, slant)
 
 
 def _orientation(zone: ZoneSpec, feature: FeatureUnion, width: float) -> Zone:

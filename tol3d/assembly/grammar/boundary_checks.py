@@ -7,6 +7,7 @@ import numpy as np
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.inspected import (
     InspectedPatternSpec,
@@ -65,9 +66,9 @@ def _unread(drawing: Drawing, of: str, across: bool) -> str | None:
     """A feature that a position over places of gauges cannot be of, in words; of a point it is `across` a direction."""
     kind = drawing.kind(of)
     flat = kind.kind == "plane" and isinstance(kind.shape, Plane)
-    if kind.kind in ("cylinder", "axis", "slot") or flat or (kind.kind == "point" and across):
+    if kind.kind in (*AXES, "slot") or flat or (kind.kind == "point" and across):
         return None
-    return f"expected a hole, pin, axis, slot, flat rectangle or a point with `across`, got {of!r}"
+    return f"expected a hole, pin, axis, cone, slot, flat rectangle or a point with `across`, got {of!r}"
 
 
 def is_square(normal: Array, axis: Array) -> bool:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from tol3d.assembly.grammar.drawing import Drawing
-from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, PlaneSpec, SlotSpec, SphereSpec
+from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec, OverPlaySpec
 from tol3d.assembly.grammar.measures.contact import ContactAngleSpec, SurfaceGapSpec
 from tol3d.assembly.grammar.moves import LocatingSpec, PinAndHoleSpec, PlaySpec, RestSpec
@@ -118,11 +118,15 @@ def _round(pair: ContactSpec, drawing: Drawing, *, rests: bool) -> tuple[str, st
     sides = {"from": (pair.from_, pair.to), "to": (pair.to, pair.from_)}
     for key, (own, other) in sides.items():
         feature = drawing.kind(own)
-        if isinstance(feature, SphereSpec | CylinderSpec) and (rests or _is_face(drawing.kind(other))):
+        if isinstance(feature, SphereSpec | CylinderSpec | ConeSpec) and (rests or _is_face(drawing.kind(other))):
             words = f"expected a point or a plane, got {own!r}, which is {feature.words}: its middle would lie there"
             touched = "name the point of its surface that touches"
             remedy = (
-                f"{touched}, for a rest has no round contacts" if rests else f"take a move of kind touch, or {touched}"
+                f"{touched}, for a rest has no round contacts"
+                if rests
+                else touched
+                if isinstance(feature, ConeSpec)
+                else f"take a move of kind touch, or {touched}"
             )
             return key, f"{words}; {remedy}"
     return None

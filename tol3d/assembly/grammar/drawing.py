@@ -12,7 +12,7 @@ from typing import Final
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import part_of
-from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
+from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion, PointSpec, SphereSpec
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.forms import of_location, of_section, of_total_run_out
 from tol3d.assembly.grammar.parts import SolidSpec, likes
@@ -30,7 +30,7 @@ from tol3d.assembly.grammar.tolerances.location import (
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
-from tol3d.assembly.model import Axis, Plane, RoundPlane
+from tol3d.assembly.model import Axis, Plane, Point, RoundPlane
 from tol3d.assembly.model.dimension import longer
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -198,6 +198,8 @@ class Drawing:
                 return of_section(forms, shape, room)
             case TotalRunOutSpec() | ProfileSpec() if isinstance(shape, Axis):
                 return of_total_run_out(forms, shape, room)
+            case ProfileSpec() if isinstance(shape, Point) and shape.diameter is not None:
+                return of_section(forms, shape, room)
         return of_location(forms, shape, room)
 
     @staticmethod
@@ -268,7 +270,7 @@ class Drawing:
         own = self.kind(feature)
         if spec.along is not None:
             return unit(spec.along)
-        if isinstance(own, AxisSpec | CylinderSpec):
+        if isinstance(own, AxisSpec | CylinderSpec | ConeSpec):
             return None
         normal = own.frame[:3, 2]
         if not spec.named_datums:

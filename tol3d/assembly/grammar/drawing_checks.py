@@ -5,6 +5,7 @@ from typing import Final
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.forms import units, whole_form
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
@@ -75,7 +76,7 @@ def _forms_alike(drawing: Drawing, feature: str) -> Iterator[Sequence[Stated]]:
 
 def _form_problems(here: KeyPath, spec: FormSpec, drawing: Drawing, feature: str) -> Iterator[Problem]:
     zone, own, shape = spec.zone, drawing.kind(feature), drawing.kind(feature).shape
-    of_axis = isinstance(spec, StraightnessSpec) and own.kind in ("cylinder", "axis")
+    of_axis = isinstance(spec, StraightnessSpec) and own.kind in AXES
     if not of_axis and (zone.diameter is not None or zone.along is not None):
         yield (*here, "zone"), "expected a width alone: the distance of what lies about the surface"
     if of_axis and own.kind == "axis" and zone.width is not None and zone.along is None:
@@ -203,6 +204,9 @@ def _shape_problems(here: KeyPath, spec: LocationSpec | OrientationSpec, kind: s
 def _surface_problems(here: KeyPath, own: Stated, drawing: Drawing) -> Iterator[Problem]:
     """Refuse tolerances beside the profile of a round surface, which limits size and orientation too."""
     kind = drawing.kind(own.feature).kind
+    if kind == "cone" and isinstance(own.spec, Composite) and own.spec.lower_segment is not None:
+        words = "expected none of a cone, whose pattern would shift along it too"
+        yield (*here, "lower_segment"), f"{words}; write size and position, which may have one"
     for other in drawing.of(own.feature, SizeSpec):
         words = f"expected no size of {own.feature!r} beside a profile, which holds the {kind}'s diameter too"
         yield here, f"{words}, got {other.entry!r}; write a position for where it lies, or take {other.entry!r} out"
@@ -239,7 +243,9 @@ def _direction_problems(here: KeyPath, spec: PlusMinusSpec, drawing: Drawing, fe
     own = drawing.kind(feature)
     z = own.frame[:3, 2]
     if spec.along is None:
-        if own.kind in ("axis", "cylinder"):
+        if own.kind == "cone":
+            yield here, "expected `along`, a direction across the cone or along its axis, got none"
+        elif own.kind in AXES:
             yield here, "expected a direction across the axis as `along`, got none"
         elif drawing.positive(feature, spec) is None:
             yield here, _unclear(spec, drawing, feature)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
 from tol3d.assembly.grammar.measures.clearance import ClearanceSpec, VirtualClearanceSpec
@@ -113,7 +114,7 @@ def unfit_patterns(scene: Scene) -> Iterator[Problem]:
         frames = [drawing.kind(own).frame for own in spec.features]
         axis, start = frames[0][:3, 2], frames[0][:3, 3]
         for k, (own, frame) in enumerate(zip(spec.features, frames, strict=True)):
-            if drawing.kind(own).kind in ("cylinder", "axis") and _between(axis, frame[:3, 2]) > PARALLEL:
+            if drawing.kind(own).kind in AXES and _between(axis, frame[:3, 2]) > PARALLEL:
                 lean = _between(axis, frame[:3, 2])
                 words = (
                     f"expected an axis parallel to that of {spec.features[0]!r}, got {own!r} at {lean:.4g} deg to it"

@@ -7,6 +7,7 @@ import numpy as np
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.tolerances.location import (
     AngularitySpec,
     AxialRunOutSpec,
@@ -129,7 +130,7 @@ def _angle(drawing: Drawing, name: str, datum: DatumSpec) -> float | None:
 def _without_axis(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     features = drawing.features[part_of(own.feature)]
     named = [features[name] for datum in own.spec.named_datums for name in datum.features if name in features]
-    if named and not any(feature.kind in ("axis", "cylinder") for feature in named):
+    if named and not any(feature.kind in AXES for feature in named):
         common = any(len(datum.features) > 1 for datum in own.spec.named_datums)
         if not common:
             yield ("tolerances", own.entry, "datums"), "expected an axis among them, such as a bore or a shaft's seat"
@@ -139,8 +140,8 @@ def _beside(drawing: Drawing, own: Stated) -> Iterator[Problem]:
     """Refuse a feature that is nominally off the axis of its coaxiality or run-out."""
     features, feature = drawing.features[part_of(own.feature)], drawing.kind(own.feature)
     names = [datum.features[0] for datum in own.spec.named_datums if len(datum.features) == 1]
-    axes = [name for name in names if name in features and features[name].kind in ("axis", "cylinder")]
-    if len(axes) != 1 or feature.kind not in ("axis", "cylinder"):
+    axes = [name for name in names if name in features and features[name].kind in AXES]
+    if len(axes) != 1 or feature.kind not in AXES:
         return  # of two it is on the line through both, if on any; a wrong kind is reported already
     frame, datum = feature.frame, features[axes[0]].frame
     off = float(np.linalg.norm(np.cross(frame[:3, 3] - datum[:3, 3], datum[:3, 2])))

@@ -5,7 +5,7 @@ Part frames, feature frames and poses are 4x4, lengths mm. Nominal poses of part
 
 from tol3d.assembly.model.assembly import Assembly, Part
 from tol3d.assembly.model.datum_frame import Datum, DatumFrame, Gauges
-from tol3d.assembly.model.feature import Axis, Contribution, Feature, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model.feature import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.moves import (
     BestFit,
@@ -32,6 +32,7 @@ __all__ = [
     "Axis",
     "BestFit",
     "Bolt",
+    "Cone",
     "Contact",
     "Contribution",
     "Datum",

@@ -84,9 +84,10 @@ class DatumFrame:
     """Datums in order: each takes only freedoms left by earlier ones; those taken by none stay the part's.
 
     What each asks, in this order: a plane, its normal, then its height (with targets, the heights of its points one by
-    one); an axis or a common datum, its centre across it, then its direction; a point, its position. What is asked but
-    held already is met as nearly as the freedoms left allow: least squares over its two or three components. So a
-    second hole turns the frame until its centre lies in the right direction from the first, whatever their distance.
+    one); an axis or a common datum, its centre across it, then its direction; a point, its position; a cone, its
+    position, then its direction. What is asked but held already is met as nearly as the freedoms left allow: least
+    squares over its two or three components. So a second hole turns the frame until its centre lies in the right
+    direction from the first, whatever their distance.
 
     Each turns the part by the least rotation that meets what it asks, about its own centre in the trial where shifts
     are still free (of a common datum the middle of all centres), and shifts it along the nominal directions that it

@@ -5,7 +5,7 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from tol3d.assembly.model.feature import Axis, Plane, Point, RoundPlane, Shape
+from tol3d.assembly.model.feature import Axis, Cone, Plane, Point, RoundPlane, Shape
 from tol3d.numerics.arrays import Array
 
 LEAST: Final = 1e-6
@@ -44,7 +44,7 @@ def longer(at: Array, along: Array, datums: Iterable[Sequence[Placed]]) -> tuple
 
 
 def _off(at: Array, datum: Sequence[Placed]) -> Array:
-    """The shortest way (3,) from a datum to a place, nominally [mm]: along its normal, square to its axis."""
+    """The shortest way (3,) from a datum to a place, nominally [mm]: square to its plane or its axis."""
     off = at - datum[0].frame[:3, 3]
     if len(datum) > 1:
         line = datum[1].frame[:3, 3] - datum[0].frame[:3, 3]
@@ -53,7 +53,7 @@ def _off(at: Array, datum: Sequence[Placed]) -> Array:
     match datum[0].shape:
         case Plane() | RoundPlane():
             return np.asarray(z * (z @ off))
+        case Cone() | Point():
+            return np.asarray(off)
         case Axis():
             return np.asarray(off - z * (z @ off))
-        case Point():
-            return np.asarray(off)

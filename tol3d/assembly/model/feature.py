@@ -1,6 +1,7 @@
 """A feature of a part: its name on the drawing, its nominal place, and the contributions that move it."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
 
@@ -109,12 +110,66 @@ class Axis:
         return np.array([[0.0, 0.0, -self.length / 2], [0.0, 0.0, self.length / 2]])
 
 
+@dataclass(frozen=True)
+class Cone(Axis):
+    """An axis with a cone about it, which holds it along itself too.
+
+    Args:
+        length, inner: see Axis; its `diameter` is None, as it is no cylinder.
+        diameters: nominal, at z = -length/2 and at z = +length/2 [mm].
+    """
+
+    diameters: tuple[float, float] = field(kw_only=True)
+
+    components: ClassVar[tuple[str, ...]] = (*Axis.components, "along")
+    """Those of its axis, and the shift of the cone along it [mm]."""
+
+    @property
+    def middle_diameter(self) -> float:
+        """Diameter at the middle of its length [mm]."""
+        return sum(self.diameters) / 2
+
+    @property
+    def slope(self) -> float:
+        """Tangent of the angle from its axis to its lines; negative if it narrows along z."""
+        return (self.diameters[1] - self.diameters[0]) / (2 * self.length)
+
+    @property
+    def along_by_size(self) -> float:
+        """Shift along z by a diameter 1 mm larger in every section."""
+        return -0.5 / self.slope
+
+    @property
+    def angle(self) -> float:
+        """Half angle [rad], with the sign of its slope."""
+        return math.atan(self.slope)
+
+    @cached_property
+    def surface_by_axis(self) -> Array:
+        """(2, 2): offsets of both ends of its axis -> displacements of its surface at both ends, square to it.
+
+        A point at the radius r and the height z moves along its normal by the part along r of e cos a + e' (z / cos a
+        + R sin a): e is the offset of the axis' middle, e' its lean, which turns the point too, R the radius at the
+        middle and a the half angle. What it moves by along the axis is added to that, times - sin a.
+        """
+        z = self.length / 2 * np.array([-1.0, 1.0])
+        lean = (z / math.cos(self.angle) + self.middle_diameter / 2 * math.sin(self.angle)) / self.length
+        return np.column_stack([math.cos(self.angle) / 2 - lean, math.cos(self.angle) / 2 + lean])
+
+    @property
+    def apex(self) -> float:
+        """Place of its apex along z, from its middle [mm]."""
+        return self.along_by_size * self.middle_diameter
+
+
 Shape = Point | Plane | RoundPlane | Axis
 
 
 def nominal_size(shape: Shape) -> float | None:
-    """Diameter or width [mm]; None of a shape without one."""
+    """Diameter or width [mm], of a cone at its middle; None of a shape without one."""
     match shape:
+        case Cone():
+            return shape.middle_diameter
         case Axis() | Point():
             return shape.diameter
         case Slot():

@@ -172,7 +172,8 @@ class Relation:
     as nearly as the freedoms left allow (least squares over its components).
 
     Args:
-        kind: "coincident" (plane on plane with normals opposed, point on point, point on plane, point on axis),
+        kind: "coincident" (plane on plane with normals opposed, point on point, point on plane, point on axis, a
+            cone in a conical hole as in `cone_seat`),
             "coaxial" (axis on axis), "tangent" (cylinder on plane, by the radius of the trial), "distance".
         moving, target: names of the features.
         distance: for "distance": of plane from plane or of point from plane, along the target's normal [mm].

@@ -60,6 +60,7 @@ class KeptFace(BaseModel):
     hole: bool
     nearest: Place
     normal: Unit
+    radii: tuple[Size, Size] = (0.0, 0.0)
 
 
 class KeptPlace(BaseModel):

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from tol3d.assembly.grammar.features import AxisSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
+from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
 from tol3d.assembly.grammar.features.feature_spec import FaceKind, lengths
 from tol3d.assembly.grammar.features.pattern import Scattered
 from tol3d.assembly.grammar.features.selector import SelectorSpec
@@ -98,7 +98,7 @@ def face_of(feature: FoundFeature) -> PickedFace:
     normal = feature.direction
     return PickedFace(
         numbers(feature), FACE_KINDS[feature.kind], feature.at, feature.direction, feature.x, feature.extent, radius,
-        feature.hollow, feature.on, normal,
+        feature.hollow, feature.on, normal, feature.radii,
     )  # fmt: skip
 
 
@@ -134,7 +134,8 @@ def _by_numbers(spec: SelectorSpec, face: PickedFace) -> FeatureUnion:
         return SphereSpec.model_validate({"kind": "sphere", "at": at, **diameter})
     numbers = {"at": at, "axis": face.direction, "length": lengths(face.extent[0])[0]}
     if face.kind == "cone":
-        return AxisSpec.model_validate({"kind": "axis", **numbers})
+        diameters = lengths(*(2 * radius for radius in face.radii))
+        return ConeSpec.model_validate({"kind": "cone", **numbers, "diameters": diameters, "hole": face.hole})
     return CylinderSpec.model_validate({"kind": "cylinder", **numbers, **diameter})
 
 

@@ -147,8 +147,8 @@ def _deviating(feature: Feature, base: Pose, columns: Array) -> ActualFeature:
     shape = feature.shape
     moved = total(feature.moved_by, len(shape.components), columns)
     if isinstance(shape, Axis):
-        start_x, start_y, end_x, end_y = moved
-        middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, 0.0)
+        start_x, start_y, end_x, end_y, *along = moved
+        middle = _vector((start_x + end_x) / 2, (start_y + end_y) / 2, along[0] if along else 0.0)
         return ActualFeature(
             feature, base, middle, (_vector((end_x - start_x) / 2, (end_y - start_y) / 2, shape.length / 2),)
         )

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Datum, DatumFrame, Part, Plane, RoundPlane, Slot
+from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Part, Plane, RoundPlane, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual, nominally, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
@@ -184,7 +184,8 @@ def fitted_line(places: Sequence[Array]) -> tuple[Array, Array]:
 def _single(datum: Datum, k: int, own: ActualFeature, simulator: ActualFeature) -> Iterator[tuple[Asks, Seat]]:
     shape = own.feature.shape
     if isinstance(shape, Axis):
-        yield ("across", "direction"), Seat(own.origin, simulator.origin, own.direction, simulator.direction)
+        held: Held = "all" if isinstance(shape, Cone) else "across"
+        yield (held, "direction"), Seat(own.origin, simulator.origin, own.direction, simulator.direction)
     elif not isinstance(shape, (Plane, RoundPlane)):
         yield ("all", "none"), Seat(own.origin, simulator.origin)
     elif datum.simulator == "targets" and datum.targets is not None and k > 0:

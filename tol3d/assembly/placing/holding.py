@@ -10,6 +10,7 @@ from tol3d.assembly.model import (
     Assembly,
     Axis,
     BestFit,
+    Cone,
     Datum,
     DatumFrame,
     Engage,
@@ -192,6 +193,8 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
     if len(features) > 1:
         line = features[-1].frame[:3, 3] - at
         return _line(at, line / np.linalg.norm(line))
+    if isinstance(features[0].shape, Cone):
+        return np.concatenate([_line(at, z), _point(at, z[None])])
     if isinstance(features[0].shape, Axis):
         return _line(at, z)
     if not isinstance(features[0].shape, Plane | RoundPlane):

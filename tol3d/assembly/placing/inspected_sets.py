@@ -4,12 +4,13 @@ That place is where the largest distance is least: cones of a common slack over 
 are made as finite motions until nothing moves.
 """
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Feature, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Cone, Feature, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.placing.actual_feature import actual_size
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS
 from tol3d.assembly.placing.holding import held_by_datums
@@ -44,7 +45,7 @@ def inspected_set(measured: Measured, world: World) -> Array:
     """Twice the largest distance, with the offset of a surface by its size, at the place that is asked (n,) [mm]."""
     part = world.part_of(measured.features[0])
     start = full(world.own[part].displacement(measured.frame).inverse, world.trials)
-    radii = np.array(list(_radii(measured, world)))
+    radii = np.array(list(_radii(measured, world, start)))
     if measured.gauge != "oriented":
         return _largest(_offsets(measured, world, start), radii)
     rows, middle, motions, shifts = _freedoms(measured, world)
@@ -106,15 +107,21 @@ def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
             if isinstance(feature.shape, Plane | RoundPlane):
                 vector[0] -= measured.middle
             found.append(vector)
+        if measured.surfaces and isinstance(feature.shape, Cone):
+            found[-2:] = np.einsum("ij,jkn->ikn", feature.shape.surface_by_axis, found[-2:])
     return np.array(found)
 
 
-def _radii(measured: Measured, world: World) -> Iterator[Array]:
+def _radii(measured: Measured, world: World, pose: Pose) -> Iterator[Array]:
     """Allowance of each place (n,) [mm]: half of a bonus, or the offset of its surface, as less than 0."""
     each = bonuses(measured, world) if measured.bonuses else [np.zeros(1)] * len(measured.features)
     for name, bonus in zip(measured.features, each, strict=True):
         feature = world.assembly.features[name]
         own = np.zeros(world.trials) + 0.5 * bonus
+        if measured.surfaces and isinstance(feature.shape, Cone):
+            z, nominal = column(feature.frame[:3, 2]), column(feature.frame[:3, 3])
+            inward = math.sin(feature.shape.angle) * dot(z, world.on_part(name).moved(pose).origin - nominal)
+            own = own - np.abs((inward if feature.shape.inner else -inward) - measured.middle)
         if measured.surfaces and isinstance(feature.shape, Axis | Point) and feature.shape.diameter is not None:
             larger = 0.5 * (actual_size(feature, world.columns) - feature.shape.diameter)
             own = own - np.abs((-larger if feature.shape.inner else larger) - measured.middle)

@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Feature, Mate, Point, Relation, Rest
-from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
+from tol3d.assembly.model import Axis, Cone, Feature, Mate, Point, Relation, Rest
+from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
+from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
@@ -22,6 +23,7 @@ ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
     ("distance", "point", "plane"): ("along", "none"),
     ("coincident", "point", "point"): ("all", "none"),
     ("coincident", "point", "axis"): ("across", "none"),
+    ("coincident", "cone", "cone"): ("all", "direction"),
     ("coaxial", "axis", "axis"): ("across", "direction"),
     ("tangent", "axis", "plane"): ("along", "level"),
 }
@@ -81,7 +83,12 @@ def mating(move: Mate, nominal: World) -> Mating:
 
 def asked_of(relation: Relation, features: Mapping[str, Feature]) -> tuple[Held, Turning] | None:
     """Constraint by a relation; None if it has none for its two features."""
-    return ASKED.get((relation.kind, _word(features[relation.moving]), _word(features[relation.target])))
+    words = _word(features[relation.moving]), _word(features[relation.target])
+    found = ASKED.get((relation.kind, *words))
+    if found is not None or relation.kind == "tangent":  # of a cylinder: a cone has no one radius
+        return found
+    moving, target = ("axis" if word == "cone" else word for word in words)
+    return ASKED.get((relation.kind, moving, target))
 
 
 def _tie(move: Mate, relation: Relation, world: World) -> Tie:
@@ -94,12 +101,19 @@ def _tie(move: Mate, relation: Relation, world: World) -> Tie:
         raise InputError(f"{name}: expected {expected}, got {shapes[0]} on {shapes[1]}")
     if relation.kind == "tangent" and getattr(features[relation.moving].shape, "diameter", None) is None:
         raise InputError(f"{name}: expected a diameter of {relation.moving}, got an axis without one")
+    moving, target = features[relation.moving].shape, features[relation.target].shape
+    if asked == ("all", "direction") and isinstance(moving, Cone) and isinstance(target, Cone):
+        words = unfit_cones(moving, target, _sign(move, relation, world))
+        if words:
+            raise InputError(f"{name}: {words}")
     return Tie(name, *asked)
 
 
 def _word(feature: Feature) -> str:
     if isinstance(feature.shape, Point):
         return "point"
+    if isinstance(feature.shape, Cone):
+        return "cone"
     return "axis" if isinstance(feature.shape, Axis) else "plane"
 
 
@@ -114,10 +128,24 @@ def _seat(move: Mate, relation: Relation, sign: float, world: World) -> Seat:
         return Seat(moving.origin, target.origin)
     if _is_point(moving):
         return Seat(moving.origin, target.origin, None, target.direction, relation.distance)
+    if relation.kind == "coincident" and isinstance(target.feature.shape, Cone):
+        height = _seated(moving, target, sign, world)
+        return Seat(moving.origin, target.origin + height * target.direction, sign * moving.direction, target.direction)
     if relation.kind == "tangent":
         radius = actual_size(moving.feature, world.columns) / 2
         return Seat(moving.origin, target.origin, moving.direction, target.direction, radius)
     return Seat(moving.origin, target.origin, sign * moving.direction, target.direction, relation.distance)
+
+
+def _seated(moving: ActualFeature, target: ActualFeature, sign: float, world: World) -> Array:
+    """Height of a cone over the one in which it lies, or that lies in it (n,) or (1,) [mm]."""
+    shapes = moving.feature.shape, target.feature.shape
+    assert isinstance(shapes[0], Cone)
+    assert isinstance(shapes[1], Cone)
+    seat = cone_seat(shapes[0], shapes[1], sign)
+    assert seat is not None, "refused before"
+    own, its = (total(each.feature.moved_by, 5, world.columns)[4] for each in (moving, target))
+    return np.asarray(seat.height + seat.by_moving * own + seat.by_target * its)
 
 
 def _is_point(actual: ActualFeature) -> bool:

@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Feature, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.measures import Measured
 from tol3d.numerics.arrays import Array
 
@@ -23,7 +23,7 @@ def symbol(shape: Shape, thickness: float) -> Surface:
 
     Args:
         shape: a plane is a slab below it, a tab a block, a slot its two walls,
-            an axis a rod of its diameter, a hole a ring, a point an octahedron,
+            an axis a rod of its diameter, a hole a ring, a cone a piece or a wall of it, a point an octahedron,
             a sphere a ball, a socket the zone of a shell between 45 degrees of latitude.
         thickness: of shapes that have none of their own [mm].
     """
@@ -46,6 +46,8 @@ def symbol(shape: Shape, thickness: float) -> Surface:
             return prism(outline, -thickness, 0.0)
         case RoundPlane():
             return prism(circle(shape.radius), -thickness, 0.0)
+        case Cone(length=length, inner=inner, diameters=(start, end)):
+            return frustum(start / 2, end / 2, length, thickness if inner else 0.0)
         case Axis():
             half = shape.length / 2
             radius = thickness / 4 if shape.diameter is None else shape.diameter / 2
@@ -73,6 +75,8 @@ def mark(shape: Shape, thickness: float) -> Surface:
             return edges(shape.reach, thickness, -half, half)
         case RoundPlane():
             return ring(max(shape.radius - thickness, shape.radius / 2), shape.radius, -half, half)
+        case Cone(length=length, diameters=(start, end)):
+            return frustum(start / 2 - half, end / 2 - half, length, 2 * half)
         case Axis(diameter=float(diameter)):
             end = shape.length / 2
             if not shape.inner:
@@ -129,6 +133,13 @@ def prism(outline: Array, low: float, high: float) -> Surface:
 def ring(inner: float, outer: float, low: float, high: float) -> Surface:
     """A closed tube from one height to another [mm]."""
     return turned(((outer, low), (outer, high), (inner, high), (inner, low)))
+
+
+def frustum(start: float, end: float, length: float, wall: float) -> Surface:
+    """A closed piece of a cone of radii at both its ends, about its middle, or a wall outside it [mm]."""
+    low, high = max(start, 0.0), max(end, 0.0)
+    inside = ((high, length / 2), (low, -length / 2)) if wall else ((0.0, length / 2), (0.0, -length / 2))
+    return turned(((low + wall, -length / 2), (high + wall, length / 2), *inside))
 
 
 def zone(inner: float, outer: float) -> Surface:

@@ -1,5 +1,6 @@
 """Tables of a scene of an assembly: features with their datum frames, moves."""
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
@@ -11,6 +12,7 @@ from tol3d.assembly.model import (
     Assembly,
     Axis,
     BestFit,
+    Cone,
     Engage,
     Feature,
     Fix,
@@ -166,7 +168,7 @@ def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
 def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float64]) -> str:
     """Direction in which a dimension's positive deviation moves a feature, from its effect on the components."""
     flat, axis = isinstance(feature.shape, Plane | RoundPlane), isinstance(feature.shape, Axis)
-    own = (0.0, 0.0, moved[0]) if flat else (*moved[:2], 0.0) if axis else moved
+    own = (0.0, 0.0, moved[0]) if flat else (*moved[:2], sum(moved[4:])) if axis else moved
     along = feature.frame[:3, :3] @ own
     words = f"along {_direction(along / np.linalg.norm(along))}"
     datums = system.assembly.datum_frames[feature.parent].datums if feature.parent else ()
@@ -242,6 +244,10 @@ def _shape(feature: Feature) -> str:
             return f"plane, radius {radius:g} mm"
         case Point(diameter=float(diameter), inner=inner):
             return f"{'socket' if inner else 'ball'} ⌀{diameter:g} mm"
+        case Cone(length=length, inner=inner, diameters=(start, end)):
+            angle = math.degrees(abs(feature.shape.angle))
+            word = "conical hole" if inner else "cone"
+            return f"{word} ⌀{start:.6g} to ⌀{end:.6g} mm, half angle {angle:.4g} deg, {length:g} mm long"
         case Axis(length=length, diameter=None):
             return f"axis, {length:g} mm long"
         case Axis(length=length, diameter=diameter, inner=inner):

@@ -4,7 +4,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Contribution, Datum, DatumFrame, Feature, Part, Plane, Point, RoundPlane, Slot
+from tol3d.assembly.model import (
+    Axis,
+    Cone,
+    Contribution,
+    Datum,
+    DatumFrame,
+    Feature,
+    Part,
+    Plane,
+    Point,
+    RoundPlane,
+    Slot,
+)
 from tol3d.assembly.model.feature import Shape
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.freedoms import Freedoms
@@ -74,8 +86,8 @@ def _take_one(freedoms: Freedoms, datum: Datum, feature: Feature, torsor: Array,
             _take_slot(freedoms, slot, feature.frame, torsor)
         case Plane() | RoundPlane():
             _take_plane(freedoms, datum, feature, torsor, columns)
-        case Axis():
-            _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor)
+        case Axis() as axis:
+            _take_axis(freedoms, feature.frame[:3, 3], feature.frame[:3, :2].T, torsor, whole=isinstance(axis, Cone))
         case Point():
             position = shift_at(feature.frame[:3, 3])
             freedoms.take(position, position @ torsor)
@@ -132,8 +144,9 @@ def _outermost(feature: Feature, tilt: Array, columns: Columns) -> Array:
     return columns.largest(np.array([[along_y * about_x - along_x * about_y], [along_y * about_x + along_x * about_y]]))
 
 
-def _take_axis(freedoms: Freedoms, centre: Array, across: Array, torsor: Array) -> None:
-    aside = across @ shift_at(centre)
+def _take_axis(freedoms: Freedoms, centre: Array, across: Array, torsor: Array, *, whole: bool = False) -> None:
+    """An axis, or a cone, which is held as a whole: along itself too."""
+    aside = shift_at(centre) if whole else across @ shift_at(centre)
     freedoms.take(aside, aside @ torsor)
     turns = turn_about(across)
     freedoms.take(turns, turns @ torsor)
@@ -270,8 +283,9 @@ def from_components(shape: Shape) -> Array:
             torsor[4, 1] = -1.0 / along_x
             return torsor
         case Axis():
-            torsor = np.zeros((6, 4))
+            torsor = np.zeros((6, len(shape.components)))
             torsor[[0, 1], [0, 1]] = torsor[[0, 1], [2, 3]] = 0.5
             torsor[4, [0, 2]] = -1.0 / shape.length, 1.0 / shape.length
             torsor[3, [1, 3]] = 1.0 / shape.length, -1.0 / shape.length
+            torsor[2, 4:] = 1.0  # of a cone, along
             return torsor

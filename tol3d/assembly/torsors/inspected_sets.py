@@ -1,16 +1,17 @@
 """A set of features against their nominal places to first order: in a datum frame, or at the best place of the set."""
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane
+from tol3d.assembly.model import Axis, Cone, Measured, Plane, Point, RoundPlane
 from tol3d.assembly.torsors.centring import Cones, largest_slack
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.measures import clipped
 from tol3d.assembly.torsors.terms import Form
-from tol3d.assembly.torsors.torsor import cross_matrix, shift_at
+from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.numerics.arrays import Array
 
@@ -86,11 +87,14 @@ def inspected_set(measured: Measured, world: World) -> Array:
         if measured.surfaces and isinstance(shape, Axis | Point) and shape.diameter is not None:
             beside = (-0.5 if shape.inner else 0.5) * world.size(name)
             beside[world.columns.constant] -= measured.middle
-        for point in points:
-            place = turn @ point + at
-            way = directions @ shift_at(place)
+        own_ways = [directions @ shift_at(turn @ point + at) for point in points]
+        if measured.surfaces and isinstance(shape, Cone):
+            beside = (1.0 if shape.inner else -1.0) * math.sin(shape.angle) * (height_at(at, turn[:, 2]) @ torsor)[0]
+            beside[world.columns.constant] -= measured.middle
+            own_ways = list(np.einsum("ij,jkl->ikl", shape.surface_by_axis, own_ways))
+        for point, way in zip(points, own_ways, strict=True):
             ways.append(way)
-            places.append(place)
+            places.append(turn @ point + at)
             offsets.append(way @ torsor - off)
             added.append(beside)
             taken.append(bonus)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Locate, Mate, Pair, Plane, Point, Relation, Rest, RoundPlane
+from tol3d.assembly.model import Axis, Cone, Locate, Mate, Pair, Plane, Point, Relation, Rest, RoundPlane
+from tol3d.assembly.model.cone_seat import cone_seat
 from tol3d.assembly.model.feature import Shape
 from tol3d.assembly.torsors.features import summed
 from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
@@ -56,9 +57,11 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: Worl
             return pairing.height(relation.distance)
         case "coincident", "point", "point":
             return pairing.position(np.eye(3))
-        case "coincident", "point", "axis":
+        case "coincident", "cone", "cone":
+            return pairing.seated() + pairing.parallel()
+        case "coincident", "point", "axis" | "cone":
             return pairing.position(perpendicular(pairing.target_axis))
-        case "coaxial", "axis", "axis":
+        case "coaxial", "axis" | "cone", "axis" | "cone":
             return pairing.position(perpendicular(pairing.target_axis)) + pairing.parallel()
         case "tangent", "axis", "plane":
             return pairing.lying() + pairing.height(*pairing.radius(relation.moving))
@@ -70,13 +73,15 @@ def _take(freedoms: Freedoms, relation: Relation, move: Mate | Rest, world: Worl
     )
 
 
-_ARTICLES = {"point": "a point", "axis": "an axis", "plane": "a plane"}
+_ARTICLES = {"point": "a point", "axis": "an axis", "cone": "a cone", "plane": "a plane"}
 
 
 def _word(shape: Shape) -> str:
     match shape:
         case Point():
             return "point"
+        case Cone():
+            return "cone"
         case Axis():
             return "axis"
         case Plane() | RoundPlane():
@@ -117,6 +122,22 @@ class _Pairing:
     def position(self, directions: Array) -> int:
         """The moving origin where the target is, along directions (directions, 3)."""
         return self._take(directions @ shift_at(self._point), directions @ (self._from - self._point))
+
+    def seated(self) -> int:
+        """The moving cone in the target's, or about it: on its axis, at the height at which their surfaces meet."""
+        features = self._world.assembly.features
+        own, its = (features[name] for name in (self._relation.moving, self._relation.target))
+        assert isinstance(own.shape, Cone)
+        assert isinstance(its.shape, Cone)
+        seat = cone_seat(own.shape, its.shape, float(np.sign(self._axis @ self.target_axis)))
+        assert seat is not None, "refused before"
+        directions = np.vstack([perpendicular(self.target_axis), self.target_axis])
+        rows, columns = directions @ shift_at(self._point), self._world.columns
+        missing = directions @ (self._from - self._point) + np.array([0.0, 0.0, seat.height])
+        values = rows @ (self._target - self._own) + columns.constants(missing)
+        values[2] += seat.by_moving * summed(own.moved_by, 5, columns)[4]
+        values[2] += seat.by_target * summed(its.moved_by, 5, columns)[4]
+        return self._freedoms.take(rows, values)
 
     def height(self, nominal: float, varying: Array | None = None) -> int:
         """The moving origin at a height over the target's plane, as it tilts."""

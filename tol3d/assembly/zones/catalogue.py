@@ -1,14 +1,16 @@
 """The zones that a drawing may state, by feature: what each holds, and the components that are drawn [mm].
 
 A plane has the offset of its centre along the outward normal and its rises from there to the edges at +a/2 along x and
-at +b/2 along y (at the radius, of a round one); an axis has the lateral displacements of its two ends; a point has
-three coordinates. `Zone.matrix` embeds what is drawn in these: all of them, or the few that the zone limits.
+at +b/2 along y (at the radius, of a round one); an axis has the lateral displacements of its two ends, a cone its shift
+along the axis too; a point has three coordinates. `Zone.matrix` embeds what is drawn in these: all of them, or the few
+that the zone limits.
 """
 
 import math
 
 import numpy as np
 
+from tol3d.assembly.model import Cone
 from tol3d.assembly.zones.balls import Flat, Line, Sphere
 from tol3d.assembly.zones.cross_section import CrossSection, Diamond, Disc
 from tol3d.assembly.zones.ends import Ends, FlatEnds
@@ -18,6 +20,7 @@ from tol3d.assembly.zones.motions import Motions
 from tol3d.assembly.zones.round_surfaces import BallSurface, RoundSurface
 from tol3d.assembly.zones.zone import Shape, Zone
 from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
 
 LEAST_SINE = 1e-9  # of the angle of two directions; nearer ones are one
 PLANE = ("offset", "rise x", "rise y")
@@ -58,9 +61,15 @@ def axis_orientation(width: float) -> Zone:
     return Zone(Shape(Flat(Disc()), ("end x", "end y"), opposite), width)
 
 
-def axis_section(width: float, form: float = 0.0) -> Zone:
-    """Zone of an axis at one section, in a disc of diameter t: both ends equal; circular run-out."""
-    equal = ((1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 1.0))
+def axis_section(width: float, form: float = 0.0, slant: float = 1.0) -> Zone:
+    """Zone of an axis at one section, in a disc of diameter t: both ends equal; circular run-out.
+
+    Args:
+        width: t.
+        form: taken from it.
+        slant: displacement of the axis over what is read: 1 / cos of the half angle of a cone.
+    """
+    equal = ((slant, 0.0), (0.0, slant), (slant, 0.0), (0.0, slant))
     return Zone(Shape(Flat(Disc()), ("x", "y"), equal), width, form=form)
 
 
@@ -145,10 +154,38 @@ def cylinder_surface(width: float, outward: float | None = None, form: float = 0
     return Zone(Shape(RoundSurface(), ("outward", *AXIS), axis, (0.0, 0.5, 0.0, 0.5, 0.0)), width, None, outward, form)
 
 
-def sphere_surface(width: float, outward: float | None = None) -> Zone:
+def cone_surface(width: float, cone: Cone, outward: float | None = None, form: float = 0.0) -> Zone:
+    """Zone of a cone's surface: |outward| + the farther of its ends <= t/2, all as displacements square to the surface.
+
+    Its axis, its lean and its place along the axis follow from these.
+    """
+    embedding = np.zeros((5, 5))
+    embedding[:4, 1:] = ends_by_surface(cone)
+    embedding[4, 0] = (1.0 if cone.inner else -1.0) / math.sin(cone.angle)
+    middle = (embedding[0] + embedding[2]) / 2
+    shape = Shape(RoundSurface(), ("outward", *AXIS), _rows(embedding), tuple(middle.tolist()))
+    return Zone(shape, width, None, outward, form)
+
+
+def cone_run_out(width: float, cone: Cone, form: float = 0.0) -> Zone:
+    """Zone of a cone's total run-out, read square to its surface: at both ends in discs of t/2."""
+    ends = ends_by_surface(cone)
+    return Zone(Shape(Ends(), AXIS, _rows(ends), tuple(((ends[0] + ends[2]) / 2).tolist())), width, form=form)
+
+
+def ends_by_surface(cone: Cone) -> Array:
+    """(4, 4): displacements of a cone's surface at both its ends, square to it, x and y -> those of its axis' ends."""
+    return np.kron(np.linalg.inv(cone.surface_by_axis), np.eye(2))
+
+
+def _rows(matrix: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in matrix.tolist())
+
+
+def sphere_surface(width: float, outward: float | None = None, form: float = 0.0) -> Zone:
     """Zone of a ball's surface: |outward| + the offset of its centre <= t/2, outward by the radius."""
     centre = tuple((0.0, *row) for row in THREE)
-    return Zone(Shape(BallSurface(), ("outward", *POINT), centre, (0.0, 1.0, 0.0, 0.0)), width, None, outward)
+    return Zone(Shape(BallSurface(), ("outward", *POINT), centre, (0.0, 1.0, 0.0, 0.0)), width, None, outward, form)
 
 
 def _rises(section: CrossSection, width: float) -> Zone:

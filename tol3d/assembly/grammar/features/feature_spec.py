@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Final, Literal, Self, TypeVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 
 FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
+
+AXES: Final = ("cylinder", "axis", "cone")
+"""Kinds of feature with an axis, which may lie off across itself."""
 
 
 class FaceSpec(Strict):

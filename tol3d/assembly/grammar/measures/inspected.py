@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.measures.assembly_measure import FeatureMeasureSpec
 from tol3d.assembly.grammar.measures.clearance import MOST_HOLES
 from tol3d.assembly.model.datum_frame import Modifier
@@ -79,7 +80,7 @@ class InspectedOrientationSpec(InspectedSpec):
     projected: Length | None = Field(default=None, description="of an axis: over such a length instead of its own")
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds = ("plane", "slot", "cylinder", "axis") if self.projected is None else ("axis", "cylinder")
+        kinds = ("plane", "slot", *AXES) if self.projected is None else ("axis", "cylinder")
         return ((("of",), self.of, kinds),)
 
 
@@ -151,7 +152,7 @@ class InspectedPatternSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds = ("cylinder",) if self.modifier is not None else ("cylinder", "axis")
+        kinds = ("cylinder",) if self.modifier is not None else AXES
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
 
 
@@ -168,7 +169,8 @@ class InspectedSetSpec(FeatureMeasureSpec):
 
     kind: Literal["inspected_set"]
     features: Annotated[tuple[FeatureName, ...], listed("features", 1, MOST_OF_A_SET)] = Field(
-        alias="of", description="features of one part; of an oriented set no points and balls"
+        alias="of",
+        description="features of one part; of an oriented set no points and balls, and no cones by their surfaces",
     )
     free: SetGauge = Field(default="held", description="held by its datums, or only oriented")
     surfaces: bool = Field(default=False, description="whether what is round counts by its surface, not by its middle")
@@ -194,7 +196,8 @@ class InspectedSetSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds: tuple[str, ...] = ("cylinder", "axis", "slot", "plane") if self.free == "oriented" else ()
+        axes = ("cylinder", "axis") if self.surfaces else AXES  # a cone's surface is judged along its axis too
+        kinds: tuple[str, ...] = (*axes, "slot", "plane") if self.free == "oriented" else ()
         if self.modifier is not None:
             kinds = ("cylinder", "slot")
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
@@ -239,12 +242,12 @@ class InspectedTogetherSpec(FeatureMeasureSpec):
         return self
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds = ("cylinder", "slot") if self.modifier is not None else ("cylinder", "axis", "slot", "plane")
+        kinds = ("cylinder", "slot") if self.modifier is not None else (*AXES, "slot", "plane")
         return tuple((("of", k), name, kinds) for k, name in enumerate(self.features))
 
 
 class InspectedSizeSpec(FeatureMeasureSpec):
-    """The diameter, or the width of a slot."""
+    """The diameter, of a cone at its middle, or the width of a slot."""
 
     reads: ClassVar[Reading] = Reading("size", f"{PLACING}:size", f"{TORSORS}:size", is_linear=True, of_part=True)
 
@@ -252,4 +255,4 @@ class InspectedSizeSpec(FeatureMeasureSpec):
     of: FeatureName = Field(description="the feature")
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        return ((("of",), self.of, ("cylinder", "slot", "sphere")),)
+        return ((("of",), self.of, ("cylinder", "cone", "slot", "sphere")),)

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.zone import laws_lacking
 from tol3d.assembly.model.datum_frame import Modifier
@@ -19,7 +20,7 @@ from tol3d.strict import Strict
 class FeatureTolerance(ToleranceEntry):
     """A tolerance of one feature."""
 
-    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "plane", "slot", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "plane", "slot", *AXES)
 
     of: FeatureName = Field(description="the feature, with its part")
 

@@ -1,11 +1,12 @@
 """Zones for location, orientation and form of a feature; run-outs are about an axis."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
@@ -13,6 +14,9 @@ from tol3d.files import Files
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
+
+SURFACES: Final = ("cylinder", "cone", "sphere")
+"""Kinds of feature with a round surface."""
 
 
 class SegmentSpec(Strict):
@@ -106,7 +110,7 @@ class PositionSpec(Modified, Composite):
     """A true position."""
 
     words: ClassVar[str] = "a position tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", "cylinder", "axis", "plane", "slot")
+    applies_to: ClassVar[tuple[str, ...]] = ("point", "sphere", *AXES, "plane", "slot")
 
     kind: Literal["position"]
 
@@ -114,11 +118,11 @@ class PositionSpec(Modified, Composite):
 class ProfileSpec(Composite):
     """A profile of a surface: a width about where it lies nominally, half of it outside unless `outward` says else.
 
-    That of a cylinder or a sphere holds its size, its place and its form together.
+    That of a cylinder, a cone or a sphere holds its size, its place and its form together.
     """
 
     words: ClassVar[str] = "a profile tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point", "cylinder", "sphere")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "point", *SURFACES)
 
     kind: Literal["profile"]
 
@@ -127,7 +131,7 @@ class CoaxialitySpec(Modified, LocationSpec):
     """A coaxiality: the axis lies in a cylinder about the datum's axis."""
 
     words: ClassVar[str] = "a coaxiality tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = AXES
 
     kind: Literal["coaxiality"]
     datums: Datums = Field(description="the axis that it is coaxial to")
@@ -137,7 +141,7 @@ class SymmetrySpec(LocationSpec):
     """A symmetry: a median plane, or an axis in one direction, lies in a width about the datum's."""
 
     words: ClassVar[str] = "a symmetry tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", *AXES)
 
     kind: Literal["symmetry"]
     datums: Datums = Field(description="the median plane or axis that it is symmetric to")
@@ -146,7 +150,7 @@ class SymmetrySpec(LocationSpec):
 class OrientationSpec(Modified, FeatureTolerance):
     """A zone for how a feature is turned."""
 
-    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", "cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = ("plane", "slot", *AXES)
 
     zone: ZoneSpec = Field(description="within which the feature may lean")
     law: LawUnion | None = Field(
@@ -238,7 +242,7 @@ class StraightnessSpec(FormSpec):
     """Straightness of an axis in a diameter, of surface lines in a width; of the whole, or of pieces `per` a length."""
 
     words: ClassVar[str] = "a straightness tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis", "plane")
+    applies_to: ClassVar[tuple[str, ...]] = (*AXES, "plane")
 
     kind: Literal["straightness"]
     per: Length | None = Field(default=None, description="every piece of that length; default: the whole")
@@ -246,10 +250,10 @@ class StraightnessSpec(FormSpec):
 
 
 class RoundnessSpec(FormSpec):
-    """Roundness of every section of a cylinder, between two circles with one centre."""
+    """Roundness of every section of a cylinder, a cone or a sphere, between two circles with one centre."""
 
     words: ClassVar[str] = "a roundness tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder",)
+    applies_to: ClassVar[tuple[str, ...]] = SURFACES
 
     kind: Literal["roundness"]
 
@@ -267,7 +271,7 @@ class CircularRunOutSpec(LocationSpec):
     """Radial run-out at the middle section: twice the eccentricity; the zone's width is the run-out."""
 
     words: ClassVar[str] = "a circular run-out tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = AXES
 
     kind: Literal["circular_run_out"]
     datums: Datums = Field(description="the axis that it turns about")
@@ -277,7 +281,7 @@ class TotalRunOutSpec(LocationSpec):
     """Radial run-out at both ends."""
 
     words: ClassVar[str] = "a total run-out tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "axis")
+    applies_to: ClassVar[tuple[str, ...]] = AXES
 
     kind: Literal["total_run_out"]
     datums: Datums = Field(description="the axis that it turns about")
@@ -285,4 +289,4 @@ class TotalRunOutSpec(LocationSpec):
 
 def is_of_round_surface(spec: FeatureTolerance, kind: str) -> bool:
     """True if a tolerance of a kind of feature holds a size and a place together: a profile of what is round."""
-    return isinstance(spec, ProfileSpec) and kind in ("cylinder", "sphere")
+    return isinstance(spec, ProfileSpec) and kind in SURFACES

@@ -39,10 +39,10 @@ Deviation = Annotated[Quantity, Of("length")]
 
 
 class SizeSpec(FeatureTolerance, ToleranceSpec):
-    """Deviation of a diameter or width from nominal."""
+    """Deviation of a diameter or width from nominal; of a cone, of the diameter of every section."""
 
     words: ClassVar[str] = "a size tolerance"
-    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "slot", "sphere")
+    applies_to: ClassVar[tuple[str, ...]] = ("cylinder", "cone", "slot", "sphere")
 
     kind: Literal["size"]
     limits: Annotated[tuple[Deviation, Deviation], listed("lengths", 2, 2)] | None = Field(
