@@ -62,7 +62,9 @@ TILT = math.radians(1e-3)
         (hole(1.0), hole(1.0, radius=2.01), False),
         (hole(1.0), hole(1.0, pin=True), False),
         (Surface("sphere", radius=1.0), Surface("sphere", direction=(1.0, 0.0, 0.0), radius=1.0), True),
-        (Surface("cone", radius=1.0), Surface("cone", radius=1.0), False),
+        (Surface("cone", radius=1.0, slant=0.1), Surface("cone", radius=1.0, slant=0.1), True),
+        (Surface("cone", radius=1.0, slant=0.1), Surface("cone", radius=1.0, slant=0.2), False),
+        (Surface("torus", radius=1.0), Surface("cone", radius=1.0), False),
     ],
 )
 def test_faces_of_one_surface_are_merged(first: Surface, second: Surface, one: bool) -> None:
@@ -82,7 +84,9 @@ def test_faces_of_one_surface_are_merged(first: Surface, second: Surface, one: b
         ([hole(0.0), hole(9.0, radius=3.0)], "round"),
         ([hole(0.0), plane(0.0)], "mixed"),
         ([Surface("sphere", radius=1.0)], "sphere"),
-        ([Surface("cone", radius=1.0)], "round"),
+        ([Surface("cone", radius=1.0)], "cone"),
+        ([Surface("cone", radius=1.0), Surface("cone", (9.0, 0.0, 0.0), radius=1.0)], "cones"),
+        ([Surface("torus", radius=1.0)], "round"),
     ],
 )
 def test_surfaces_make_a_shape(surfaces: list[Surface], kind: str) -> None:

@@ -27,7 +27,6 @@ INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"
 TURNED: Final = ORIENTATIONS | {"axial_run_out"}
 UNUSABLE: Final = frozenset(("torus", "free form"))
-UNPROFILED: Final = UNUSABLE | {"cone"}
 """Features of which a scene has no profile."""
 AROUND: Final = 72  # directions in which the edges of a face are felt for the farthest one: to 1e-3 of a corner
 MOST_OF_ALL: Final = 6  # faces on which a tolerance of the whole part is written
@@ -135,7 +134,7 @@ class Drawing:
             return self.features.of_faces(tolerance.feature.faces, frozenset(("plane",)))
         if shape.kind == "mixed" and (tolerance.kind in ORIENTATIONS or tolerance.above):
             return self.features.of_faces(tolerance.feature.faces, USABLE - {"plane"} | UNUSABLE)
-        skipped = UNPROFILED if tolerance.kind == "surface profile" else frozenset()
+        skipped = UNUSABLE if tolerance.kind == "surface profile" else frozenset()
         return self.features.of_faces(tolerance.feature.faces, skipped)
 
     def is_slot(self, tolerance: Tolerance, kind: str) -> bool:
@@ -219,7 +218,7 @@ class Drawing:
                 continue
             own = self.meanings.datum(tolerance.datums[0].references[0])
             shape = None if own is None else self.meanings.datum_shapes.get(own.id)
-            if member.kind != "plane" or shape is None or shape.kind != "cylinder":
+            if member.kind != "plane" or shape is None or shape.kind not in ("cylinder", "cone"):
                 continue
             axis, normal = np.array(shape.surfaces[0].direction), np.array(member.direction)
             off = np.subtract(member.at, shape.surfaces[0].at)

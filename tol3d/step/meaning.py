@@ -31,11 +31,11 @@ MATERIAL: Final = frozenset(
         "least material condition",
     )
 )
-DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder", "cylinders"))
+DATUM_SHAPES: Final = frozenset(("plane", "slot", "cylinder", "cylinders", "cone"))
 MOST_TOGETHER: Final = 10  # features of one datum
 SQUARE: Final = 1e-6  # cosine between directions that are square
 
-PROFILED: Final = ("plane", "cylinder", "sphere")
+PROFILED: Final = ("plane", "cylinder", "cone", "sphere")
 """Surfaces that a profile may be of."""
 FLAT_ALONE: Final = "it is of its flat faces alone"
 LOST_RELATION: Final = "how the faces lie to each other is lost"
@@ -190,19 +190,19 @@ class Meanings:
             return f"{tolerance.kind} per unit of length or area"
         if tolerance.kind == "line profile":
             return "line profile is form of lines"
-        round_ones = ("cylinder", "cylinders", "sphere", "spheres")
+        axes = ("cylinder", "cylinders", "cone", "cones")
+        round_ones = (*axes, "sphere", "spheres")
         allowed = {
             "position": ("plane", "slot", *round_ones),
             "surface profile": ("plane", "planes", "slot", *round_ones),
             "flatness": ("plane",),
-            "straightness": ("cylinder", "cylinders", "plane"),
-            **dict.fromkeys(("roundness", "cylindricity"), ("cylinder", "cylinders")),
-            "circular runout": ("cylinder", "plane"),
-            "total runout": ("cylinder", "plane"),
-            "concentricity": ("cylinder", "cylinders"),
-            "coaxiality": ("cylinder", "cylinders"),
+            "straightness": (*axes, "plane"),
+            "roundness": round_ones,
+            "cylindricity": ("cylinder", "cylinders"),
+            **dict.fromkeys(("circular runout", "total runout"), ("cylinder", "cone", "plane")),
+            **dict.fromkeys(("concentricity", "coaxiality"), axes),
             "symmetry": ("plane", "slot", "cylinder"),
-            **dict.fromkeys(ORIENTATIONS, ("plane", "slot", "cylinder", "cylinders")),
+            **dict.fromkeys(ORIENTATIONS, ("plane", "slot", *axes)),
         }.get(tolerance.kind)
         if allowed is None:
             return "the file states no kind of tolerance"
@@ -230,6 +230,8 @@ class Meanings:
                 return f"datum {each.letter} of {shape.words if shape else 'no single feature'}"
             if set(each.modifiers) - MATERIAL:
                 return f"datum {each.letter} with {', '.join(sorted(set(each.modifiers) - MATERIAL))}"
+            if each.modifiers and shape.kind == "cone":
+                return f"datum {each.letter} of a cone at its boundary"
             shapes.append(shape)
         return self.together_obstacle(compartment, shapes)
 
@@ -281,7 +283,7 @@ class Meanings:
         if tolerance.feature.whole:
             return "it is of the largest flat faces alone that nothing else names"
         lost = sorted({each.kind for each in shape.surfaces} - {*PROFILED})
-        words = {"cone": "cones", "torus": "tori", "other": "free forms"}
+        words = {"torus": "tori", "other": "free forms"}
         return f"its {' and '.join(words[own] for own in lost)} are left out" if lost else ""
 
     def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:

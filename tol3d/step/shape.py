@@ -1,4 +1,4 @@
-"""The shape of a named feature by its faces: a plane, a slot or tab, holes or pins of one size, balls, or a mixture."""
+"""The shape of a named feature by its faces: a plane, a slot or tab, holes, pins, cones, balls, or a mixture."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,18 @@ from tol3d.step.structure import Structure
 from tol3d.step.surfaces import Surface, SurfaceKind, aligned, merged
 
 ShapeKind = Literal[
-    "plane", "planes", "slot", "cylinder", "cylinders", "sphere", "spheres", "round", "mixed", "nothing"
+    "plane",
+    "planes",
+    "slot",
+    "cylinder",
+    "cylinders",
+    "cone",
+    "cones",
+    "sphere",
+    "spheres",
+    "round",
+    "mixed",
+    "nothing",
 ]
 
 WORDS: Mapping[ShapeKind, str] = {
@@ -18,9 +29,11 @@ WORDS: Mapping[ShapeKind, str] = {
     "slot": "a slot or tab",
     "cylinder": "a hole or pin",
     "cylinders": "holes or pins",
+    "cone": "a cone",
+    "cones": "cones",
     "sphere": "a ball or socket",
     "spheres": "balls or sockets",
-    "round": "a cone, torus or free form",
+    "round": "a torus, a free form or sizes that differ",
     "mixed": "surfaces of several kinds",
     "nothing": "no faces",
 }
@@ -55,7 +68,7 @@ class Shape:
     @property
     def words(self) -> str:
         """Shape in words, with the number of surfaces."""
-        if self.kind in ("planes", "cylinders", "spheres"):
+        if self.kind in ("planes", "cylinders", "cones", "spheres"):
             return f"{len(self.surfaces)} {WORDS[self.kind].removeprefix('several ')}"
         return WORDS[self.kind]
 
@@ -79,10 +92,13 @@ def kind_of(surfaces: list[Surface]) -> ShapeKind:
             return "slot"
         return "plane" if len(surfaces) == 1 else "planes"
     same_size = all(
-        abs(each.radius - first.radius) < 1e-4 and each.same_sense == first.same_sense for each in surfaces
+        abs(each.radius - first.radius) < 1e-4 and (each.same_sense, each.slant) == (first.same_sense, first.slant)
+        for each in surfaces
     )  # mm, as SAME_PLACE
     if kinds == {"cylinder"} and same_size:
         return "cylinder" if len(surfaces) == 1 else "cylinders"
+    if kinds == {"cone"} and same_size:
+        return "cone" if len(surfaces) == 1 else "cones"
     if kinds == {"sphere"} and same_size:
         return "sphere" if len(surfaces) == 1 else "spheres"
     return "round" if len(kinds) == 1 else "mixed"

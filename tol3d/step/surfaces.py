@@ -36,6 +36,7 @@ class Surface:
         direction: the normal of a plane out of the material; the axis of others.
         radius: of a round one [mm], of a torus that of its tube, of a cone that at its placement; 0 of planes.
         same_sense: whether the face's normal is that of the surface: a pin rather than a hole.
+        slant: of a cone, its half angle as the file writes it.
     """
 
     kind: SurfaceKind
@@ -43,6 +44,7 @@ class Surface:
     direction: Vector = (0.0, 0.0, 1.0)
     radius: float = 0.0
     same_sense: bool = True
+    slant: float = 0.0
 
     def is_coaxial_with(self, other: "Surface") -> bool:
         """True if two round surfaces have one axis, whichever way each points."""
@@ -67,7 +69,9 @@ class Surface:
             along = dot(between, self.direction)
             aside = math.sqrt(max(dot(between, between) - along * along, 0.0))
             return aligned(self.direction, other.direction) != 0 and aside < SAME_PLACE
-        return self.kind in ("sphere", "torus") and math.sqrt(dot(between, between)) < SAME_PLACE
+        if self.kind == "cone" and (aligned(self.direction, other.direction) < 1 or self.slant != other.slant):
+            return False
+        return self.kind in ("cone", "sphere", "torus") and math.sqrt(dot(between, between)) < SAME_PLACE
 
 
 def dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
@@ -98,7 +102,8 @@ def surface_of(file: Part21, face: int, unit: Unit) -> Surface:
     kind = KINDS[found.keyword]
     if kind == "plane":
         return Surface(kind, at, z if same else (-z[0], -z[1], -z[2]), same_sense=same)
-    return Surface(kind, at, z, found.number(3 if kind == "torus" else 2) * unit.factor, same)
+    radius = found.number(3 if kind == "torus" else 2) * unit.factor
+    return Surface(kind, at, z, radius, same, found.number(3) if kind == "cone" else 0.0)
 
 
 def product_unit(file: Part21, product: Product) -> Unit | None:
