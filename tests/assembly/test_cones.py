@@ -184,6 +184,28 @@ def test_an_axis_before_a_cone_leaves_it_the_shift_along(tmp_path: Path) -> None
         assert made.drawn(20, method)["eye over nose"] == pytest.approx(shift, abs=2e-3 if method == "exact" else 1e-12)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_face_before_a_cone_leaves_it_the_offset_across(method: str, tmp_path: Path) -> None:
+    """A size then moves nothing: the face holds the place along the axis."""
+    made = assembled(spindle(SIZE).replace("datums: [taper], distr", "datums: [rim, taper], distr"), tmp_path)
+    assert made.drawn(5, method)["eye over nose"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_roundness_takes_its_width_from_a_profile_of_a_cone_and_of_a_ball(tmp_path: Path) -> None:
+    ball = "      ball: {kind: sphere, at: [0 mm, 0 mm, 60 mm], diameter: 10 mm}\n"
+    more = "".join(
+        f"  {name} {kind}: {{kind: {kind}, of: spindle.{name}, zone: {{width: {width} mm}}{law}}}\n"
+        for name in ("taper", "ball")
+        for kind, width, law in (("profile", 0.1, ", law: {kind: uniform}"), ("roundness", 0.04, ""))
+    )
+    text = spindle(more).replace("      nose:", ball + "      nose:")
+    made = assembled(text + "  ball surface: {kind: inspected_set, of: [spindle.ball], surfaces: true}\n", tmp_path)
+    found = made.drawn(500)
+    for name in ("surface", "ball surface"):
+        assert 0.9 * 0.06 < found[name].max() < 0.06 * (1 + 1e-3)
+    assert made.system.warnings == ()
+
+
 def seated(pin: str, hole: str, more: str = "") -> str:
     """A tool in a holder, both cones along z; sizes of both vary."""
     return f"""scene: seat

@@ -163,7 +163,7 @@ def test_a_form_that_acts_on_nothing_is_told(tmp_path: Path) -> None:
     made = made_of(POSITION + ROUND, tmp_path)
     (words,) = made.system.warnings
     assert "roundness" in words
-    assert "has no run-out that it could narrow" in words
+    assert "has no run-out or profile that it could narrow" in words
     assert made_of(RUN_OUT + ROUND, tmp_path).system.warnings == ()
     assert made_of(AXIAL + FLAT, tmp_path).system.warnings == ()
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d.assembly.mechanism import ASSEMBLY
-from tol3d.assembly.model import Axis, Plane, Point, RoundPlane, Shape, Slot
+from tol3d.assembly.model import Axis, Cone, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.presenting import PRESENTER
 from tol3d.assembly.presenting.symbols import SIDES, rod, symbol
 from tol3d.assembly.summary_types import AssemblyMeasureSummary
@@ -59,6 +59,8 @@ def zone(radius: float) -> float:
         (Axis(20.0), POLYGON * 0.5**2 * 20),
         (Axis(20.0, 10.0), POLYGON * 5**2 * 20),
         (Axis(20.0, 10.0, inner=True), POLYGON * (7**2 - 5**2) * 20),
+        (Cone(20.0, diameters=(6.0, 0.0)), POLYGON * 3**2 * 20 / 3),
+        (Cone(20.0, inner=True, diameters=(8.0, 12.0)), POLYGON * 20 * (6**2 + 6 * 8 + 8**2 - 4**2 - 4 * 6 - 6**2) / 3),
         (Point(10.0), ball(5.0)),
         (Point(10.0, inner=True), zone(7.0) - zone(5.0)),
     ],

@@ -98,7 +98,7 @@ def test_a_cone_has_its_axis_and_length() -> None:
     face = one(cone, Pick(near=(1.0, 5.0, 30.0), kinds=("cylinder", "cone")))
     assert face.kind == "cone"
     assert (*face.at, *face.direction) == pytest.approx((1, 8, 3, 0, 1, 0), abs=CLOSE)
-    assert (face.extent[0], face.hole) == pytest.approx((12.0, False), abs=CLOSE)
+    assert (face.extent[0], face.hole, *face.radii) == pytest.approx((12.0, False, 10.0, 4.0), abs=CLOSE)
 
 
 def test_rounded_and_notched_outlines_have_the_rectangle_around_them() -> None:

@@ -20,6 +20,10 @@ from foreign_parts import (
     turned,
 )
 
+from tol3d.assembly.grammar.features import ConeSpec
+from tol3d.assembly.grammar.features.selector import SelectorSpec
+from tol3d.assembly.model import Cone
+from tol3d.assembly.picking.step_picks import face_of, with_numbers
 from tol3d.errors import InputError
 from tol3d.files import FileContent
 from tol3d.step.found import FoundFeature
@@ -94,6 +98,9 @@ def test_a_seat_and_a_cone(solids: StepFile) -> None:
     assert (2 * cone.radius, 2 * cone.minor_radius, cone.length) == pytest.approx((12.0, 6.0, 8.0), abs=EXACT)
     assert cone.half_angle == pytest.approx(math.atan(3 / 8), abs=1e-12)
     assert cone.at == pytest.approx((0.0, 0.0, -11.0), abs=EXACT)
+    (made,) = with_numbers(SelectorSpec(kind="cone"), [face_of(cone)]).members("cone").values()
+    assert isinstance(made, ConeSpec)
+    assert made.shape == Cone(8.0, inner=True, diameters=(12.0, 6.0))
 
 
 def test_a_turned_part_has_the_same_features_elsewhere(solids: StepFile) -> None:

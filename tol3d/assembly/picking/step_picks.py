@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
+from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
 from tol3d.assembly.grammar.features.feature_spec import FaceKind, lengths
 from tol3d.assembly.grammar.features.pattern import Scattered
 from tol3d.assembly.grammar.features.selector import SelectorSpec
@@ -133,6 +133,8 @@ def _by_numbers(spec: SelectorSpec, face: PickedFace) -> FeatureUnion:
     if face.kind == "sphere":
         return SphereSpec.model_validate({"kind": "sphere", "at": at, **diameter})
     numbers = {"at": at, "axis": face.direction, "length": lengths(face.extent[0])[0]}
+    if face.kind == "cone" and face.radii == (0.0, 0.0):  # kept by a run of before cones were features
+        return AxisSpec.model_validate({"kind": "axis", **numbers})
     if face.kind == "cone":
         diameters = lengths(*(2 * radius for radius in face.radii))
         return ConeSpec.model_validate({"kind": "cone", **numbers, "diameters": diameters, "hole": face.hole})
