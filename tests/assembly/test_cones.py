@@ -233,6 +233,10 @@ measures:
 """
 
 
+BESIDE = "      B: {kind: axis, at: [0 mm, 0 mm, 60 mm], axis: [0, 0, 1], length: 9 mm}\n"
+RUN_OUT = """  total: {kind: total_run_out, of: spindle.taper, zone: {width: 0.1 mm}, law: {kind: uniform}, datums: [B]}
+  lean: {kind: parallelism, of: spindle.taper, zone: {diameter: 0.05 mm}, datums: [B]}
+"""
 ALIKE = "axis: [0, 0, 1], length: 20 mm, diameters: [20 mm, 28 mm]"
 FLIPPED = "axis: [0, 0, -1], length: 20 mm, diameters: [28 mm, 20 mm]"
 
@@ -309,6 +313,14 @@ def test_a_cone_grows_about_its_apex(method: str, tmp_path: Path) -> None:
         (spindle(SIZE).replace("[30 mm, 22 mm]", "[30 mm, 30 mm]"), "expected two diameters that differ"),
         (spindle(SIZE).replace("diameters: [30 mm, 22 mm]", "diameter: 26 mm"), "its `diameter` at the middle with"),
         (spindle(SIZE).replace("diameters: [30 mm, 22 mm]", "diameter: 6 mm, half_angle: 30 deg"), "of 0 mm or more"),
+        (
+            spindle(SIZE).replace("distribution: {kind: uniform", "envelope: true, distribution: {kind: uniform"),
+            "an envelope is of a cylinder, a slot or a tab",
+        ),
+        (
+            spindle(RUN_OUT).replace("      nose:", BESIDE + "      nose:"),
+            "expected no orientation beside the total run-out of a cone",
+        ),
         (spindle(SIZE + PROFILE), "which holds the cone's diameter too"),
         (spindle(SIZE).replace("along: [0.0, 0.0, 1.0], datums: [taper], distribution", "datums: [taper], distribution")
          .replace("of: spindle.eye", "of: spindle.taper").replace("[taper]", "[nose]"), "across the cone or along"),

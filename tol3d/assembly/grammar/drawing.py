@@ -28,7 +28,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     TotalRunOutSpec,
     is_of_round_surface,
 )
-from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ZoneSpec
 from tol3d.assembly.model import Axis, Plane, Point, RoundPlane
 from tol3d.assembly.model.dimension import longer
@@ -245,6 +245,8 @@ class Drawing:
 
     def is_enveloped(self, feature: str) -> bool:
         """True if limits of size bound its form: its size says so, or else the scene."""
+        if self.kind(feature).kind not in ENVELOPED:
+            return False
         specs = [own.spec for own in self.of(feature, SizeSpec)]
         said = next((spec.envelope for spec in specs if isinstance(spec, SizeSpec)), False)
         return self.scene.envelope if said is None else said

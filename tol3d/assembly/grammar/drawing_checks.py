@@ -22,7 +22,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     TotalRunOutSpec,
     is_of_round_surface,
 )
-from tol3d.assembly.grammar.tolerances.plus_minus import PlusMinusSpec, SizeSpec
+from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, PlusMinusSpec, SizeSpec
 from tol3d.assembly.grammar.zone import ProcessLawSpec
 from tol3d.assembly.model import RoundPlane
 from tol3d.assembly.model.feature import nominal_size
@@ -167,6 +167,9 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
                 yield here, words
         elif isinstance(spec, FormSpec):
             yield from _form_problems(here, spec, drawing, feature)
+        elif isinstance(spec, SizeSpec) and spec.envelope and drawing.kind(feature).kind not in ENVELOPED:
+            words = f"expected none of {drawing.kind(feature).words}, got it of {feature!r}"
+            yield (*here, "envelope"), f"{words}; an envelope is of a cylinder, a slot or a tab"
         elif isinstance(spec, PlusMinusSpec):
             yield from _direction_problems(here, spec, drawing, feature)
 

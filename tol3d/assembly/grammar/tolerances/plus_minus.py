@@ -1,7 +1,7 @@
 """Lengths with a law: where a feature lies along a direction, its size, and locators of a move."""
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -34,6 +34,9 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
     def named_datums(self) -> tuple[DatumSpec, ...]:
         return self.datums or ()
 
+
+ENVELOPED: Final = ("cylinder", "slot")
+"""Kinds of feature whose form an envelope bounds: their surfaces are opposed."""
 
 Deviation = Annotated[Quantity, Of("length")]
 
