@@ -61,7 +61,7 @@ SCENE = MechanismPage(
     {
         "parts": ["Every part may have"],
         "tolerances": ["Each has `kind`, `of`, `distribution`"],
-        "measures": ["and besides `kind` and `of` have"],
+        "measures": ["Each has `kind` and `of`, and may have"],
     },
 )
 ASSEMBLIES = MechanismPage(
