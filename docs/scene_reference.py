@@ -80,13 +80,20 @@ class Reference:
         found: dict[str, list[str]] = {COMMON: [], FIGURES: []}
         options = {key: node for key, node in self._schema["properties"].items() if key not in SECTIONS}
         figures = options.pop("published")
-        laws = next(node for node in self._nodes(self._schema) if {"NormalSpec", "UniformSpec"} <= set(_targets(node)))
+        laws = [{"$ref": f"{DEFINITIONS}{name}"} for name, group in self._laws.items() if group == "distributions"]
         found[COMMON] += [ROOT, *self._within(options, placed), *self._within(laws, placed)]
         found[FIGURES] += self._within(figures, placed)
         for each in self._grammar.vocabularies:
             own = [self._name(section, word) for section in SECTIONS for word in self._words(each.name, section)]
             found[each.name] = [*own, *self._within([self._definitions[name] for name in own], placed)]
         return {page: names for page, names in found.items() if names}
+
+    @cached_property
+    def _laws(self) -> Mapping[str, str]:
+        """The group of each law: distributions with numbers of their own, or default laws of limits."""
+        drawn = next(node for node in self._nodes(self._schema) if {"NormalSpec", "UniformSpec"} <= set(_targets(node)))
+        groups = {"default laws": self._schema["properties"]["default_law"], "distributions": drawn}
+        return {name: group for group, node in groups.items() for each in self._nodes(node) for name in _targets(each)}
 
     def _words(self, vocabulary: str, section: str) -> Iterator[str]:
         """The kinds of a section that a vocabulary is the first to have."""
@@ -133,9 +140,10 @@ class Reference:
             yield ""
         section = None
         for name in names:
-            if (own := self._sections.get(name, "fields of these" if page not in TITLES else None)) != section:
-                section = own
-                yield f"## {str(own).capitalize()}\n"
+            own = self._sections.get(name, self._laws.get(name, "fields of these" if page not in TITLES else None))
+            if own != section and own:
+                yield f"## {own.capitalize()}\n"
+            section = own
             yield from self._entry(name, "###" if section else "##")
 
     def _kinds(self) -> Iterator[tuple[str, str, str]]:
