@@ -68,6 +68,10 @@ CALLOUTS: Final[Mapping[str, tuple[Frame, ...]]] = {
     "profile_of_a_bore": (
         Frame("profile", (("0.1", "A", "B", "C"),), "⌀8 (basic)", ("size, place, lean and form of the bore",)),
     ),
+    "cone_datum": (
+        Frame("profile", (("0.01",),), "taper 3:20", ("of its surface; the taper is datum A",)),
+        Frame("total_run_out", (("0.02", "A"),), "nose", ("about the axis of A, which holds the place along it too",)),
+    ),
     "form": (
         Frame("cylindricity", (("0.02",),), "nose"),
         Frame("roundness", (("0.01",),), "nose"),

@@ -233,6 +233,8 @@ measures:
 """
 
 
+WIDE, ENDS = "length: 30 mm, diameters: [16 mm, 31 mm]", ("holder.hole", "tool.cone")
+FAR = "[-200.0 mm, 70.0 mm, 1000.0 mm]"
 BESIDE = "      B: {kind: axis, at: [0 mm, 0 mm, 60 mm], axis: [0, 0, 1], length: 9 mm}\n"
 RUN_OUT = """  total: {kind: total_run_out, of: spindle.taper, zone: {width: 0.1 mm}, law: {kind: uniform}, datums: [B]}
   lean: {kind: parallelism, of: spindle.taper, zone: {diameter: 0.05 mm}, datums: [B]}
@@ -290,6 +292,24 @@ def test_cones_of_two_angles_meet_at_the_end_that_a_search_finds(
     sizes, depth = columns(made, 4), made.drawn(4, method)["depth"]
     found = [searched(pin, hole, *own) for own in zip(sizes["cone"], sizes["hole"], strict=True)]
     assert depth == pytest.approx(found, abs=1e-9)
+
+
+def test_where_parts_are_drawn_changes_no_seat_and_the_methods_differ_by_second_order(tmp_path: Path) -> None:
+    """Tapers that lie off and lean by profiles; of unequal angles, for there the place of an end counts."""
+    text = seated("axis: [0, 0, 1], length: 10 mm, diameters: [20 mm, 23 mm]", WIDE)
+    for own in ENDS:
+        size = f"kind: size, of: {own}, distribution: {{kind: uniform, lower: -50 um, upper: 50 um}}"
+        text = text.replace(size, f"kind: profile, of: {own}, zone: {{width: 0.05 mm}}, law: {{kind: uniform}}")
+    here, there = (assembled(own, tmp_path) for own in (text, text.replace("[0 mm, 0 mm, 0 mm]", FAR)))
+    for name, values in here.drawn(20).items():
+        np.testing.assert_allclose(there.drawn(20)[name], values, rtol=0, atol=1e-9)
+    trials = drawn(here.simulation, 0, 30)
+    exact, linear = ([here.values(trials.scaled(scale), method) for scale in (1.0, 0.25)] for method in METHODS)
+    apart = [
+        max(float(np.abs(one[name] - other[name]).max()) for name in one)
+        for one, other in zip(exact, linear, strict=True)
+    ]
+    assert apart[1] < apart[0] / 10
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -122,6 +122,20 @@ def test_holes_in_line_are_bolted_and_faces_that_touch_are_laid_on_each_other(tm
     simulation_of(load(tmp_path / "scene.yaml"), Overrides())
 
 
+def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:
+    """A plug stands in a block where it meets the hole; its turn about the axis stays as drawn."""
+    cone = cq.Solid.makeCone(10, 6, 12, cq.Vector(0, 0, 10), cq.Vector(0, 0, -1))
+    block = solid(cq.Workplane().box(40, 40, 20).cut(cq.Workplane(cone)))
+    plug = solid(cq.Workplane(cq.Solid.makeCone(11, 7, 12, cq.Vector(0, 0, 13), cq.Vector(0, 0, -1))))
+    text = drafted(tmp_path, {"block": block, "plug": plug})
+    read = yaml.safe_load(text)
+    (move,) = (own for own in read["moves"].values() if own["kind"] != "fix")
+    assert (move["kind"], [own["kind"] for own in move["relations"]]) == ("mate", ["coincident"])
+    (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
+    features = simulation_of(load(tmp_path / "scene.yaml"), Overrides()).system.assembly.features
+    assert sorted(type(own.shape).__name__ for own in features.values()).count("Cone") == 2
+
+
 @pytest.mark.slow
 def test_a_gap_is_measured_between_the_nearest_parallel_faces(tmp_path: Path) -> None:
     """A block 20 mm wide whose underside stands 3 mm over the plate's top at z = 5."""

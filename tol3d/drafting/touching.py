@@ -6,6 +6,8 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.model import Cone
+from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
 from tol3d.drafting.entry import Entry, Wording
 from tol3d.drafting.parts import DraftedPart
 from tol3d.drafting.words import Names, across, direction, length, number, scalar
@@ -42,7 +44,7 @@ class Faces:
 
 @dataclass(frozen=True)
 class Coaxial:
-    """A pin in a hole, or two holes in line."""
+    """A pin in a hole, two holes in line, or a cone in a conical hole."""
 
     part: DraftedPart
     other: DraftedPart
@@ -125,6 +127,30 @@ def coaxial(part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
     return unique
 
 
+def seats(part: DraftedPart, other: DraftedPart) -> list[Coaxial]:
+    """Cones that lie in conical holes as both parts stand, the longest first."""
+    cones = [[own for own in each.features.part.features if own.kind == "cone" and not own.loose]
+             for each in (part, other)]  # fmt: skip
+    found = []
+    for own in cones[0]:
+        for there in cones[1]:
+            axis, off = other.along(there.direction), part.at(own) - other.at(there)
+            turned = float(np.linalg.norm(np.cross(part.along(own.direction), axis)))
+            if turned > PARALLEL or float(np.linalg.norm(np.cross(off, axis))) > TOUCHING:
+                continue
+            sign = float(np.sign(part.along(own.direction) @ axis))
+            moving, target = cone_of(own), cone_of(there)
+            seat = None if unfit_cones(moving, target, sign) else cone_seat(moving, target, sign)
+            if seat is not None and abs(float(off @ axis) - seat.height) < TOUCHING:
+                found.append(Coaxial(part, other, own, there))
+    return sorted(found, key=lambda each: -min(each.own.length, each.there.length))
+
+
+def cone_of(own: FoundFeature) -> Cone:
+    """A cone as the model has it."""
+    return Cone(own.length, inner=own.outside, diameters=(2 * own.radii[0], 2 * own.radii[1]))
+
+
 def same_line(first: Coaxial, second: Coaxial) -> bool:
     """True if two pairs lie on one axis."""
     off = first.other.at(first.there) - second.other.at(second.there)
@@ -148,7 +174,8 @@ def moves(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
 
 def touches(part: DraftedPart, other: DraftedPart) -> bool:
     """True if faces of two parts touch in their poses."""
-    return any(own.gap < TOUCHING for own in facing(part, other)) or bool(coaxial(part, other))
+    meets = any(own.gap < TOUCHING for own in facing(part, other))
+    return meets or bool(coaxial(part, other)) or bool(seats(part, other))
 
 
 def fixed(part: DraftedPart) -> Wording:
@@ -161,6 +188,12 @@ def move(part: DraftedPart, others: Sequence[DraftedPart], names: Names) -> Iter
     relations: list[str] = []
     normals: list[Array] = []
     axes = [own for other in others for own in coaxial(part, other)]
+    for seat in [own for other in others for own in seats(part, other)][:1]:
+        normals.append(seat.axis)  # a face across it takes nothing, nor does what lies on its line
+        axes = [own for own in axes if not same_line(own, seat)]
+        relations.append(
+            f"  - {{kind: coincident, from: {feature(part, seat.own)}, to: {feature(seat.other, seat.there)}}}"
+        )
     contacts = [own for other in others for own in facing(part, other) if own.gap < TOUCHING]
     for own in sorted(contacts, key=lambda each: -each.area):
         normal = own.other.along(own.there.direction)
