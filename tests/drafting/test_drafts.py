@@ -11,6 +11,8 @@ import yaml
 from fixtures import Command
 from foreign_parts import nist_file, solid, step_file
 
+from tol3d.assembly.model import Cone
+from tol3d.assembly.system import AssemblySystem
 from tol3d.drafting import scene_from
 from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import three_two_one
@@ -132,8 +134,9 @@ def test_a_cone_is_laid_in_its_seat(tmp_path: Path) -> None:
     (move,) = (own for own in read["moves"].values() if own["kind"] != "fix")
     assert (move["kind"], [own["kind"] for own in move["relations"]]) == ("mate", ["coincident"])
     (tmp_path / "scene.yaml").write_text(text, encoding="utf-8")
-    features = simulation_of(load(tmp_path / "scene.yaml"), Overrides()).system.assembly.features
-    assert sorted(type(own.shape).__name__ for own in features.values()).count("Cone") == 2
+    system = simulation_of(load(tmp_path / "scene.yaml"), Overrides()).system
+    assert isinstance(system, AssemblySystem)
+    assert sum(isinstance(own.shape, Cone) for own in system.assembly.features.values()) == 2
 
 
 @pytest.mark.slow
