@@ -214,3 +214,7 @@ def test_what_is_out_of_limits_is_compared_where_one_run_has_some(run: Run, tmp_
         console.print(comparison_report(runs))
         (headings,) = (line for line in text_of(console).splitlines() if line.lstrip().startswith("run [µm]"))
         assert ("out of limits" in headings) == told
+        head, *verdicts = text_of(console).splitlines()[: 1 + len(runs)]
+        assert head.startswith("verdict · accepted: 0.27 %") == told
+        shown = ["NOT OK" if own is run else "no limits" for own in runs]  # 5 % and more of its trials are out
+        assert not told or [line.rpartition(": ")[2] for line in verdicts] == shown

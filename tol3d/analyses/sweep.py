@@ -38,7 +38,9 @@ class VariantMeasure(Section):
     upper_limit: Known
     mean: Known
     sigma: Known
-    low: Known = Field(description="mean - 3 sigma, or 0.135 % of what ends before; of a curve its lowest position")
+    low: Known = Field(
+        description="mean - 3 sigma, or the 0.135 % quantile if trials end before; of a curve the lowest"
+    )
     high: Known
     out_ppm: Ppm | None
     out_ppm_95: PpmRange | None

@@ -10,7 +10,7 @@ from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
 NUMBERS: Final = ("mean", "sigma", "low", "high", "out of limits", "Ppk", "not assembled")
-SPAN: Final = "low, high: as in the verdict of a run, mean ∓ 3 sigma or 0.135 % and 99.865 % of what ends before"
+SPAN: Final = "low, high: mean ∓ 3 sigma, or the 0.135 % and 99.865 % quantiles of trials that end before"
 
 
 def sweep_report(found: Sweep) -> Page:

@@ -16,6 +16,7 @@ from tol3d.report.ends import is_bounded
 from tol3d.report.joint import joint_comparison
 from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_cell
 from tol3d.report.page import BLANK, Heading, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.report.verdict import verdict_lines
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Method
@@ -107,7 +108,7 @@ def _blocks(run: Run, measure: str, position: str | None) -> Iterator[tuple[Arra
 
 NO_ONE_MEAN = "no row: it is 0 with the load on one side and jumps where the load changes side; the picture shows it"
 SHOWN_APART = "not all of these runs read it alike, at the same positions and contacts: shown apart"
-ENDS_BEFORE = "trials end before mean ∓ 3 sigma here: low and high are no ends of theirs"
+ENDS_BEFORE = "the trials end before mean ∓ 3 sigma here, so low and high lie outside them"
 SHORT: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D"}
 
 
@@ -168,7 +169,7 @@ def comparison_report(runs: Sequence[Run]) -> Page:
         InputError: there are no runs, or they share no measure.
     """
     require_shared_measures(runs)
-    blocks: list[PageItem] = []
+    blocks: list[PageItem] = verdict_lines([(label, run.found) for label, run in labelled(runs)])
     for measure in measures_of(runs):
         own = measure.found_in(runs)
         blocks += [title(measure.name)]

@@ -12,7 +12,7 @@ SHORT_OF_3_SIGMA: Final = 2.5  # sigma; a quantile nearer to the mean than this 
 BY_CHANCE: Final = 1e-3  # probability, at most, that so many trials of a normal law all stay that near to their mean
 QUANTILES: Final = ("p0.135", "p99.865")
 THREE_SIGMA: Final = ("low_3sigma", "high_3sigma")
-QUANTILES_MEAN: Final = "; marked are 0.135 % and 99.865 % of the trials, which end before mean ± 3 sigma"
+QUANTILES_MEAN: Final = "; marked are the 0.135 % and 99.865 % quantiles, because the trials end before mean ± 3 sigma"
 
 
 @dataclass(frozen=True)

@@ -19,16 +19,16 @@ from tol3d.system.draw import JointDraw, MiddleDraw, drawn_each, told_sigma
 from tol3d.system.measure import Measure
 
 SLOPES = (
-    "slope: change of the measure per unit of the deviation at the mean build, by differences over one sigma to both "
-    "sides; of several components the size of their gradient"
+    "slope: change of the measure per unit of the deviation at the mean build, from differences over ± one sigma; for "
+    "several components the length of their gradient"
 )
-EACH = "each: of every one of several deviations, such as one a planet; greatest: of the one that does most"
-SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all reaches from end to end"
+EACH = "each: of every single deviation, such as one per planet; greatest: of the one with the largest effect"
+SHARES = "RSS: share of the variance by root sum of squares; worst: share of the sum of all ranges"
 MIDDLE = (
     "sigma of a zone: of the middle of its feature along one axis; of an orientation alone, of a rise at the edge or "
     "an end of the axis; a process draws both ends of an axis, so that the middle has 1/√2 of its sigma"
 )
-NO_SUM = "no sum of effects, so no RSS: its slopes are means over two sigma; run draws its trials"
+NO_SUM = "no sum of effects, so no RSS: slopes are means over ± one sigma; tol3d run simulates the measure"
 MEASURE_WORDS = ("kind", "limits")
 BESIDE = 1e-6  # um or arcmin; a value nearer to a limit lies on it
 

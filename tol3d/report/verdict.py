@@ -1,7 +1,7 @@
 """One row a measure: where it lies, what is out of its limits, and whether that is within what is accepted."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
@@ -104,13 +104,30 @@ def short_verdict(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM) -> list[P
 
 def _verdict_line(run: RunSummary, accepted_ppm: float) -> Line:
     """The worst verdict of all measures, how many of several have it, and the accepted share."""
+    worst, judged, counted = _worst_verdict(run, accepted_ppm)
+    accepted = f"{counted} · accepted: {share_text(accepted_ppm)} out of limits" if judged else ""
+    return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, _bold(worst)), (accepted, "dim")))
+
+
+def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted_ppm: float = ACCEPTED_PPM) -> list[PageItem]:
+    """A line for each run, with its label and its verdict; nothing where no run has limits."""
+    found = [(label, *_worst_verdict(run, accepted_ppm)) for label, run in runs]
+    if not any(judged for _, _, judged, _ in found):
+        return []
+    head = Line((("verdict", TITLE), (f" · accepted: {share_text(accepted_ppm)} out of limits", "dim")))
+    return [head, *(Line(((f"  {label}: ", ""), (own, _bold(own)), (counted, ""))) for label, own, _, counted in found)]
+
+
+def _worst_verdict(run: RunSummary, accepted_ppm: float) -> tuple[Verdict, int, str]:
+    """The worst verdict of all measures, the number of measures with limits, and how many of several have it."""
     found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
     judged = sum(found.values()) - found["no limits"]
     worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
-    counted = f", {found[worst]} of {judged} measures" if judged > 1 else ""
-    accepted = f"{counted} · accepted: {share_text(accepted_ppm)} out of limits" if judged else ""
-    style = f"bold {STYLES.get(worst, '')}".rstrip()
-    return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, style), (accepted, "dim")))
+    return worst, judged, f", {found[worst]} of {judged} measures" if judged > 1 else ""
+
+
+def _bold(verdict: Verdict) -> str:
+    return f"bold {STYLES.get(verdict, '')}".rstrip()
 
 
 def _largest_contributors(run: RunSummary) -> list[PageItem]:
@@ -247,6 +264,7 @@ def _ends_note(run: RunSummary) -> str:
     """Note on the meaning of low and high."""
     measures = run.measures.values()
     ends = "low, high: mean ∓ 3 sigma"
-    ends += ", * 0.135 % and 99.865 % of the trials, which end before" if any(map(_by_quantiles, measures)) else ""
+    if any(map(_by_quantiles, measures)):
+        ends += "; * the 0.135 % and 99.865 % quantiles, because the trials end before"
     ends += ", of a curve over its positions" if any(own.take == "curve" for own in measures) else ""
     return ends + ("; of the assembled trials" if any(map(seated_text, measures)) else "")

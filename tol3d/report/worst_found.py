@@ -12,8 +12,8 @@ from tol3d.system.measure import Measure
 from tol3d.system.statuses import OK
 
 WORST_FOUND: Final = (
-    "worst found: by a search of all builds within the tolerances, at rest; a bound from inside; left out where it "
-    "would take too many builds"
+    "worst found: the worst of a search among builds within the tolerances, at rest; worse ones may exist; left out if "
+    "it would take too many builds"
 )
 
 

@@ -22,7 +22,7 @@ def checked_name(name: str) -> str:
         PydanticCustomError: no such text may be a name.
     """
     if not name or name != name.strip():
-        raise refused("", "a name without blanks around it", shown(name))
+        raise refused("", "a name without spaces around it", shown(name))
     if len(name) > LONGEST_NAME:
         raise refused("", f"a name of up to {LONGEST_NAME} characters", f"{len(name)} of them")
     if any(c in FORBIDDEN or unicodedata.category(c) in INVISIBLE for c in name):

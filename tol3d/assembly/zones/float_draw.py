@@ -36,7 +36,7 @@ class FloatDraw:
     laws: tuple[Law, ...]
     components: tuple[str, ...]
 
-    words = "uniform in the room of the trial"
+    words = "uniform in the play of the trial"
     fills = True
 
     @property
@@ -154,7 +154,7 @@ class GaugeShift(Widened):
     @property
     def words(self) -> str:
         """See ZoneDraw."""
-        return f"uniform in the room of its gauge, by {', '.join(self.reads)}"
+        return f"uniform in the clearance of its gauge, by {', '.join(self.reads)}"
 
     @property
     def reads(self) -> tuple[str, ...]:

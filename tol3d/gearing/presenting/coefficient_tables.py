@@ -50,8 +50,8 @@ def _where(model: Model, measure: Measure) -> str:
 def _notes(model: Model, formless: Sequence[str], elsewhere: Sequence[str]) -> list[str]:
     """Below the tables, of measures without shares and of those whose shares are of one position."""
     notes = [
-        "stack-up and 3D: at the mean build, per unit of the deviation; of one with a direction per length in its "
-        "worst direction; a/b: below and above the mean, where they differ; "
+        "stack-up and 3D: at the mean build, per unit of the deviation; for a length with a direction, in its worst "
+        "direction; a/b: below and above the mean, where they differ; "
         f"{OTHER}: the geometry disagrees by more than {100 * DISAGREES:g} %"
     ]
     tilts = [c.name for c in model.contributors if c.kind in ONE_SIDED]

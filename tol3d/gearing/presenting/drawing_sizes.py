@@ -15,8 +15,8 @@ from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
 
 MEANING = (
     "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "
-    "are those of the tooth thickness (the sum of its tolerances), not of the measuring; of an internal gear over "
-    "spaces and between pins"
+    "follow from the tooth thickness (the sum of its tolerances), without errors of measurement; for an internal gear "
+    "over spaces and between pins"
 )
 
 
