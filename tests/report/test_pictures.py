@@ -174,7 +174,7 @@ def test_the_bars_of_a_range_end_where_its_trials_do() -> None:
     marked = [text.get_text() for text in axes_of(draw_distribution, typed_measure(measure)).texts]
     assert [text.split("\n")[0] for text in marked] == ["0.135 %", "mean", "99.865 %"]
     figure = histogram_figure(typed_summary_of({"swing": measure}))
-    assert any("0.135%and99.865%ofthetrials" in text for text in texts_of(figure))
+    assert any("0.135%and99.865%quantiles" in text for text in texts_of(figure))
 
 
 def test_a_column_with_nothing_to_draw_has_no_empty_line() -> None:
