@@ -7,9 +7,9 @@ from tol3d.report.number import ppm_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
 
 WORDS: Final = (
-    "factors are of the scene's tolerances, cost is the sum of their costs; first order: by design points; by "
-    "sampling: importance sampling from another seed than the search had, with its interval of 95 %; the curve is of "
-    "first order, corrected as at the target"
+    "factors multiply the tolerances of the scene, cost is the sum of their costs; first order: from design points; by "
+    "sampling: importance sampling with another seed than the search, with its 95 % interval; the curve is of first "
+    "order, corrected as at the target"
 )
 
 

@@ -11,9 +11,9 @@ from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, 
 MOST_SHOWN: Final = 15
 """Contributors of a measure."""
 WORDS: Final = (
-    "per unit: change of the measure per unit of the deviation, at the mean build; over all: largest less smallest "
-    "value over the whole tolerance, the others at their means; first, total: Sobol' indices, the share of the "
-    "variance that a contributor has alone, and with all that it does together with others; ± 95 %"
+    "per unit: change of the measure per unit of the deviation, at the mean build; over all: range of the measure over "
+    "the whole tolerance, the others at their means; first, total: Sobol' indices, the share of the variance of a "
+    "contributor alone, and with all its interactions; ± 95 %"
 )
 POSITIONS: Final[Mapping[str, str]] = {
     "averaged": "at a position, averaged over positions",

@@ -12,10 +12,10 @@ MOST_SHOWN: Final = 12
 """Contributors of a worst build."""
 NOTHING: Final = "–"
 WORDS: Final = (
-    "worst found: of all builds within the tolerances, by a search from several builds and positions; a bound from "
-    "inside. By slopes: sum of all half tolerances at the mean build. RSS: root of the sum of their squares; a half "
-    "tolerance is half of what a contributor does between its ends, ±3 sigma of laws without limits. Modified RSS: "
-    "RSS × C_f, C_f = 1 + 0.5 (WC − RSS)/(RSS (√n − 1)), WC that by slopes, n contributors that act"
+    "worst found: the worst of a search among builds within the tolerances, from several builds and positions; worse "
+    "ones may exist. By slopes: sum of all half tolerances at the mean build. RSS: root of the sum of their squares. A "
+    "half tolerance is half of a contributor's effect between its limits, ±3 sigma for laws without limits. Modified "
+    "RSS: RSS × C_f, C_f = 1 + 0.5 (WC − RSS)/(RSS (√n − 1)), WC by slopes, n contributors with an effect"
 )
 
 

@@ -148,9 +148,11 @@ def _unsure(points: Sequence[Sequence[DesignPoint]], more: tuple[str, ...]) -> t
     notes = list(more)
     if any(len(own) > 1 for own in lists):
         several = max(map(len, lists))
-        notes.append(f"up to {several} design points at a position, of which the nearest alone counts here")
+        notes.append(f"up to {several} design points at a position, of which only the nearest counts here")
     if any(not own[0].smooth for own in lists):
-        notes.append("a design point lies at an edge, or where builds cannot be assembled: first order in name only")
+        notes.append(
+            "a design point lies at an edge, or where builds cannot be assembled: its first order means little"
+        )
     return tuple(notes)
 
 

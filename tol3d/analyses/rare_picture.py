@@ -49,7 +49,7 @@ def rare_figure(found: RareEvents) -> Figure:
     rows = -(-len(points) // 2)
     heights = [ROW * len(ranked) + HEAD, *[BAR * MOST_BARS + HEAD] * rows]
     figure = new_figure(WIDTH, sum(heights))
-    figure.suptitle(f"{legible(found.scene, 90)} · how often limits are left", fontsize=12, x=0.01, ha="left")
+    figure.suptitle(f"{legible(found.scene, 90)} · fraction out of limits", fontsize=12, x=0.01, ha="left")
     grid = figure.add_gridspec(1 + rows, 2, height_ratios=heights)
     _draw_limits(plain_axes(figure.add_subplot(grid[0, :])), ranked)
     for k, own in enumerate(points):
@@ -106,6 +106,6 @@ def _draw_point(axes: Axes, own: LimitLeft) -> None:
     axes.set_yticks(range(len(names)), names, fontsize=NAME_SIZE)
     axes.set_ylim(max(len(names), 4) - 0.5, -0.5)
     axes.margins(x=0.12)
-    axes.set_xlabel("share of the way to the design point [%]", fontsize=9)
+    axes.set_xlabel("share of the distance to the design point [%]", fontsize=9)
     title = wrapped(f"{own.measure} {limit_words(own)}, β {own.design_point.beta:.2f}", 4.5, 10.0, 2, "bold")
     axes.set_title(title, loc="left", fontsize=10, fontweight="bold")

@@ -36,7 +36,7 @@ def rare_report(found: RareEvents) -> Page:
     heads = ["limit", "ppm", "95 %", "first order", *(["second order"] if second else []), "β", "points", "builds"]
     rows = [Row(own.measure, _cells(own, second=second)) for own in found.limits]
     table = Table("", [Heading(own, optional=own == "points") for own in heads], rows)
-    blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · how often limits are left", ""))), BLANK, table]
+    blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · fraction out of limits", ""))), BLANK, table]
     blocks += [note(words) for words in _notes(found.limits)]
     for own in found.limits:
         blocks += [warning(f"{own.measure}, {limit_words(own)}: {words}") for words in own.warnings]
@@ -66,7 +66,7 @@ def _cell(ppm: float | None) -> Shown:
 
 def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
     methods = dict.fromkeys(own.method for own in limits)
-    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that cannot be assembled fail"
+    yield f"ppm: by {', '.join(METHOD_WORDS[own] for own in methods)}; builds that cannot be assembled count as out"
     yield SUBSET_WORDS if set(methods) == {"subset"} else BETA_WORDS
     if any(own.second_order_ppm is not None for own in limits):
         yield "second order: with the curvatures of the limit, by Hohenbichler and Rackwitz"
@@ -87,5 +87,5 @@ def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
     kind = "within" if build.beta < 0.0 else side
     title = f"{own.measure}: the most likely build {kind} its {'lower' if own.side == 'low' else 'upper'} limit"
     at = ", ".join(f"{name} {number_text(round(value, 2))}" for name, value in build.positions.items())
-    heads = [Heading("deviation"), Heading("unit", words=True), Heading("share of the way [%]")]
+    heads = [Heading("deviation"), Heading("unit", words=True), Heading("share of the distance [%]")]
     return [*titled(title, Table("", heads, rows)), *([note(at)] if at else [])]
