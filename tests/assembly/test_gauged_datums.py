@@ -107,6 +107,18 @@ def test_an_inspected_position_takes_its_least_over_the_room(tmp_path: Path, met
 
 
 @pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_slot_regardless_of_size_takes_its_motions_from_the_room_of_the_bore(tmp_path: Path, method: str) -> None:
+    """It lies true: across it nothing floats, in a frame that is drawn and in one that is inspected."""
+    drawn_to = "[floor, {feature: bore, mmb: random}, slot]"
+    made = assembled(plate(drawn_to, drawn_to.replace("random", "least"), 0.03), tmp_path)
+    assert "shift of plate.bore to floor" in [own.name for own in made.system.contributors]
+    found = made.values(drawn(made.simulation, 0, 20), method)
+    np.testing.assert_allclose(found["near y"], 0.0, atol=1e-7)
+    np.testing.assert_allclose(found["far y"], 0.03, atol=1e-7)
+    np.testing.assert_allclose(found["least"], 0.06, atol=1e-7)
+
+
+@pytest.mark.parametrize("method", ["exact", "analytic"])
 def test_a_first_datum_at_its_boundary_shifts_by_its_size_alone(tmp_path: Path, method: str) -> None:
     """Its gauge is the MMC of 10 mm, whatever its squareness: 0.03 all around in a bore of 10.06 mm."""
     made = assembled(plate("[bore]", "[{feature: bore, mmb: least}]", 0.05), tmp_path)
@@ -192,11 +204,18 @@ def test_a_datum_that_does_not_take_its_gauge_is_no_build(tmp_path: Path) -> Non
 
 
 WRONG: dict[str, tuple[str, str, str, str]] = {
-    "regardless of size after it": (
+    "regardless of size between them": (
         "[floor, {feature: bore, mmb: random}, {feature: slot, mmb: random}]",
-        "[floor, {feature: bore, mmb: random}, slot]",
+        "[{feature: bore, mmb: random}, floor, {feature: slot, mmb: random}]",
         "tolerances.near off.datums",
-        "expected datums at their maximum material boundary last, got 'slot' after 'plate.bore'; "
+        "expected datums at their boundary next to each other, got 'floor' after 'plate.bore'; "
+        "give it mmb as well, or name it first or last",
+    ),
+    "several after it": (
+        "[floor, {feature: bore, mmb: random}, {feature: slot, mmb: random}]",
+        "[floor, {feature: bore, mmb: random}, far-slot]",
+        "tolerances.near off.datums",
+        "expected one face, hole, pin, axis or slot after 'plate.bore' at its boundary, got 'far'; "
         "give it mmb as well, or name it first",
     ),
     "two ways to lie": (

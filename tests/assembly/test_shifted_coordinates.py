@@ -24,6 +24,8 @@ from tol3d.assembly.model import (
     DatumFrame,
     Engage,
     Fix,
+    Floating,
+    Gauges,
     Locate,
     Measured,
     Move,
@@ -35,6 +37,7 @@ from tol3d.assembly.model import (
     Slot,
     Touch,
 )
+from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
@@ -180,11 +183,15 @@ FRAMES: Sequence[Sequence[str]] = [
     ["bore-hole pattern", "floor"],
     ["floor", "side", "bore-slot pattern"],
     ["floor-side pattern", "ball"],
+    ["floor", "bore*", "side"],
+    ["floor", "bore*", "slot"],
+    ["bore*", "side targets"],
 ]
+"""With a star: on a gauge, centred in its room of 0.5 mm."""
 
 
 def datum(words: str) -> Datum:
-    name, _, simulator = words.partition(" ")
+    name, _, simulator = words.replace("*", "").partition(" ")
     features = tuple(f"p.{own}" for own in name.split("-"))
     if simulator == "targets":
         return Datum(features, "targets", np.array([[-50.0, 4, 0], [50, -5, 0]]))
@@ -198,9 +205,12 @@ def datums_in(names: Sequence[str]) -> tuple[Assembly, Array]:
     draft = Draft()
     draft.part("p", frame((300, -40, 15), (0.1, 0.2, 1), (1, 1, 0)))
     for own in names:
-        for name in own.split()[0].split("-"):
+        for name in own.replace("*", "").split()[0].split("-"):
             draft.feature(f"p.{name}", *SHAPES[name])
     held = draft.datum_frame("p", *(datum(own) for own in names))
+    if "bore*" in names:
+        gauges = Gauges((GaugeRoom("p.bore", 11.0, True),), Floating("centred"))
+        draft.datum_frames[held] = replace(draft.datum_frames[held], gauges=gauges)
     draft.feature("p.zero", (0, 0, 0), deviates=False)
     measures = {}
     for k, tip in enumerate([(0, 0, 0), (100, 0, 0), (0, 100, 0), (0, 0, 100)]):

@@ -9,7 +9,7 @@ from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
 from tol3d.assembly.from_scene.zones import sized_by
 from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shifts_alone
-from tol3d.assembly.grammar.datums import DatumSpec
+from tol3d.assembly.grammar.datums import DatumSpec, Lying
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.feature_spec import AXES
@@ -52,9 +52,11 @@ def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: Datum
     drawn = dict.fromkeys(_named_by_tolerances(drawing, frames))
     for name in dict.fromkeys((*drawn, *frames.made)):
         frame, datums = frames.made[name], frames.specs[name]
-        if datums[-1].gauge is not None and (name not in drawn or not shifts_alone(drawing, frame.part, datums)):
+        if (gauge := _lying(datums)) is not None and (
+            name not in drawn or not shifts_alone(drawing, frame.part, datums)
+        ):
             rooms = rooms_of(scene, drawing, frame.part, datums)
-            floating = None if datums[-1].gauge == "least" else _floating(effects, frame, datums)
+            floating = None if gauge == "least" else _floating(effects, frame, datums)
             frames.made[name] = replace(frame, gauges=Gauges(rooms, floating))
 
 
@@ -67,16 +69,22 @@ def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]
 
 def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) -> Floating:
     """Position of a frame's gauges within their clearances."""
-    if datums[-1].gauge != "random":
+    if _lying(datums) != "random":
         return Floating("centred")
+    first = next(k for k, own in enumerate(datums) if own.gauge is not None)
     own, to = (
-        ", ".join("-".join(each.features) for each in datums if (each.gauge is None) is earlier)
-        for earlier in (False, True)
+        ", ".join("-".join(each.features) for each in some)
+        for some in ([each for each in datums if each.gauge is not None], datums[:first])
     )
     draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
     name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "")
     words = f"of the gauges at the {_boundary(datums)} material boundary of datums"
     return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))
+
+
+def _lying(datums: Sequence[DatumSpec]) -> Lying | None:
+    """How the gauges of a frame lie; None without any."""
+    return next((own.gauge for own in datums if own.gauge is not None), None)
 
 
 def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:

@@ -172,11 +172,18 @@ def _unfit_feature(
     part = part_of(own)
     if own not in drawing.names or drawing.kind(own).kind not in ("cylinder", "slot"):
         return  # reported already
-    later = [later for later in datums[k + 1 :] if later.gauge is None]
+    between = [
+        own for own, after in zip(datums[k + 1 :], datums[k + 2 :], strict=False) if own.gauge is None and after.gauge
+    ]
+    later = [own for own in datums[k + 1 :] if own.gauge is None]
+    unfit = [name for own in later for name in own.features if own.is_several or not _may_be_later(drawing, part, name)]
     to = ", ".join("-".join(earlier.features) for earlier in datums[:k])
-    if later:
-        words = f"expected datums at their maximum material boundary last, got {later[0].features[0]!r} after {own!r}"
-        yield place, f"{words}; give it mmb as well, or name it first"
+    if between:
+        words = f"expected datums at their boundary next to each other, got {between[0].features[0]!r} after {own!r}"
+        yield place, f"{words}; give it {datums[k].key} as well, or name it first or last"
+    elif unfit:
+        words = f"expected one face, hole, pin, axis or slot after {own!r} at its boundary, got {unfit[0]!r}"
+        yield place, f"{words}; give it {datums[k].key} as well, or name it first"
     elif len({before.gauge for before in datums[: k + 1] if before.gauge is not None}) > 1:
         yield place, "expected one mmb (or lmb) for all datums of a frame, for their gauges are of one piece"
     elif not drawing.of(own, SizeSpec):
@@ -188,6 +195,10 @@ def _unfit_feature(
     elif earlier_zone(drawing, own, datums, k) is None:
         words = f"expected a zone of {own!r} to {to}, which makes its virtual condition there"
         yield place, f"{words}; add a position to these datums, or an orientation"
+
+
+def _may_be_later(drawing: Drawing, part: str, name: str) -> bool:
+    return f"{part}.{name}" not in drawing.names or drawing.kind(f"{part}.{name}").kind in (*SIZED, "plane", "axis")
 
 
 SIZED = ("cylinder", "slot")

@@ -64,7 +64,7 @@ class Datum:
 
 @dataclass(frozen=True, eq=False)
 class Gauges:
-    """Gauges of virtual condition, all of one piece, in (or on) the last datums of a frame.
+    """Gauges of virtual condition, all of one piece, in (or on) some datums of a frame, next to each other.
 
     They move by the freedoms that the datums before them leave: at both ends of a hole or pin and at all corners of a
         slot or tab they lie within +-(size - virtual) / 2 of it.
@@ -100,7 +100,7 @@ class DatumFrame:
         datums: primary, secondary, tertiary.
         shifted_by: offset of a gauge from its datum feature, which shifts the frame (3, components), nominally in the
             part's frame.
-        gauges: of its last datums, where several, a first, a third one or a slot is at its maximum material boundary.
+        gauges: of its datums at their boundary, where these are several, a first, a third one, a slot, or not the last.
     """
 
     name: str
@@ -112,5 +112,15 @@ class DatumFrame:
     @property
     def regardless(self) -> int:
         """Number of datums, the first ones, that are met regardless of their sizes."""
+        return self._on_gauges.index(True) if True in self._on_gauges else len(self.datums)
+
+    @property
+    def later(self) -> tuple[Datum, ...]:
+        """Datums regardless of size after those on gauges: met as nearly as the room of these lets them."""
+        its = zip(self.datums[self.regardless :], self._on_gauges[self.regardless :], strict=True)
+        return tuple(own for own, on_gauges in its if not on_gauges)
+
+    @property
+    def _on_gauges(self) -> list[bool]:
         at_boundary = {own.feature for own in self.gauges.rooms} if self.gauges is not None else set()
-        return sum(at_boundary.isdisjoint(own.features) for own in self.datums)
+        return [not at_boundary.isdisjoint(own.features) for own in self.datums]

@@ -25,7 +25,7 @@ Asks = tuple[Held, Turning]
 class OnGauges(Protocol):
     """Pose of a part on gauges of virtual condition."""
 
-    def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
+    def placed(self, seats: Sequence[Seat], features: Actual, columns: Array) -> tuple[Pose, Codes]:
         """See GaugedFrame."""
         ...
 
@@ -55,7 +55,7 @@ class DatumSeats:
         seats, gauges = self.of(features), self.frame.gauges
         if self.gauged is None or gauges is None or gauges.floating is None:
             return self.alignment.poses(seats, IDENTITY)
-        return self.gauged.placed(seats, [features(own.feature) for own in gauges.rooms], columns)
+        return self.gauged.placed(seats, features, columns)
 
     def of(self, features: Actual) -> list[Seat]:
         """The seats of its ties in their trials."""
@@ -80,7 +80,7 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
     alignment = aligned(ties, seats, IDENTITY)
     taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
     for k, datum in enumerate(frame.datums):
-        if k not in taking:
+        if k not in taking and datum not in frame.later:  # which take from the room of the gauges
             raise InputError(
                 f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
                 "that it could take; leave it out"

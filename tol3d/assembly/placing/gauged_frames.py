@@ -1,8 +1,8 @@
 """Datum frames on gauges of virtual condition: position of the gauges in their common clearance, trial by trial.
 
-The datums regardless of size are met first and kept. In the freedoms left the gauges, all of one piece, lie like a part
-with play (`engaging`): the programme of `rooms` with the offsets at a pose, its steps as finite motions, until nothing
-moves.
+The datums before them are met first and kept. In the freedoms left the gauges, all of one piece, lie like a part with
+play (`engaging`): the programme of `rooms` with the offsets at a pose, its steps as finite motions, until it rests.
+Datums regardless of size after them take from the room first what they can (`later_datums`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,9 @@ from tol3d.assembly.model import Engage, Floating, Gauges
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Seat
-from tol3d.assembly.placing.datum_seats import DatumSeats
+from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
+from tol3d.assembly.placing.growth import centred
+from tol3d.assembly.placing.later_datums import LaterDatums, later_datums, times
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.seen_motions import SeenMotions, seen_motions
@@ -91,22 +93,26 @@ class GaugedFrame(SeenMotions):
     Args:
         gauges: the gauges.
         floats: position of the part within the clearance.
+        later: datums after them.
     """
 
     gauges: Gauges
     floats: GaugeFloats
+    later: LaterDatums
 
-    def placed(self, seats: Sequence[Seat], features: Sequence[ActualFeature], columns: Array) -> tuple[Pose, Codes]:
+    def placed(self, seats: Sequence[Seat], actual: Actual, columns: Array) -> tuple[Pose, Codes]:
         """The part in the frame of its gauges, and status codes (n,).
 
         Args:
             seats: of all ties of the frame.
-            features: the datum features at their boundary.
+            actual: the features of the part.
             columns: the deviations (width, n).
         """
-        trials = columns.shape[1]
+        trials, features = columns.shape[1], [actual(own.feature) for own in self.gauges.rooms]
+        after = [actual(name) for name in self.later.features]
         pose, codes = self.as_kept(seats, full(IDENTITY, trials))
-        steps, slacks = np.zeros((self.freedoms.shape[1], trials)), np.zeros(trials)
+        size = self.freedoms.shape[1]
+        steps, slacks, left = np.zeros((size, trials)), np.zeros(trials), self.later.left
         asked, found, lacking = np.ones(trials, dtype=bool), np.ones(trials, dtype=bool), np.full(trials, np.inf)
         deciding, places = np.zeros(trials, dtype=np.int64), len(self.rows)
         before = np.zeros((places, trials)), np.zeros((places, trials), dtype=np.int64)
@@ -114,7 +120,13 @@ class GaugedFrame(SeenMotions):
         for _ in range(ROUNDS):
             offsets = self.offsets(pose, features, trials)
             room_found(offsets, clearances, self.rows, self.floats.push, asked, steps, slacks, deciding, found, *before)
-            whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, columns)
+            if after:
+                whole = self.later.nearest(pose, after, offsets, clearances, self.rows)
+                if left.shape[1]:
+                    its = offsets + times(self.rows, whole), clearances, self.rows @ left
+                    whole = whole + np.einsum("fg,gn->fn", left, self._floating(*its, columns), optimize=False)
+            else:
+                whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, columns)
             lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)
             moved, _ = self.as_kept(seats, self.moved(pose, whole))
             pose = Pose(np.where(asked, moved.turn, pose.turn), np.where(asked, moved.shift, pose.shift))
@@ -124,6 +136,12 @@ class GaugedFrame(SeenMotions):
         codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
         lost = ~(found & (lacking < LOST))
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
+
+    def _floating(self, offsets: Array, clearances: Array, rows: Array, columns: Array) -> Array:
+        """Steps (left, n) to where the part lies in the freedoms that later datums leave."""
+        steps, slacks = centred(offsets, clearances, rows)
+        floats = replace(self.floats, freedoms=self.floats.freedoms @ self.later.left)
+        return floats.steps(offsets, clearances, rows, steps, slacks, columns)
 
     def clearances(self, features: Sequence[ActualFeature], columns: Array) -> Array:
         """Clearance of each offset (cones, n) [mm]."""
@@ -150,8 +168,11 @@ def _gauged(seats: DatumSeats, gauges: Gauges) -> GaugedFrame:
     frame, nominal = seats.frame, [seats.nominal[own.feature] for own in gauges.rooms]
     ties = [tie for tie, k in zip(seats.alignment.ties, seats.datums, strict=True) if k < frame.regardless]
     its = seats.of(seats.nominal.__getitem__)[: len(ties)]
-    seen = seen_motions(ties, its, nominal)
+    after = [seats.nominal[own.features[0]] for own in frame.later]
+    seen = seen_motions(ties, its, [*nominal, *after])
     floating = gauges.floating or Floating("centred")
     freedoms = seen.freedoms
     floats = GaugeFloats(Engage(frame.name, frame.part, (), (), floating), freedoms, np.zeros(freedoms.shape[1]))
-    return GaugedFrame(**vars(seen), gauges=gauges, floats=floats)
+    places = sum(len(own.ends) for own in nominal)
+    own = replace(seen, nominal=tuple(nominal), rows=np.ascontiguousarray(seen.rows[:places]))
+    return GaugedFrame(**vars(own), gauges=gauges, floats=floats, later=later_datums(frame, after, seen))

@@ -1,33 +1,23 @@
 """Positions in a datum frame on gauges, which take the best place in their common clearance.
 
-A value w is reached where the room and cones |p_e + P_e q| <= w + r_e of the ends have a common q. Their largest common
-slack is concave in w and grows with it: Newton's steps from below, by the share of the ends in its multipliers, never
-pass the least w. Offsets are then read anew at that place, until nothing moves.
+The least growth of the ends' cones (`growth`) is that of the offsets at a pose. They are then read anew at that place,
+until nothing moves.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
 
 import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame
+from tol3d.assembly.placing.growth import SPARE, centred, least_growth
+from tol3d.assembly.placing.later_datums import times
 from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot, full
-from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
-
-STEPS: Final = 60
-"""Newton steps at most; in practice 2 to 8."""
-SHORT: Final = 1e-12
-"""Step [mm] at which they are done."""
-FREE: Final = 1e-9
-"""Share of the ends below which the clearance alone decides: it is empty."""
-UNSEEN: Final = 1e-6
-"""Change of an end's offset per unit freedom that counts as none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,38 +43,6 @@ class Inspected:
             for r, direction in enumerate(self.directions):
                 found[k, r] = dot(column(direction), end - column(place))
         return found
-
-    def least(self, offsets: Array, radii: Array, its: Array, room: Array) -> tuple[Array, Array]:
-        """The least w (n,) [mm], NaN where the room is empty, and the steps to it (freedoms, n).
-
-        Args:
-            offsets: of the ends (ends, 2, n) [mm].
-            radii: r_e (ends, n) [mm].
-            its: offsets of the datum features (cones, 2, n) [mm].
-            room: their clearances (cones, n) [mm].
-        """
-        ends, trials = len(offsets), offsets.shape[2]
-        rows = np.ascontiguousarray(np.concatenate([self.rows, self.gauged.rows]))
-        every = np.ascontiguousarray(np.concatenate([offsets, its]))
-        clearances = np.concatenate([np.zeros((ends, trials)), room])
-        still = np.abs(self.rows).max(axis=(1, 2)) < UNSEEN
-        nearest = np.sqrt((offsets * offsets).sum(axis=1)) * still[:, None]
-        least, steps, slacks = (nearest - radii).max(axis=0), np.zeros((rows.shape[2], trials)), np.zeros(trials)
-        asked, found, deciding = np.ones(trials, bool), np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
-        before = np.zeros((len(rows), trials)), np.zeros((len(rows), trials), dtype=np.int64)
-        for _ in range(STEPS):
-            clearances[:ends] = radii + least
-            room_found(every, clearances, rows, np.zeros(rows.shape[2]), asked, steps, slacks, deciding, found, *before)
-            share = np.where(before[1][:ends] == 1, before[0][:ends], 0.0).sum(axis=0)
-            short = np.where(slacks < 0.0, -slacks, 0.0)
-            empty = asked & (~found | ((short > SHORT) & ~(share > FREE)))
-            least = np.where(empty, np.nan, least)
-            grown = short / np.where(share > FREE, share, 1.0)
-            least = np.where(asked & ~empty, least + grown, least)
-            asked = asked & ~empty & (grown > SHORT)
-            if not asked.any():
-                break
-        return least, np.where(np.isfinite(least), steps, 0.0)
 
 
 def inspected(measured: Measured, world: World) -> Inspected:
@@ -126,14 +84,24 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     radii = np.concatenate(
         [np.broadcast_to(0.5 * has, (len(its.places), world.trials)) for its, has in zip(each, bonuses, strict=True)]
     )
+    after = [own.feature(name) for name in gauged.later.features]
     pose, _ = gauged.as_kept(seats, full(IDENTITY, world.trials))
+    left = gauged.later.left
     least = np.full(world.trials, np.nan)
     for _ in range(ROUNDS):
-        offsets = [
-            its.offsets(pose, world.on_part(name), world.trials)
-            for its, name in zip(each, measured.features, strict=True)
-        ]
-        least, steps = found.least(np.concatenate(offsets), radii, gauged.offsets(pose, features, world.trials), room)
+        ends = np.concatenate(
+            [
+                its.offsets(pose, world.on_part(name), world.trials)
+                for its, name in zip(each, measured.features, strict=True)
+            ]
+        )
+        offsets = gauged.offsets(pose, features, world.trials)
+        fits = centred(offsets, room, gauged.rows)[1] >= 0.0 if after else True
+        steps = gauged.later.nearest(pose, after, offsets, room, gauged.rows)
+        ends, offsets = ends + times(found.rows, steps), offsets + times(gauged.rows, steps)
+        spare = room + len(after) * SPARE
+        least, some = least_growth(ends, radii, found.rows @ left, offsets, spare, gauged.rows @ left)
+        steps, least = steps + np.einsum("fg,gn->fn", left, some, optimize=False), np.where(fits, least, np.nan)
         if np.abs(steps).max(initial=0.0) < MET:
             break
         pose, _ = gauged.as_kept(seats, gauged.moved(pose, steps))

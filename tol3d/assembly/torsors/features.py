@@ -47,7 +47,7 @@ def displacement_of(frame: DatumFrame, datums: Sequence[Sequence[Displaced]], co
     for datum, features in zip(frame.datums, datums, strict=True):
         before = freedoms.count
         _take(freedoms, datum, features, columns)
-        if freedoms.count == before:
+        if freedoms.count == before and datum not in frame.later:  # which take from the room of the gauges
             raise InputError(
                 f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
                 "that it asks; leave it out"
@@ -244,7 +244,8 @@ class PartTorsors:
             rooms, datums = frame.gauges.rooms, self._datums(frame)
             kept = kept_by(frame, datums, self._columns, frame.regardless)
             its = [(self._features[own.feature], self.feature(own.feature)) for own in rooms]
-            self._rooms[name] = gauges_room(rooms, its, kept, self.size, self._columns)
+            later = [(own, *datums[frame.datums.index(own)][0]) for own in frame.later]
+            self._rooms[name] = gauges_room(rooms, its, kept, self.size, self._columns, later, name)
         return self._rooms[name]
 
     def _datums(self, frame: DatumFrame) -> list[list[Displaced]]:

@@ -2,24 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
-from tol3d.assembly.torsors.centring import Cones, largest_slack
+from tol3d.assembly.torsors.centring import Cones
 from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.later_datums import SPARE, LaterDatums, least_growth
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
 from tol3d.numerics.arrays import Array
-
-STEPS: Final = 40
-"""Newton steps at most; in practice 2 to 8."""
-SHORT: Final = 1e-12
-"""Step [mm] at which they are done."""
-FREE: Final = 1e-9
-"""Share of the ends in the multipliers, below which the clearance alone decides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,41 +23,30 @@ class LeastOnGauges:
     needed where the lack of clearance is least.
 
     Args:
-        forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places).
+        forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places), and those of
+            later datums.
         rows: change of all offsets by the freedoms (ends + places, 2, freedoms).
         ends: their number.
+        later: datums of the frame that take their place in the room first.
     """
 
     forms: Array
     rows: Array
     ends: int
+    later: LaterDatums | None = None
     form: Form = "least in a room"
     count: int = 1
 
     def values(self, read: Array) -> Array:
         """(1, trials) [mm]."""
-        ends, trials, places = self.ends, read.shape[1], len(self.rows) - self.ends
-        own, radii, its, room = np.split(read, [2 * ends, 3 * ends, 3 * ends + 2 * places])
-        offsets = np.concatenate([own, its]).reshape(-1, 2, trials)
-        clearances = np.concatenate([np.zeros((ends, trials)), room])
-        grown, steps, going = (-radii).max(axis=0), np.zeros((self.rows.shape[2], trials)), np.arange(trials)
-        closed = np.zeros((len(steps), len(steps), trials))
-        for _ in range(STEPS):
-            clearances[:ends] = radii + grown
-            now = Cones(offsets[:, :, going], clearances[:, going], self.rows)
-            rows = self.rows[..., None] * np.ones(len(going))
-            counts = np.ones(now.clearances.shape, dtype=bool)
-            found, multipliers = largest_slack(now.offsets, now.clearances, rows, counts, closed[..., going])
-            steps[:, going] = found
-            share = multipliers[:ends].sum(axis=0)
-            step = np.where(share > FREE, np.maximum(-now.slack(found), 0.0) / np.where(share > FREE, share, 1.0), 0.0)
-            grown[going] += step
-            going = going[step > SHORT]
-            if not len(going):
-                break
-        at = Cones(offsets, clearances, self.rows).at(steps)[:ends]
-        far = (np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2) - radii).max(axis=0)
-        return np.asarray(2.0 * np.maximum(grown, far)[None])
+        ends, places = self.ends, len(self.rows) - self.ends
+        own, radii, its, room, asked = np.split(read, np.cumsum([2 * ends, ends, 2 * places, places]))
+        offsets, rows = np.concatenate([own, its]).reshape(ends + places, 2, -1), self.rows
+        if self.later is not None:
+            steps = self.later.nearest(asked, offsets[ends:], room, rows[ends:])
+            offsets, rows = Cones(offsets, room, rows).at(steps), rows @ self.later.left
+            room = room + len(self.later.asks) * SPARE
+        return np.asarray(2.0 * least_growth(offsets, np.concatenate([radii, room]), rows, ends)[0][None])
 
 
 def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Array:
@@ -93,7 +75,8 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
         forms += [way @ torsor for way in ways]
         radii += [0.5 * bonus[None]] * len(ways)
         rows += [way @ gauges.motions for way in ways]
-    every = without_rounding(np.concatenate([*forms, *radii, gauges.offsets, gauges.clearances]))
-    term = LeastOnGauges(every, np.concatenate([np.array(rows), gauges.rows]), len(rows))
+    asked = [] if gauges.later is None else [gauges.later.forms]
+    every = without_rounding(np.concatenate([*forms, *radii, gauges.offsets, gauges.clearances, *asked]))
+    term = LeastOnGauges(every, np.concatenate([np.array(rows), gauges.rows]), len(rows), gauges.later)
     row: Array = world.columns.made_by(term)[0]
     return row

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Feature, Floating, Slot
+from tol3d.assembly.model import Axis, Datum, Feature, Floating, RoundPlane, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.freedoms import Freedoms
+from tol3d.assembly.torsors.later_datums import LaterDatums, RoomAfter, later_datums
 from tol3d.assembly.torsors.room import Room
 from tol3d.assembly.torsors.torsor import cross_matrix, shift_at
 from tol3d.numerics.arrays import Array
@@ -29,6 +30,7 @@ class GaugesRoom:
         offsets: of the datum features from the gauges (places * 2, columns) [mm].
         clearances: (places, columns) [mm].
         rows: change of the offsets by the freedoms (places, 2, freedoms).
+        later: datums regardless of size after these; None without any.
     """
 
     rest: Array
@@ -37,13 +39,15 @@ class GaugesRoom:
     offsets: Array
     clearances: Array
     rows: Array
+    later: LaterDatums | None = None
 
     def displacement(self, floating: Floating, columns: Columns) -> Array:
         """The frame's torsor (6, columns) with the gauges somewhere in their room."""
         drawn = np.eye(columns.count)[list(range(floating.columns.start, floating.columns.stop))]
         forms = without_rounding(np.concatenate([self.offsets, self.clearances, drawn]))
         still = np.zeros(self.rows.shape[2])
-        made = columns.made_by(Room(forms, self.rows, floating, self.directions, still))
+        room = Room(forms, self.rows, floating, self.directions, still)
+        made = columns.made_by(room if self.later is None else RoomAfter(room, self.later))
         return np.asarray(self.rest - self.motions @ made[:-1])
 
 
@@ -53,6 +57,8 @@ def gauges_room(
     kept: Freedoms,
     size: Callable[[str], Array],
     columns: Columns,
+    later: Sequence[tuple[Datum, Feature, Array]],
+    name: str,
 ) -> GaugesRoom:
     """The play of some gauges.
 
@@ -62,9 +68,12 @@ def gauges_room(
         kept: freedoms held by the datums before them.
         size: how much larger a feature is than nominally (columns,) [mm].
         columns: of the assembly.
+        later: datums regardless of size after these, with their features and torsors.
+        name: of the frame.
     """
     left, rest = kept.left, kept.rest()
-    points = [feature.frame[:3, :3] @ end + feature.frame[:3, 3] for feature, _ in datums for end in _ends(feature)]
+    seeing = [feature for feature, _ in datums] + [feature for _, feature, _ in later]
+    points = [feature.frame[:3, :3] @ end + feature.frame[:3, 3] for feature in seeing for end in _ends(feature)]
     middle = np.mean(points, axis=0)
     reach = max(1.0, *(float(np.linalg.norm(point - middle)) for point in points))
     to_torsor = np.eye(6)
@@ -72,10 +81,8 @@ def gauges_room(
     to_torsor[3:, 3:] /= reach
     ways, offsets, clearances = [], [], []
     for room, (feature, torsor) in zip(rooms, datums, strict=True):
-        shape = feature.shape
+        shape, directions = feature.shape, _directions(feature)
         assert isinstance(shape, Axis | Slot)
-        round_ = isinstance(shape, Axis)
-        directions = feature.frame[:3, :2].T if round_ else np.array([feature.frame[:3, 2], np.zeros(3)])
         nominal = (shape.diameter or 0.0) if isinstance(shape, Axis) else shape.width
         over = size(room.feature) + columns.constants(np.array([nominal - room.virtual]))[0]
         for end in _ends(feature):
@@ -84,11 +91,16 @@ def gauges_room(
             offsets.append(rows @ (torsor - rest))
             clearances.append(0.5 * over if room.grows else -0.5 * over)
     free = np.linalg.qr(np.linalg.solve(to_torsor, left))[0]
+    for _, feature, _ in later:
+        for end in _ends(feature):
+            ways.append(_directions(feature) @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) @ to_torsor)
     whole = np.array(ways) @ free
     _, strengths, right = np.linalg.svd(whole.reshape(-1, free.shape[1]))
     seen = right[: int(np.sum(strengths > SEEN))].T
     motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, reach)
-    return GaugesRoom(rest, motions, (free @ seen).T, np.concatenate(offsets), np.array(clearances), whole @ seen)
+    after = later_datums(later, rest, motions, reach, name) if later else None
+    rows = whole[: len(clearances)] @ seen
+    return GaugesRoom(rest, motions, (free @ seen).T, np.concatenate(offsets), np.array(clearances), rows, after)
 
 
 def _least(seen: Array, unseen: Array, reach: float) -> Array:
@@ -102,6 +114,13 @@ def _least(seen: Array, unseen: Array, reach: float) -> Array:
     return np.asarray(seen + unseen @ amounts, dtype=np.float64)
 
 
+def _directions(feature: Feature) -> Array:
+    """Directions (2, 3) in which the ends of a feature count; of a plane or slot its normal, and none."""
+    turn = feature.frame[:3, :3].T
+    return turn[:2] if isinstance(feature.shape, Axis) else np.array([turn[2], np.zeros(3)])
+
+
 def _ends(feature: Feature) -> Array:
-    assert isinstance(feature.shape, Axis | Slot)
+    if isinstance(feature.shape, RoundPlane):
+        return feature.shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
     return feature.shape.ends

@@ -1,0 +1,232 @@
+"""Datums regardless of size after ones at their boundary, to first order: as near as the room of the gauges lets them.
+
+One after the other each takes, of the motions that are left, those that bring it nearest to its simulator within the
+room; what it has taken stays.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from tol3d.assembly.model import Axis, Datum, Feature, Plane, RoundPlane, Slot
+from tol3d.assembly.torsors.centring import Cones, largest_slack
+from tol3d.assembly.torsors.room import Room
+from tol3d.assembly.torsors.terms import Form
+from tol3d.assembly.torsors.torsor import height_at, ordered_product, ordered_sum, shift_at, turn_about
+from tol3d.errors import InputError
+from tol3d.numerics.arrays import Array
+
+STEPS: Final = 40
+"""Newton steps at most; in practice 2 to 8."""
+SHORT: Final = 1e-12
+"""Step [mm] at which they are done."""
+FREE: Final = 1e-9
+"""Share of the ends in the multipliers, below which the clearance alone decides."""
+SEEN: Final = 1e-6
+"""Change of what is asked by a freedom of length 1 [mm] that is none."""
+SPARE: Final = 1e-11
+"""Clearance [mm] that each ask leaves to those after it beside what it takes, more than rounding."""
+
+
+def least_growth(offsets: Array, clearances: Array, rows: Array, ends: int) -> tuple[Array, Array]:
+    """The least growth of the first cones (trials,) [mm] at which all have a place in common, and the steps to it.
+
+    From below, for the largest common slack is concave in the growth. If the others have none in common: the growth
+    needed where they lack least.
+
+    Args:
+        offsets: (places, 2, trials) [mm].
+        clearances: (places, trials) [mm]; of the first the radii.
+        rows: their change (places, 2, freedoms).
+        ends: number of the first.
+    """
+    count, trials = rows.shape[2], offsets.shape[2]
+    radii, clearances = clearances[:ends], clearances.copy()
+    grown, steps, going = (-radii).max(axis=0), np.zeros((count, trials)), np.arange(trials if count else 0)
+    closed = np.zeros((count, count, trials))
+    for _ in range(STEPS):
+        if not len(going):
+            break
+        clearances[:ends] = radii + grown
+        now = Cones(offsets[:, :, going], clearances[:, going], rows)
+        repeated = rows[..., None] * np.ones(len(going))
+        counts = np.ones(now.clearances.shape, dtype=bool)
+        found, multipliers = largest_slack(now.offsets, now.clearances, repeated, counts, closed[..., going])
+        steps[:, going] = found
+        share = multipliers[:ends].sum(axis=0)
+        step = np.where(share > FREE, np.maximum(-now.slack(found), 0.0) / np.where(share > FREE, share, 1.0), 0.0)
+        grown[going] += step
+        going = going[step > SHORT]
+    at = Cones(offsets, clearances, rows).at(steps)[:ends] if count else offsets[:ends]
+    far = (np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2) - radii).max(axis=0)
+    return np.maximum(grown, far), steps
+
+
+@dataclass(frozen=True, eq=False)
+class Ask:
+    """One thing that a later datum asks.
+
+    Args:
+        forms: what it lacks (places * 2, columns) [mm], then heights of corners over the centre (corners, columns), of
+            which the largest amount counts as well; of a round face two, at right angles.
+        rows: its change by the freedoms (places, 2, freedoms).
+        corners: that of the corners (corners, freedoms).
+        is_round: whether the corners are those two.
+        open: what earlier asks leave of the freedoms (freedoms, open), orthonormal.
+        held: projector to what it takes of these (open, open).
+    """
+
+    forms: Array
+    rows: Array
+    corners: Array
+    is_round: bool
+    open: Array
+    held: Array
+
+    def offsets(self, read: Array, steps: Array) -> Array:
+        """What it lacks after steps (freedoms, trials), (places, 2, trials) [mm]."""
+        places = len(self.rows)
+        found = read[: 2 * places].reshape(places, 2, -1) + _times(self.rows, steps)
+        if len(self.corners):
+            tops = read[2 * places :] + ordered_product(self.corners, steps)
+            found[0, 0] += np.hypot(tops[0], tops[1]) if self.is_round else np.abs(tops).max(axis=0)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class LaterDatums:
+    """What the later datums of a frame ask, in order.
+
+    Args:
+        asks: each.
+        left: freedoms that they leave (freedoms, left), orthonormal.
+    """
+
+    asks: tuple[Ask, ...]
+    left: Array
+
+    @property
+    def forms(self) -> Array:
+        """What they read (lengths, columns)."""
+        return np.concatenate([ask.forms for ask in self.asks])
+
+    def nearest(self, read: Array, offsets: Array, clearances: Array, rows: Array) -> Array:
+        """Steps (freedoms, trials) to where each is met as nearly as the room lets it.
+
+        Args:
+            read: of `forms` (lengths, trials) [mm].
+            offsets, clearances, rows: of the room (places, 2, trials), (places, trials) [mm], (places, 2, freedoms).
+        """
+        steps, first = np.zeros((rows.shape[2], read.shape[1])), 0
+        for k, ask in enumerate(self.asks):
+            own = ask.offsets(read[first : first + len(ask.forms)], steps)
+            first += len(ask.forms)
+            every = np.concatenate([own, offsets + _times(rows, steps)])
+            room = np.concatenate([np.zeros((len(own), read.shape[1])), clearances + k * SPARE])
+            some = least_growth(every, room, np.concatenate([ask.rows, rows]) @ ask.open, len(own))[1]
+            steps = steps + ordered_product(ask.open @ ask.held, some)
+        return steps
+
+
+def _times(rows: Array, steps: Array) -> Array:
+    return ordered_sum(rows[:, :, i, None] * steps[i] for i in range(len(steps)))
+
+
+@dataclass(frozen=True, eq=False)
+class RoomAfter:
+    """The freedoms of a frame on gauges with later datums, and its slack, trial by trial.
+
+    Args:
+        room: as it is without them.
+        later: the later datums.
+    """
+
+    room: Room
+    later: LaterDatums
+    form: Form = "place in a room"
+
+    @property
+    def forms(self) -> Array:
+        """Those of the room, then of the later datums."""
+        return np.concatenate([self.room.forms, self.later.forms])
+
+    @property
+    def count(self) -> int:
+        """As of the room."""
+        return self.room.count
+
+    def values(self, read: Array) -> Array:
+        """(freedoms + 1, trials) [mm]."""
+        its, own = np.split(read, [len(self.room.forms)])
+        rows, left, places = self.room.rows, self.later.left, len(self.room.rows)
+        offsets, clearances = its[: 2 * places].reshape(places, 2, -1), its[2 * places : 3 * places]
+        steps = self.later.nearest(own, offsets, clearances, rows)
+        offsets = offsets + _times(rows, steps)
+        slack = Cones(offsets, clearances, rows).slack(np.zeros(steps.shape))
+        if left.shape[1]:
+            some = replace(self.room, rows=rows @ left, directions=left.T @ self.room.directions, push=left[0] * 0.0)
+            found = some.values(np.concatenate([offsets.reshape(2 * places, -1), its[2 * places :]]))
+            steps, slack = steps + ordered_product(left, found[:-1]), found[-1]
+        return np.concatenate([steps, slack[None]])
+
+
+def later_datums(
+    datums: Sequence[tuple[Datum, Feature, Array]], rest: Array, motions: Array, reach: float, name: str
+) -> LaterDatums:
+    """What the later datums of a frame ask.
+
+    Args:
+        datums: each with its feature and that one's torsor (6, columns).
+        rest: the frame's torsor (6, columns) by the datums before the gauges.
+        motions: the torsors of the part by its freedoms (6, freedoms).
+        reach: length that a turn counts by [mm].
+        name: of the frame.
+
+    Raises:
+        InputError: one takes no freedom.
+    """
+    left, asks = np.eye(motions.shape[1]), list[Ask]()
+    for datum, feature, torsor in datums:
+        count = len(asks)
+        for equations, corners in _asked(datum, feature, reach):
+            rows = equations @ motions
+            _, sizes, right = np.linalg.svd((rows @ left).reshape(-1, left.shape[1]))
+            rank = int(np.sum(sizes > SEEN))
+            if rank:
+                lacks = np.concatenate([*(equations @ (torsor - rest)), corners @ (torsor - rest)])
+                is_round = isinstance(feature.shape, RoundPlane)
+                held = right[:rank].T @ right[:rank]
+                asks.append(Ask(lacks, rows, corners @ motions, is_round, left, held))
+                left = left @ right[rank:].T
+        if len(asks) == count:
+            raise InputError(
+                f"datum frame {name}: {feature.name} takes no freedom: datums before it hold all that it asks; "
+                "leave it out"
+            )
+    return LaterDatums(tuple(asks), left)
+
+
+def _asked(datum: Datum, feature: Feature, reach: float) -> list[tuple[Array, Array]]:
+    """Equations (places, 2, 6) of each thing that a datum asks, and rises of corners beside it (corners, 6)."""
+    frame, shape, none = feature.frame, feature.shape, np.zeros((0, 6))
+    centre, (x, y, z) = frame[:3, 3], frame[:3, :3].T
+    direction = reach * turn_about(frame[:3, :2].T)[None]
+    if isinstance(shape, Slot):
+        return [(np.stack([_alone(height_at(frame[:3, :3] @ end + centre, z)) for end in shape.ends]), none)]
+    if isinstance(shape, Axis):
+        return [((frame[:3, :2].T @ shift_at(centre))[None], none), (direction, none)]
+    if datum.targets is not None:
+        return [(_alone(height_at(frame[:3, :3] @ own + centre, z))[None], none) for own in datum.targets]
+    assert isinstance(shape, Plane | RoundPlane)
+    height, corners = height_at(centre, z), none
+    if datum.simulator == "contact":
+        a, b = shape.reach
+        ways = (a * x, b * y) if isinstance(shape, RoundPlane) else (a * x + b * y, a * x - b * y)
+        corners = np.concatenate([np.atleast_2d(height_at(centre + own, z) - height) for own in ways])
+    return [(direction, none), (_alone(height)[None], corners)]
+
+
+def _alone(row: Array) -> Array:
+    return np.concatenate([np.atleast_2d(row), np.zeros((1, 6))])
