@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
+from assembly_trials import Assembled
+from drafts import frame
 from numpy.typing import NDArray
 
 from tol3d.analyses.response import Values, response_of
 from tol3d.simulate import load, simulation_of
+from tol3d.study.draws import drawn
 from tol3d.system.stated import component_slices
 
 PAGE = Path(__file__).parents[2] / "docs" / "drawings.md"
@@ -72,3 +75,50 @@ def test_a_drawing_means_the_same_elsewhere_under_other_names(name: str, tmp_pat
         np.testing.assert_array_equal(there.codes, here.codes)
         np.testing.assert_allclose(there.values, here.values, atol=1e-6, rtol=0)
         assert np.nanstd(here.values, axis=0).max() > 0.0
+
+
+FACES = {  # of the block on targets: middle, normal, x, half extents, targets
+    "A": ((0, 0, 0), (0, 0, -1), (1, 0, 0), (50, 30), ((-40, -20, 0), (40, -20, 0), (0, 20, 0))),
+    "B": ((0, -30, 10), (0, -1, 0), (1, 0, 0), (50, 10), ((-30, -30, 8), (35, -30, 12))),
+    "C": ((-50, 0, 10), (-1, 0, 0), (0, 1, 0), (30, 10), ((-50, 5, 9),)),
+}
+
+
+def test_a_frame_on_targets_is_a_three_two_one_on_points_to_second_order(tmp_path: Path) -> None:
+    """Points of the part touch the frame's planes, points of the fixture those of the part: it slides past them.
+
+    By Taylor's theorem a face is as much higher there as its slope over what it slides; the six heights move the tip.
+    """
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENES["block on targets"])
+    made = Assembled(simulation_of(load(path)))
+    trials = drawn(made.simulation, 0, 60)
+    own = {contributor.name: trials.deviations[:, where] for contributor, where in made.slices}
+    rows, heights, slopes, places = [], [], [], []
+    for name, (middle, normal, along, reach, targets) in FACES.items():
+        pose = frame(middle, normal, along)
+        for target in targets:
+            x, y, _ = pose[:3, :3].T @ (np.array(target) - middle)
+            rises = own[name][:, 1:] / reach
+            rows.append(np.concatenate([pose[:3, 2], np.cross(target, pose[:3, 2])]))
+            heights.append(own[name][:, 0] + rises @ (x, y))
+            slopes.append(rises @ pose[:3, :2].T)
+            places.append(target)
+    motions = -np.linalg.solve(np.array(rows), np.array(heights))  # shift of the origin and turn (6, trials)
+    tip = np.array([40.0, 20.0, 20.0])
+    by_heights = np.linalg.inv(np.array(rows))
+    moved = by_heights[:3] + np.cross(by_heights[3:].T, tip).T
+    apart = np.zeros(len(trials))
+    for k, (row, place, slope) in enumerate(zip(rows, places, slopes, strict=True)):
+        slid = (motions[:3] + np.cross(motions[3:].T, place).T).T
+        slope = slope + np.cross(row[:3], motions[3:].T)  # of the face where the part has turned
+        apart += np.linalg.norm(moved[:, k]) * np.abs((slope * slid).sum(axis=1) - slope @ row[:3] * (slid @ row[:3]))
+    linear = made.values(trials, "analytic")
+    np.testing.assert_allclose(linear["inspected"], 2 * linear["placed"], atol=1e-12, rtol=0)
+    off = []
+    for scale in (1.0, 0.25):
+        found = made.values(trials.scaled(scale))
+        off.append(np.abs(found["inspected"] / 2 - found["placed"]))
+        assert (off[-1] <= 1.1 * scale**2 * apart + 1e-9).all()  # a tenth for terms of third order
+    assert (off[0] / apart).max() > 0.2  # it is no loose bound
+    assert off[1].max() < off[0].max() / 12

@@ -108,6 +108,21 @@ def test_coordinates_of_the_part_change_nothing(made: Assembled, tmp_path: Path)
             assert found[2][name] == pytest.approx(found[0][name], abs=1e-9)
 
 
+def test_other_names_and_another_order_change_nothing(made: Assembled, tmp_path: Path) -> None:
+    """Pads are studs, holes are bores, named last to first, and listed in another order in the part."""
+    text = (
+        scene().replace(PADS, ", ".join(reversed(PADS.split(", ")))).replace(", ".join(HOLES), ", ".join(HOLES[::-1]))
+    )
+    lines = text.splitlines(keepends=True)
+    first, last = (next(k for k, own in enumerate(lines) if own.startswith(f"      {name}: ")) for name in ("A", "pad"))
+    text = "".join(lines[:first] + lines[first : last + 1][::-1] + lines[last + 1 :])
+    text = text.replace("plate.pad", "plate.stud").replace("      pad:", "      stud:")
+    text = text.replace("plate.hole", "plate.drilled").replace("      hole:", "      drilled:")
+    there, here = assembled(text, tmp_path).drawn(40), made.drawn(40)
+    for name in ("pads set", "pads by A", "held", "holes set", "bore set", "ball set"):
+        assert there[name] == pytest.approx(here[name], abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [

@@ -138,7 +138,7 @@ def on_pin(own: dict[str, Array]) -> Motions:
 
 @pytest.mark.parametrize(("words", "by_hand"), [("side", on_side), ("slot", on_slot), ("pin", on_pin)])
 def test_a_later_datum_is_as_near_as_the_bore_lets_it(words: str, by_hand: Callable[..., Motions]) -> None:
-    """About a thousand builds in all, in many of which the bore meets its gauge; else it is in the middle of its chord."""
+    """About a thousand builds in all, in many of which the bore meets its gauge; else it is in mid chord."""
     draft, assembly = plate(f"floor|bore*|{words}", ROOM, Floating("centred"))
     rows = np.random.default_rng(4).normal(0.0, 0.02, (330, assembly.width))
     rows = trials(draft, f"floor|bore*|{words}", rows)

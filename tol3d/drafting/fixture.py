@@ -87,14 +87,18 @@ def pads(plane: FoundFeature, count: int) -> list[tuple[float, float]]:
 
 
 def seat_and_pins(part: DraftedPart, frame: Sequence[Group], name: str, move: str, held: str) -> list[Entry]:
-    """A seat on a plane, and expanding pins in holes: relations of a mate, each of which takes remaining freedoms."""
+    """A seat on a plane, expanding pins in holes and blades in slots: relations of a mate, which take what is left.
+
+    A slot after a hole turns the part by its place, as no relation does: it holds nothing.
+    """
     features, relations, holding = [], [], []
-    for group in frame:
-        holding += [group.name] if group.kind in ("plane", "cylinder") else []
+    for k, group in enumerate(frame):
+        closes = group.kind == "slot" and all(own.kind != "cylinder" for own in frame[:k])
+        holding += [group.name] if closes or group.kind in ("plane", "cylinder") else []
         own, target = group.members[0], f"for {group.name}"
         normal = part.along(own.direction)
         at = place(part_at(part, own.at))
-        if group.kind == "plane":
+        if closes or group.kind == "plane":
             sides = (
                 f"radius: {length(own.radius)}"
                 if own.radius

@@ -16,7 +16,7 @@ from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
-from tol3d.assembly.placing.growth import centred
+from tol3d.assembly.placing.growth import Mask, centred
 from tol3d.assembly.placing.later_datums import LaterDatums, later_datums, times
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.rooms import room_found
@@ -121,10 +121,10 @@ class GaugedFrame(SeenMotions):
             offsets = self.offsets(pose, features, trials)
             room_found(offsets, clearances, self.rows, self.floats.push, asked, steps, slacks, deciding, found, *before)
             if after:
-                whole = self.later.nearest(pose, after, offsets, clearances, self.rows)
+                whole = self.later.nearest(pose, after, offsets, clearances, self.rows, asked)
                 if left.shape[1]:
                     its = offsets + times(self.rows, whole), clearances, self.rows @ left
-                    whole = whole + np.einsum("fg,gn->fn", left, self._floating(*its, columns), optimize=False)
+                    whole = whole + np.einsum("fg,gn->fn", left, self._floating(*its, columns, asked), optimize=False)
             else:
                 whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, columns)
             lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)
@@ -137,9 +137,9 @@ class GaugedFrame(SeenMotions):
         lost = ~(found & (lacking < LOST))
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
 
-    def _floating(self, offsets: Array, clearances: Array, rows: Array, columns: Array) -> Array:
+    def _floating(self, offsets: Array, clearances: Array, rows: Array, columns: Array, asked: Mask) -> Array:
         """Steps (left, n) to where the part lies in the freedoms that later datums leave."""
-        steps, slacks = centred(offsets, clearances, rows)
+        steps, slacks = centred(offsets, clearances, rows, asked)
         floats = replace(self.floats, freedoms=self.floats.freedoms @ self.later.left)
         return floats.steps(offsets, clearances, rows, steps, slacks, columns)
 

@@ -86,7 +86,7 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     )
     after = [own.feature(name) for name in gauged.later.features]
     pose, _ = gauged.as_kept(seats, full(IDENTITY, world.trials))
-    left = gauged.later.left
+    left, every = gauged.later.left, np.ones(world.trials, dtype=bool)
     least = np.full(world.trials, np.nan)
     for _ in range(ROUNDS):
         ends = np.concatenate(
@@ -96,8 +96,8 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
             ]
         )
         offsets = gauged.offsets(pose, features, world.trials)
-        fits = centred(offsets, room, gauged.rows)[1] >= 0.0 if after else True
-        steps = gauged.later.nearest(pose, after, offsets, room, gauged.rows)
+        fits = centred(offsets, room, gauged.rows, every)[1] >= 0.0 if after else True
+        steps = gauged.later.nearest(pose, after, offsets, room, gauged.rows, every)
         ends, offsets = ends + times(found.rows, steps), offsets + times(gauged.rows, steps)
         spare = room + len(after) * SPARE
         least, some = least_growth(ends, radii, found.rows @ left, offsets, spare, gauged.rows @ left)

@@ -8,9 +8,12 @@ multipliers, never pass the least w.
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.numerics.arrays import Array
+
+Mask = NDArray[np.bool_]
 
 STEPS: Final = 60
 """Newton steps at most; in practice 2 to 8."""
@@ -25,7 +28,13 @@ UNSEEN: Final = 1e-6
 
 
 def least_growth(
-    offsets: Array, radii: Array, rows: Array, its: Array, room: Array, its_rows: Array
+    offsets: Array,
+    radii: Array,
+    rows: Array,
+    its: Array,
+    room: Array,
+    its_rows: Array,
+    trials_asked: Mask | None = None,
 ) -> tuple[Array, Array]:
     """The least w (n,) [mm], NaN where the room is empty, and the steps to it (freedoms, n).
 
@@ -36,6 +45,7 @@ def least_growth(
         its: offsets of the room (cones, 2, n) [mm].
         room: its clearances (cones, n) [mm].
         its_rows: their change (cones, 2, freedoms).
+        trials_asked: for which trials (n,); all by default.
     """
     ends, trials = len(offsets), offsets.shape[2]
     if not rows.shape[2]:
@@ -46,7 +56,8 @@ def least_growth(
     still = np.abs(rows).max(axis=(1, 2)) < UNSEEN
     nearest = np.sqrt((offsets * offsets).sum(axis=1)) * still[:, None]
     least, steps, slacks = (nearest - radii).max(axis=0), np.zeros((rows.shape[2], trials)), np.zeros(trials)
-    asked, found, deciding = np.ones(trials, bool), np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
+    asked = np.ones(trials, bool) if trials_asked is None else trials_asked
+    found, deciding = np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
     before = np.zeros((len(every), trials)), np.zeros((len(every), trials), dtype=np.int64)
     for _ in range(STEPS):
         clearances[:ends] = radii + least
@@ -65,17 +76,18 @@ def least_growth(
     return least, np.where(np.isfinite(least), steps, 0.0)
 
 
-def centred(offsets: Array, clearances: Array, rows: Array) -> tuple[Array, Array]:
+def centred(offsets: Array, clearances: Array, rows: Array, asked: Mask) -> tuple[Array, Array]:
     """Steps (freedoms, n) to the middle of a room, and its least slack there (n,) [mm], negative where it is empty.
 
     Args:
         offsets: o_k (cones, 2, n) [mm].
         clearances: c_k (cones, n) [mm].
         rows: B_k (cones, 2, freedoms).
+        asked: for which trials (n,).
     """
     trials, places = clearances.shape[1], len(rows)
     steps, slacks, push = np.zeros((rows.shape[2], trials)), np.zeros(trials), np.zeros(rows.shape[2])
-    asked, found, deciding = np.ones(trials, bool), np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
+    found, deciding = np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
     before = np.zeros((places, trials)), np.zeros((places, trials), dtype=np.int64)
     room_found(offsets, clearances, np.ascontiguousarray(rows), push, asked, steps, slacks, deciding, found, *before)
     return steps, slacks

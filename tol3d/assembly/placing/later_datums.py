@@ -14,7 +14,7 @@ import numpy as np
 
 from tol3d.assembly.model import Axis, Datum, DatumFrame, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.growth import SPARE, least_growth
+from tol3d.assembly.placing.growth import SPARE, Mask, least_growth
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.seen_motions import SeenMotions, point_row
 from tol3d.errors import InputError
@@ -113,7 +113,7 @@ class LaterDatums:
         return tuple(own.ask.feature for own in self.taken)
 
     def nearest(
-        self, pose: Pose, features: Sequence[ActualFeature], offsets: Array, clearances: Array, rows: Array
+        self, pose: Pose, features: Sequence[ActualFeature], offsets: Array, clearances: Array, rows: Array, asked: Mask
     ) -> Array:
         """Steps (freedoms, n) to where each is met as nearly as the room lets it.
 
@@ -122,6 +122,7 @@ class LaterDatums:
             features: of each ask.
             offsets, clearances, rows: of the room there: o_k (cones, 2, n), c_k (cones, n) [mm], B_k (cones, 2,
                 freedoms).
+            asked: for which trials (n,).
         """
         trials = clearances.shape[1]
         steps = np.zeros((rows.shape[2], trials))
@@ -129,7 +130,8 @@ class LaterDatums:
             its = own.ask.offsets(pose, feature, trials) + times(own.rows, steps)
             room = offsets + times(rows, steps)
             none = np.zeros((len(its), trials))
-            _, some = least_growth(its, none, own.rows @ own.open, room, clearances + k * SPARE, rows @ own.open)
+            spare = clearances + k * SPARE
+            _, some = least_growth(its, none, own.rows @ own.open, room, spare, rows @ own.open, asked)
             steps = steps + np.einsum("fg,gn->fn", own.open @ own.held, some, optimize=False)
         return steps
 
