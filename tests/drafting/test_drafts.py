@@ -9,18 +9,19 @@ import numpy as np
 import pytest
 import yaml
 from fixtures import Command
-from foreign_parts import nist_file, solid, step_file
+from foreign_parts import nist_file, slotted_block, solid, step_file
 
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
 from tol3d.drafting import scene_from
 from tol3d.drafting.entry import Entry, Scene, Wording
-from tol3d.drafting.fixture import three_two_one
+from tol3d.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.drafting.parts import drafted_parts, read_files
 from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.step.found import FoundFeature
 from tol3d.step.reading import read_step
 from tol3d.study.draws import drawn
 from tol3d.system.stated import nominal_build
@@ -297,6 +298,35 @@ def test_a_part_with_three_planes_as_datums_lies_on_six_pads(tmp_path: Path) -> 
     assert nominal[0, 0] == pytest.approx(20.0, abs=1e-9)
     # pads of A at (-8, -8), (8, -8) and (0, 8) in its plane; the first one 0.08 higher lifts the middle by a quarter
     assert values[0, 0] - 20.0 == pytest.approx(0.02, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_a_slot_as_second_datum_closes_on_a_blade(tmp_path: Path) -> None:
+    """Walls at x = -3 and 3 mm that lie 0.03 mm to the right: the block goes 0.03 mm to the left."""
+    content = step_file({"block": slotted_block()}, tmp_path / "block.step")
+    (part,) = drafted_parts(read_files([content]), Names())
+    known = part.features.part.features
+
+    def plane(x: float, normal: tuple[float, float, float]) -> FoundFeature:
+        flat = (own for own in known if own.kind == "plane" and np.allclose(own.direction, normal))
+        return min(flat, key=lambda own: abs(own.at[0] - x) + abs(own.at[2] - 8.0) * (x != 0.0))
+
+    under = part.features.add([plane(0.0, (0, 0, -1))], "A")
+    slot = part.features.slot([plane(-3.0, (1, 0, 0)), plane(3.0, (-1, 0, 0))], "B")
+    side = part.features.add([plane(0.0, (0, -1, 0))], "C")
+    entries = seat_and_pins(part, [under, slot, side], "fixture", "laid", "set up")
+    words = f"{{kind: gap, from: fixture.for A, to: {part.of(under.name)}, along: [1, 0, 0]}}"
+    text, _ = Scene(
+        ["scene: block"], "{kind: normal}", [part.entry(), *entries, Entry("measures", "x", [Wording((words,))])]
+    ).written()
+    aside = "along: [1, 0, 0], distribution: {kind: constant, value: 0.03 mm}"
+    text += f"tolerances:\n  aside: {{kind: plus_minus, of: {part.of(slot.name)}, {aside}}}\n"
+    assert "holds nothing" not in text
+    simulation = simulation_of(scene_file(text, tmp_path), Overrides())
+    for name in ("exact", "analytic"):
+        method = simulation.system.method(name, simulation.system.materials(name))
+        values = method.answers(drawn(simulation, 0, 1), simulation.system.measures).values["x"]
+        assert values[0, 0] == pytest.approx(-0.03, abs=1e-9)
 
 
 def scene_file(text: str, folder: Path) -> SceneOfFile:
