@@ -1,15 +1,18 @@
 """Warm parts of an assembly without gears: gaps, sizes and play by hand, where each length grows by alpha T."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly_trials import Assembled
 from numpy.typing import NDArray
 from places import SCENES
 
 from tol3d import Overrides, Run, load_scene, run_scene
 from tol3d.errors import SceneError
+from tol3d.simulate import simulation_of
 
 STEEL, ALUMINIUM = 12e-6, 23e-6  # 1/K
 COUNT = 4000
@@ -91,6 +94,57 @@ def test_a_bush_that_grows_more_than_its_pin_has_more_play(method: str, tmp_path
     hot, shaded = column(run, "hot [K]"), column(run, "shaded [K]")
     by_hand = 500 * (30 * (1 + ALUMINIUM * hot) - 29.9 * (1 + STEEL * (hot + shaded)))
     np.testing.assert_allclose(column(run, f"{METHODS[method]}:slack"), by_hand, atol=1e-6, rtol=0)
+
+
+WARM = """scene: a warm plate
+parts:
+  plate:
+    kind: solid
+    expansion: 20e-6 1/K
+    features:
+      base: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 60 mm]}
+      h1: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 8 mm, hole: true}
+      h2: {kind: cylinder, at: [80 mm, 0 mm, 25 mm], axis: [0, 0, 1], length: 10 mm, diameter: 8 mm, hole: true}
+      h3: {kind: cylinder, at: [0 mm, 50 mm, 15 mm], axis: [0, 0, 1], length: 10 mm, diameter: 8 mm, hole: true}
+      slot: {kind: slot, at: [80 mm, 20 mm, 5 mm], normal: [0, 1, 0], extent: [10 mm, 10 mm], width: 8 mm}
+      far: {kind: cylinder, at: [60 mm, 40 mm, 60 mm], axis: [0, 0, 1], length: 10 mm, diameter: 8 mm, hole: true}
+tolerances:
+  hot: {kind: temperature, of: plate, distribution: {kind: constant, value: 100 K}}
+  far: {kind: position, of: plate.far, zone: {diameter: 0.0001 mm}, law: {kind: uniform}, datums: DATUMS}
+moves:
+  bench: {kind: fix, part: plate}
+measures:
+  x: {kind: gap, from: plate.h1, to: plate.far, along: [1, 0, 0]}
+  y: {kind: gap, from: plate.h1, to: plate.far, along: [0, 1, 0]}
+"""
+ALL = "{feature: h1-h2-h3, simulator: pattern}"
+FLAT = {25: 5, 15: 5}  # depths of holes
+
+
+@pytest.mark.parametrize("datums", [f"[base, {ALL}]", f"[{ALL}]", "[base, h1, h2]", "[base, h1]"])
+def test_a_part_grows_evenly_in_frames_that_growth_shifts_alone(datums: str, tmp_path: Path) -> None:
+    """60 and 40 mm grow by 0.002; of a pattern that is the first datum if its holes lie at one depth."""
+    text = WARM.replace("DATUMS", datums)
+    for depth, one in FLAT.items() if datums == f"[{ALL}]" else ():
+        text = text.replace(f"mm, {depth} mm], axis", f"mm, {one} mm], axis")
+    path = tmp_path / "scene.yaml"
+    path.write_text(text, "utf-8")
+    made = Assembled(simulation_of(load_scene(path), Overrides()))
+    for method in METHODS:
+        found = made.drawn(3, method)
+        np.testing.assert_allclose(found["x"], 60 * 1.002, atol=1e-4, rtol=0)
+        np.testing.assert_allclose(found["y"], 40 * 1.002, atol=1e-4, rtol=0)
+
+
+@pytest.mark.parametrize(
+    ("datums", "named"), [(f"[{ALL}]", "h1-h2-h3"), (f"[{ALL}, base]", "h1-h2-h3 | base"), ("[base, h1, slot]", "base")]
+)
+def test_a_frame_that_growth_turns_is_refused(datums: str, named: str, tmp_path: Path) -> None:
+    """Deeper holes farther out lean a pattern by least squares; a slot 20 mm beside its hole turns by 20 / 80."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(WARM.replace("DATUMS", datums), "utf-8")
+    with pytest.raises(SceneError, match=f"keeps upright, got {re.escape(named)}"):
+        simulation_of(load_scene(path), Overrides())
 
 
 def test_gears_and_solid_parts_have_one_temperature() -> None:

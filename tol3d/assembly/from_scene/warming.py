@@ -4,7 +4,7 @@ A part grows about the origin of its frame, so that a feature at p is displaced 
 feature's datum frame is part of it: a part that grows evenly keeps its angles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Cone, Contribution, DatumFrame, Point
+from tol3d.assembly.model import Axis, Cone, Contribution, Datum, DatumFrame, Point, RoundPlane, Slot
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
@@ -22,6 +22,8 @@ from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar
 from tol3d.system.plain import UNITS, PlainContributor
 
+SEEN = 1e-6
+"""Change of what a datum asks by a motion of length 1 that is none."""
 HELD = 1e-9
 """Length of the free part of a direction that earlier datums hold."""
 
@@ -41,6 +43,13 @@ def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames
             if expansion == 0.0:
                 continue
             frame = frames.named(part_of(name), datums)
+            if frame and np.linalg.norm(_turn(frames.made[frame], drawing)) > HELD:
+                own = " | ".join("-".join(datum.features) for datum in datums)
+                words = f"expected datums that a part which grows evenly keeps upright, got {own} of {name!r}"
+                advice = "a pattern at several depths leans as it grows, a slot that misses its hole turns"
+                raise scene.refuse(
+                    ("tolerances", entry, "of"), f"{words}: {advice}; name a plane or another datum first"
+                )
             shift = _shift(frames.made[frame], drawing) if frame else np.zeros(3)
             turn = drawing.kind(name).frame[:3, :3]
             matrix = expansion * turn.T @ (_grown(drawing.kind(name)) - shift)
@@ -76,12 +85,88 @@ def _grown(feature: FeatureUnion) -> Array:
     return np.asarray(frame[:3, 3] + (shape.apex if isinstance(shape, Cone) else 0.0) * frame[:3, 2])
 
 
+def _turn(frame: DatumFrame, drawing: Drawing) -> Array:
+    """Turn of a datum frame (3,) per growth of 1: what its datums ask in order, by least squares of what is left."""
+    features = [[drawing.kind(name) for name in datum.features] for datum in frame.datums]
+    reach = max(1.0, *(float(np.linalg.norm(own.frame[:3, 3])) for some in features for own in some))
+    left, found = np.eye(6), np.zeros(6)  # shift of the origin, turn times reach
+    for datum, some in zip(frame.datums, features, strict=True):
+        for rows, values in _asked(datum, some, reach, left):
+            across, lengths, along = np.linalg.svd(rows @ left)
+            count = int(np.sum(lengths > SEEN))
+            missing = across[:, :count].T @ (values - rows @ found) / lengths[:count]
+            found, left = found + left @ along[:count].T @ missing, left @ along[count:].T
+    free = left[3:] @ left[3:].T  # what no datum holds turns least
+    return np.asarray((found[3:] - free @ np.linalg.pinv(free, SEEN) @ found[3:]) / reach)
+
+
+def _asked(datum: Datum, features: Sequence[FeatureUnion], reach: float, left: Array) -> Iterator[tuple[Array, Array]]:
+    """What a datum asks, as equations (equations, 6) and their values, of a part that grows by 1."""
+
+    def rows(place: Array, ways: Array) -> Array:
+        return np.hstack([ways, np.cross(place, ways) / reach])
+
+    def turns(ways: Array) -> tuple[Array, Array]:
+        return np.hstack([np.zeros((2, 3)), ways]), np.zeros(2)
+
+    own, frame = features[0], features[0].frame
+    place, sides = frame[:3, 3], frame[:3, :2].T
+    if datum.simulator == "pattern":
+        ways = [each.frame[:3, :2].T if isinstance(each.shape, Axis) else _sides(each) for each in features]
+        ends = [[each.frame[:3, :3] @ end for end in _ends(each)] for each in features]
+        places = [(each.frame[:3, 3], way, some) for each, way, some in zip(features, ways, ends, strict=True)]
+        every = [rows(at + end, way) for at, way, some in places for end in some]
+        yield np.concatenate(every), np.concatenate([way @ at for at, way, some in places for _ in some])
+    elif len(features) > 1:
+        place = np.mean([each.frame[:3, 3] for each in features], axis=0)
+        sides = np.linalg.svd((features[-1].frame[:3, 3] - frame[:3, 3])[None])[2][1:]
+        yield rows(place, sides), sides @ place
+        yield turns(sides)
+    elif isinstance(own.shape, Point):
+        yield rows(place, np.eye(3)), place
+    elif isinstance(own.shape, Axis):
+        yield rows(place, _sides(own)), _sides(own) @ _grown(own)
+        yield turns(sides)
+    elif datum.targets is not None:
+        for target in datum.targets:
+            yield rows(frame[:3, :3] @ target + place, frame[:3, 2:3].T), frame[:3, 2:3].T @ place
+    else:
+        height = rows(place, frame[:3, 2:3].T), frame[:3, 2:3].T @ place
+        order = [turns(sides), height]
+        if isinstance(own.shape, Slot) and _by_place(
+            np.concatenate([height[0], order[0][0] / reach]) @ left, own.shape
+        ):
+            order = order[::-1]
+        yield from order
+
+
+def _by_place(moved: Array, shape: Slot) -> bool:
+    """True if one motion is left, which moves a slot's middle more than its ends over that."""
+    away, about_x, about_y = np.abs(moved).max(axis=1, initial=0.0)
+    alone = np.linalg.matrix_rank(moved, tol=SEEN) == 1
+    return bool(alone and away > shape.reach[1] * about_x + shape.reach[0] * about_y - SEEN)
+
+
+def _ends(feature: FeatureUnion) -> Array:
+    """Places of a feature that count in a pattern, in its frame (ends, 3)."""
+    shape = feature.shape
+    if isinstance(shape, RoundPlane):
+        return shape.radius * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    return np.asarray(shape.ends)
+
+
 def _held(feature: FeatureUnion, names: Sequence[str], drawing: Drawing) -> Array:
     """Directions (directions, 3) in which a datum holds the place of what is toleranced to it."""
-    shape, frame = feature.shape, feature.frame
+    frame = feature.frame
     if len(names) == 2:
         line = drawing.kind(names[1]).frame[:3, 3] - frame[:3, 3]
         return np.asarray(np.linalg.svd(line[None])[2][1:])
+    return _sides(feature)
+
+
+def _sides(feature: FeatureUnion) -> Array:
+    """Directions (directions, 3) in which a feature's own place is held."""
+    shape, frame = feature.shape, feature.frame
     if isinstance(shape, Point | Cone):
         return frame[:3, :3].T
     return frame[:3, :2].T if isinstance(shape, Axis) else frame[:3, 2:3].T
