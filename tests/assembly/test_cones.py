@@ -141,6 +141,15 @@ def test_a_profile_holds_the_surface_and_moves_the_datum_by_d_over_the_sine(meth
     assert 0.95 * T < found["surface"].max() < T * (1 + 1e-3)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_size_and_place_of_a_profiled_hole_go_together(method: str, tmp_path: Path) -> None:
+    """A hole whose surface lies out of the material is smaller and lies towards its wide end, here -z."""
+    made = assembled(spindle(PROFILE).replace("[30 mm, 22 mm]", "[30 mm, 22 mm], hole: true"), tmp_path)
+    found, outward = made.drawn(50, method), columns(made, 50)["profile"]
+    assert found["gauge"] == pytest.approx(26.0 - 2.0 * outward / math.cos(math.atan(0.2)), abs=1e-12)
+    assert found["eye over nose"] == pytest.approx(-outward / math.sin(math.atan(0.2)), abs=15 * T / 20 * 1.02)
+
+
 def test_both_methods_differ_by_second_order(tmp_path: Path) -> None:
     made = assembled(spindle(PROFILE), tmp_path)
     trials = drawn(made.simulation, 0, 100)

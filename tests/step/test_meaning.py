@@ -2,6 +2,7 @@
 
 import csv
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from nist import FILES, step_text
@@ -53,6 +54,44 @@ def changed(model: str, identifier: int, **changes: object) -> Meaning:
 
 def feature(model: str, identifier: int) -> NamedFeature:
     return next(each.feature for each in step_text(model).tolerances if each.id == identifier)
+
+
+@pytest.mark.parametrize(
+    ("kind", "how", "said", "why"),
+    [
+        ("surface profile", "said", "profile", ""),
+        ("circular runout", "said", "circular_run_out", ""),
+        ("roundness", "said", "roundness", ""),
+        ("perpendicularity", "said", "perpendicularity", ""),
+        ("cylindricity", "left out", "", "cylindricity of a cone"),
+        ("symmetry", "left out", "", "symmetry of a cone"),
+    ],
+)
+def test_a_cone_has_the_kinds_of_its_axis_and_of_its_surface(kind: str, how: str, said: str, why: str) -> None:
+    own = feature("STC-06", 10498)
+    surfaces = surfaces_of(step_text("STC-06"))
+    cone = next(face for face in own.faces if surfaces[face].kind == "cone")
+    found = changed("STC-06", 10498, feature=replace(own, groups=((cone,),)), kind=kind, modifiers=())
+    assert (found.how, found.kind, found.why, found.shape) == (how, said, why, "a cone")
+
+
+def test_a_cone_is_a_datum_regardless_of_size_alone() -> None:
+    text, surfaces = step_text("STC-06"), surfaces_of(step_text("STC-06"))
+    cone = next(face for face in feature("STC-06", 10498).faces if surfaces[face].kind == "cone")
+    first = next(each for each in text.tolerances if each.datums and not each.datums[0].references[0].modifiers)
+    letter = first.datums[0].references[0]
+    fields = {name: getattr(text, name) for name in ("file", "structure", "tolerances", "dimensions", "remarks")}
+    datums = tuple(
+        replace(each, features=(replace(each.features[0], groups=((cone,),)),))
+        if each.letter == letter.letter
+        else each
+        for each in text.datums
+    )
+    found = Meanings(StepText(datums=datums, **fields), surfaces)
+    bounded = replace(letter, modifiers=("maximum material requirement",))
+    assert found.datum_obstacle(first.datums[0]) == ""
+    told = found.datum_obstacle(replace(first.datums[0], references=(bounded,)))
+    assert told == f"datum {letter.letter} of a cone at its boundary"
 
 
 def test_modifiers_without_a_word_are_dropped_aloud() -> None:
