@@ -60,8 +60,8 @@ class Stated:
 
     @property
     def is_own(self) -> bool:
-        """True of the feature that the scene names; each entry is judged by that one alone."""
-        return self.is_first and not self.alike
+        """True of a feature by which its entry is judged: that of the scene, each of a set, the first of a pattern."""
+        return (self.is_first or len(self.spec.all_of) > 1) and not self.alike
 
 
 @dataclass(frozen=True)
@@ -130,17 +130,17 @@ class Drawing:
             for other in chain[1:]:
                 alike.setdefault(other, []).append(name)
         specs = self.scene.of(FeatureTolerance).values()
-        said = {(own, _group(spec)) for spec in specs for own in self._meant(*_split(spec.of))}
+        said = {(own, _group(spec)) for spec in specs for name in spec.all_of for own in self._meant(*_split(name))}
         found: list[Stated | str] = []
         for name, spec in self.scene.tolerances.items():
             if isinstance(spec, LocatorSpec):
                 found.append(name)
             elif isinstance(spec, FeatureTolerance):
-                part, feature = _split(spec.of)
-                found += self._each(name, spec, part, feature)
+                part = part_of(spec.of)
+                found += self._each(name, spec, part)
                 for other in alike.get(part, ()):
                     nearer = chains[other][: chains[other].index(part)]
-                    for own in self._each(name, spec, other, feature):
+                    for own in self._each(name, spec, other):
                         its = _split(own.feature)[1]
                         instead = any((f"{near}.{its}", _group(spec)) in said for near in nearer)
                         if its in self.features[other] and not instead:
@@ -153,14 +153,15 @@ class Drawing:
         names = (feature,) if own is None or own.pattern is None else own.members(feature)
         return tuple(f"{part}.{name}" for name in names)
 
-    def _each(self, name: str, spec: FeatureTolerance, part: str, feature: str) -> Iterator[Stated]:
-        features = self._meant(part, feature)
-        if features == (f"{part}.{feature}",):
+    def _each(self, name: str, spec: FeatureTolerance, part: str) -> Iterator[Stated]:
+        written = [_split(own)[1] for own in spec.all_of]
+        features = [own for feature in written for own in self._meant(part, feature)]
+        if features == [f"{part}.{written[0]}"]:
             yield Stated(name, name, spec, features[0])
             return
-        for own in features:
-            number = int(own.rpartition(" ")[2])
-            yield Stated(f"{name} {number}", name, spec, own, is_first=own == features[0])
+        for k, own in enumerate(features):
+            number = int(own.rpartition(" ")[2]) if len(written) == 1 else k + 1
+            yield Stated(f"{name} {number}", name, spec, own, is_first=k == 0)
 
     @cached_property
     def _by_feature(self) -> Mapping[str, Sequence[Stated]]:

@@ -45,7 +45,7 @@ def contradicting_tolerances(scene: Scene) -> Iterator[Problem]:
     yield from dict.fromkeys(problem for feature in drawing.names for problem in _twice(drawing, feature))
     for feature in drawing.names:
         yield from _apart(drawing, feature)
-        yield from _zones(drawing, feature)
+    yield from dict.fromkeys(problem for feature in drawing.names for problem in _zones(drawing, feature))
     yield from _names(drawing)
     yield from cyclic_datums(drawing)
 
@@ -145,7 +145,9 @@ def _zones(drawing: Drawing, feature: str) -> Iterator[Problem]:
             if is_of_round_surface(spec, drawing.kind(feature).kind):
                 yield from _surface_problems(here, own, drawing)
             if isinstance(spec, Composite) and spec.lower_segment is not None and len(drawing.composite(own)) < 2:
-                words = f"expected a pattern of features of {spec.of!r}, which lie to each other, got one alone"
+                words = (
+                    f"expected a pattern of {spec.of!r} or rigid_with, features that lie to each other, got one alone"
+                )
                 instead = f"of one feature write an orientation tolerance of {spec.lower_segment.zone.stated} beside"
                 yield (*here, "lower_segment"), f"{words}; {instead} {own.entry!r}"
         elif isinstance(spec, OrientationSpec):

@@ -35,6 +35,11 @@ class FeatureTolerance(ToleranceEntry):
         return (Reference(("of",), part_of(self.of), (SolidSpec,)),)
 
     @property
+    def all_of(self) -> tuple[str, ...]:
+        """The features, with their part; a pattern by its name."""
+        return (self.of,)
+
+    @property
     def named_datums(self) -> tuple[DatumSpec, ...]:
         """The datums to which it holds."""
         return ()

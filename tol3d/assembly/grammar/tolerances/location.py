@@ -6,11 +6,13 @@ from typing import Annotated, Any, ClassVar, Final, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
+from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance, Modified
 from tol3d.assembly.grammar.zone import LawUnion, ProcessLawSpec, RingLawSpec, ZoneSpec, scaled_in_zone
 from tol3d.distributions.base import Stays
 from tol3d.files import Files
+from tol3d.scene.listed import listed
 from tol3d.scene.part import Length
 from tol3d.scene.place import KeyPath
 from tol3d.strict import Strict, refused
@@ -66,6 +68,19 @@ class Composite(LocationSpec):
     lower_segment: SegmentSpec | None = Field(
         default=None, description="of a pattern: how its features lie to each other, in a narrower zone"
     )
+    rigid_with: Annotated[tuple[FeatureName, ...], listed("features", 0)] = Field(
+        default=(),
+        description="of a composite tolerance: further features of its part, which make one rigid set with `of`",
+    )
+
+    @property
+    def all_of(self) -> tuple[str, ...]:
+        return (self.of, *self.rigid_with)
+
+    def uses(self) -> Iterator[Use]:
+        yield from super().uses()
+        for k, name in enumerate(self.rigid_with):
+            yield Use(("rigid_with", k), name, self.applies_to)
 
     def scaled(self, factor: float, stays: Stays, files: Files) -> Self:
         """See ToleranceEntry: both segments."""
@@ -77,7 +92,15 @@ class Composite(LocationSpec):
     @model_validator(mode="after")
     def _refuse_unfit_segments(self) -> Self:
         lower, upper = self.lower_segment, self.zone
+        for own in self.rigid_with:
+            if part_of(own) != part_of(self.of):
+                raise refused("rigid_with", f"features of {part_of(self.of)!r}, as `of` is", repr(own))
+        if len({*self.all_of}) < len(self.all_of):
+            raise refused("rigid_with", "each feature once, and not that of `of`", ", ".join(self.rigid_with))
         if lower is None:
+            if self.rigid_with:
+                expected = "a lower_segment beside it; without one write a tolerance for each feature"
+                raise refused("rigid_with", expected, "none")
             return self
         if isinstance(self.law, ProcessLawSpec | RingLawSpec):
             raise refused("law", "uniform or normal of a composite tolerance", f"{self.law.kind}")
