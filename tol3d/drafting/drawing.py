@@ -251,10 +251,20 @@ class Drawing:
                 known = [self.features.named(own) for own in found]
                 groups = list({id(own[0]): own[0] for own in known if own is not None}.values())
             datums = self.datum_wordings(tolerance)
+            together = (
+                [own for own in groups if own.name not in self.located] if self.is_set(tolerance, meaning) else []
+            )
             for group in groups:
-                self.say_of(tolerance, meaning, group, datums)
+                if group not in together[1:]:
+                    self.say_of(tolerance, meaning, group, datums, together[1:] if group in together else ())
         except StepError as error:
             self.reasons[tolerance.id] = str(error)
+
+    def is_set(self, tolerance: Tolerance, meaning: Meaning) -> bool:
+        """True if a lower segment holds the faces of a profile to each other."""
+        return meaning.kind == "profile" and any(
+            each.above == tolerance.id and other.kind == "profile" for each, other in self.tolerances
+        )
 
     def left_to_all(self) -> list[Group]:
         """Features that a tolerance of the whole part locates: the largest planes that nothing else names.
@@ -292,13 +302,21 @@ class Drawing:
             pairs.append((", ".join(plain), ", ".join(plain)))
         return tuple(pairs)
 
-    def say_of(self, tolerance: Tolerance, meaning: Meaning, group: Group, datums: tuple[tuple[str, str], ...]) -> None:
-        """A tolerance of one group of features."""
+    def say_of(
+        self,
+        tolerance: Tolerance,
+        meaning: Meaning,
+        group: Group,
+        datums: tuple[tuple[str, str], ...],
+        rigid_with: Sequence[Group] = (),
+    ) -> None:
+        """A tolerance of one group of features, and of others that are one rigid set with it."""
         kind = self.kind_of(tolerance, meaning, group)
         below = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
         segments = ", ".join(f"#{own.id}" for own in below)
         remark = (f"(lower segment {segments}) " if below else "") + source(tolerance)
-        name = self.names.new(tolerance.name or kind.replace("_", " "), kind, len(group.members))
+        count = sum(len(own.members) for own in (group, *rigid_with))
+        name = self.names.new(tolerance.name or kind.replace("_", " "), kind, count)
         locates = tolerance.kind in LOCATIONS and kind not in TURNED and kind not in FORMS
         if locates and kind not in INSPECTED and group.name in self.located:
             self.doubled[tolerance.id] = f"#{self.located[group.name]} locates the feature: this one is inspected"
@@ -307,7 +325,7 @@ class Drawing:
             self.inspect(tolerance, kind, group, datums, remark)
             return
         has_law = locates or group.name not in self.located
-        wordings = list(self.wordings(tolerance, kind, group, datums, has_law=has_law))
+        wordings = list(self.wordings(tolerance, kind, group, datums, has_law=has_law, rigid_with=rigid_with))
         if not has_law or kind in FORMS:  # a form has a law only where a contact reads it
             wordings += self.wordings(tolerance, kind, group, datums, has_law=not has_law)
         entry = Entry(
@@ -315,17 +333,18 @@ class Drawing:
             tolerance.id, remark, below=tuple(each.id for each in below),
         )  # fmt: skip
         self.entries.append(entry)
-        if locates:
-            self.located.setdefault(group.name, tolerance.id)
-            self.frames.setdefault(group.name, (datums, len(tolerance.datums)))
+        for own in (group, *rigid_with) if locates else ():
+            self.located.setdefault(own.name, tolerance.id)
+            self.frames.setdefault(own.name, (datums, len(tolerance.datums)))
         if kind in FORMS or (tolerance.unequal is not None and kind != "profile"):
             return
         inspected, count = self.frames.get(group.name, (datums, 0))
         if locates or len(tolerance.datums) != 1 or count < 2 or not self.turns(tolerance, group):
             inspected = datums  # else to one datum alone the turn about it would count, which its zone leaves free
-        self.inspect(tolerance, kind, group, inspected, remark, entry)
+        for own in (group, *rigid_with):
+            self.inspect(tolerance, kind, own, inspected, remark, entry)
         for each in below:
-            self.inspect_pattern(each, group, entry)
+            self.inspect_pattern(each, (group, *rigid_with), entry)
 
     def turns(self, tolerance: Tolerance, group: Group) -> bool:
         """True if a feature may turn about the one datum of its orientation."""
@@ -347,13 +366,23 @@ class Drawing:
         return "parallelism" if cosine > 1.0 - SQUARE else "perpendicularity" if cosine < SQUARE else "angularity"
 
     def wordings(
-        self, tolerance: Tolerance, kind: str, group: Group, datums: tuple[tuple[str, str], ...], *, has_law: bool
+        self,
+        tolerance: Tolerance,
+        kind: str,
+        group: Group,
+        datums: tuple[tuple[str, str], ...],
+        *,
+        has_law: bool,
+        rigid_with: Sequence[Group] = (),
     ) -> Iterator[tuple[str, str]]:
         """Ways to write a tolerance, the best first, with the losses."""
         own = zone(self.meanings, tolerance, kind, group) + piece(tolerance, kind)
         if kind == "straightness" and group.kind == "plane":
             own += f", lines: {'x' if group.members[0].extent[0] >= group.members[0].extent[1] else 'y'}"
         segments = [*self.lower_segments(tolerance, kind, group)]
+        if rigid_with:
+            others = ", ".join(self.of(own.name) for own in rigid_with)
+            segments = [(f", rigid_with: [{others}]{lower}", lost) for lower, lost in segments if lower]
         law = f", law: {LAW}" if has_law else ""
         modifier = modifier_of(tolerance) if group.name in self.sizes and kind not in FORMS else ""
         for k, (said, _) in enumerate(datums):
@@ -382,18 +411,23 @@ class Drawing:
                 return
         yield "", []
 
-    def inspect_pattern(self, tolerance: Tolerance, group: Group, entry: Entry) -> None:
-        """A measure of a lower segment's own limit: over the places that its datums leave the pattern."""
-        if group.kind != "cylinder" or len(group.names) > MOST_OF_A_SET:
+    def inspect_pattern(self, tolerance: Tolerance, groups: Sequence[Group], entry: Entry) -> None:
+        """A measure of a lower segment's own limit: over the places that its datums leave the features together."""
+        features = [self.of(own) for group in groups for own in group.names]
+        kinds = {group.kind for group in groups}
+        if not kinds <= {"cylinder", "plane", "sphere"} or len(features) > MOST_OF_A_SET or not entry.stands:
             return
         assert tolerance.magnitude is not None
-        features = ", ".join(self.of(own) for own in group.names)
-        modifier = modifier_of(tolerance) if group.name in self.sizes else ""
+        surfaces = ", surfaces: true" if tolerance.kind == "surface profile" else ""
+        modifier = modifier_of(tolerance) if groups[0].name in self.sizes and not surfaces else ""
+        if tolerance.unequal is not None:
+            surfaces += f", middle: {length(tolerance.unequal.value - 0.5 * tolerance.magnitude.value)}"
         read = self.datum_wordings(tolerance)[-1][1]
         frame_words = f", datums: [{read}]" if read else ""
         limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
         extra = f", modifier: {modifier}" if modifier else ""
-        words = f"{{kind: inspected_set, of: [{features}], free: oriented{frame_words}{extra}, upper_limit: {limit}}}"
+        head = f"{{kind: inspected_set, of: [{', '.join(features)}]{surfaces}, free: oriented"
+        words = f"{head}{frame_words}{extra}, upper_limit: {limit}}}"
         name = scalar(self.names.new(f"inspected {tolerance.name or 'pattern'}", "inspected_set"))
         wordings, remark = [Wording((words,))], source(tolerance)
         self.entries.append(Entry("measures", name, wordings, None, remark, (entry,), inspects=tolerance.id))

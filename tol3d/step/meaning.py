@@ -298,6 +298,9 @@ class Meanings:
         if shape.kind in ("cylinders", "spheres"):
             lost = self.segment_loss(tolerance, above)
             return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
+        if upper.kind == "profile" and len(shape.of_kinds(*PROFILED)) > 1:
+            lost = self.segment_loss(tolerance, above) or self.profile_loss(tolerance, shape)
+            return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
         flat = shape.of_kinds("plane")
         if shape.kind in ("mixed", "round") and flat:
             shape = Shape("planes", tuple(flat))
