@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from tol3d.assembly.zones import Confined, Zone, ZoneDraw, catalogue, normal_in, uniform_in
-from tol3d.errors import InputError
+from tol3d.errors import InputError, SceneError
 from tol3d.study.draws import drawn
 from tol3d.study.first_order import first_orders
 
@@ -35,6 +35,7 @@ measures:
   x: {kind: gap, from: block.low, to: block.bore, along: [1, 0, 0]}
   off: {kind: inspected_position, of: block.bore, datums: [floor]}
   lean: {kind: inspected_orientation, of: block.bore, datums: [floor]}
+  lean x: {kind: inspected_orientation, of: block.bore, datums: [floor], direction: [1, 0, 0]}
   diameter: {kind: inspected_size, of: block.bore}
 """
 ROUND, ALONG_X = "diameter: 0.2 mm", "width: 0.2 mm, along: [1, 0, 0]"
@@ -78,6 +79,9 @@ def test_both_methods_and_the_closed_form_agree(zone: str, lean: str, tmp_path: 
     exact, analytic = (made.drawn(4000, method) for method in ("exact", "analytic"))
     for name, values in exact.items():
         assert values == pytest.approx(analytic[name], abs=2e-6), name
+    apart = np.subtract(*ends(made, 4000))
+    assert exact["lean"] == pytest.approx(np.hypot(*apart.T), abs=1e-6)
+    assert exact["lean x"] == pytest.approx(np.abs(apart[:, 0]), abs=1e-6)
     assert exact["x"].std() == pytest.approx(form.sigma, rel=5 / np.sqrt(8000))
     reach = first_orders(made.simulation, None, [measure])["x"]["analytic"].ends
     assert reach == pytest.approx((9_900, 10_100), abs=1e-6)
@@ -101,6 +105,11 @@ def test_of_two_flat_zones_the_one_along_it_is_refined(tmp_path: Path) -> None:
     assert isinstance(draws["place"], Confined)
     assert isinstance(draws["beside"], Confined)
     assert (draws["place"].zone.orientation, draws["beside"].zone.orientation) == (T_O, None)
+
+
+def test_a_lean_along_the_axis_is_none(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r"lean x\.direction: expected a direction across the axis"):
+        assembled(block(ROUND, "x").replace("direction: [1, 0, 0]", "direction: [0, 0, 1]"), tmp_path)
 
 
 def test_two_flat_zones_are_independent_of_each_other() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from tol3d.assembly.from_scene.boundaries import room_of
 from tol3d.assembly.from_scene.datums import DatumFrames
-from tol3d.assembly.from_scene.zones import projected, projected_name, sized_by
+from tol3d.assembly.from_scene.zones import LEAST_SINE, projected, projected_name, sized_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
@@ -57,8 +57,21 @@ def _inspected(
     over_gauges = room is None and any(own.gauge is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else found.gauge
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
+    if isinstance(spec, InspectedOrientationSpec) and found.direction is not None:
+        found = replace(found, direction=_across(scene, spec, drawing, found.direction))
     zones = tuple(own.internal for own in several.zones) if several else ()
     return replace(found, gauge=gauge, zones=zones, room=room, over_gauges=over_gauges)
+
+
+def _across(scene: Scene, spec: InspectedOrientationSpec, drawing: Drawing, along: Array) -> Array:
+    """The part of a direction (3,) across an axis, of unit length."""
+    z = drawing.kind(spec.of).frame[:3, 2]
+    across = along - (along @ z) * z
+    size = float(np.linalg.norm(across))
+    if size < LEAST_SINE:
+        name = next(name for name, own in scene.measures.items() if own is spec)
+        raise scene.refuse(("measures", name, "direction"), "expected a direction across the axis, got one along it")
+    return np.asarray(across / size)
 
 
 def _after(scene: Scene, spec: TimedSpec) -> int:

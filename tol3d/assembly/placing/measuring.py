@@ -265,10 +265,12 @@ def orientation(measured: Measured, world: World) -> Array:
     """Width of the zone that holds the feature and is oriented nominally in `frame`.
 
     Of a plane the range of its ends' heights along the nominal normal, of an axis how far its ends lie apart across the
-    nominal axis.
+    nominal axis; in the `direction` alone if there is one.
     """
     actual, frame = _inspected(measured, world)
     z = column(frame[:3, 2])
+    if measured.direction is not None and actual.spans:
+        return 2.0 * np.abs(dot(column(measured.direction), actual.spans[0]))
     if isinstance(actual.feature.shape, (Plane, RoundPlane)):
         return 2.0 * actual.rise(z)
     return 2.0 * _length(_across(actual.spans[0], z)) if actual.spans else np.zeros(1)

@@ -234,7 +234,7 @@ def orientation(measured: Measured, world: World) -> Array:
         case RoundPlane():
             return 2.0 * _disc(measured, world, feature.shape.radius)[1]
         case Axis():
-            directions = rotation[:, :2].T
+            directions = rotation[:, :2].T if measured.direction is None else measured.direction[None]
         case _:
             directions = rotation[:, 2:].T
     ends = _at_ends(measured, world, directions)

@@ -70,7 +70,10 @@ class InspectedPositionSpec(InspectedSpec):
 
 
 class InspectedOrientationSpec(InspectedSpec):
-    """Width of the narrowest zone, oriented as drawn, that holds the feature; `projected` over such a length."""
+    """Width of the narrowest zone, oriented as drawn, that holds the feature; `projected` over such a length.
+
+    Of an axis it is round, or between planes across a `direction`.
+    """
 
     reads: ClassVar[Reading] = Reading(
         "orientation", f"{PLACING}:orientation", f"{TORSORS}:orientation", of_part=True, worse="high"
@@ -78,10 +81,17 @@ class InspectedOrientationSpec(InspectedSpec):
 
     kind: Literal["inspected_orientation"]
     projected: Length | None = Field(default=None, description="of an axis: over such a length instead of its own")
+    direction: Direction | None = Field(
+        default=None, description="of an axis: the one direction in which its lean counts, in the part's frame"
+    )
+
+    @property
+    def along(self) -> Direction | None:
+        return self.direction
 
     def named(self) -> Sequence[tuple[KeyPath, FeatureName, tuple[str, ...]]]:
-        kinds = ("plane", "slot", *AXES) if self.projected is None else ("axis", "cylinder")
-        return ((("of",), self.of, kinds),)
+        kinds = AXES if self.direction is not None else ("plane", "slot", *AXES)
+        return ((("of",), self.of, ("axis", "cylinder") if self.projected is not None else kinds),)
 
 
 class InspectedFlatnessSpec(FeatureMeasureSpec):

@@ -92,9 +92,9 @@ class Composite(LocationSpec):
     @model_validator(mode="after")
     def _refuse_unfit_segments(self) -> Self:
         lower, upper = self.lower_segment, self.zone
-        for own in self.rigid_with:
-            if part_of(own) != part_of(self.of):
-                raise refused("rigid_with", f"features of {part_of(self.of)!r}, as `of` is", repr(own))
+        for name in self.rigid_with:
+            if part_of(name) != part_of(self.of):
+                raise refused("rigid_with", f"features of {part_of(self.of)!r}, as `of` is", repr(name))
         if len({*self.all_of}) < len(self.all_of):
             raise refused("rigid_with", "each feature once, and not that of `of`", ", ".join(self.rigid_with))
         if lower is None:
