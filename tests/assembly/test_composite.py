@@ -245,8 +245,8 @@ POSITION = "    kind: position\n    of: plate.hole\n"
         (
             (POSITION, POSITION.replace("hole", "hole 1")),
             "lower_segment",
-            "expected a pattern of features of 'plate.hole 1', which lie to each other, got one alone; of one feature "
-            "write an orientation tolerance of 0.1 mm beside 'holes'",
+            "expected a pattern of 'plate.hole 1' or rigid_with, features that lie to each other, got one alone; "
+            "of one feature write an orientation tolerance of 0.1 mm beside 'holes'",
         ),
         (
             (f"law: {UNIFORM}\n    datums", "law: {kind: ring}\n    datums"),

@@ -116,6 +116,9 @@ def test_a_bonus_needs_a_size_with_limits() -> None:
 def test_an_orientation_that_does_not_refine_its_location_only_limits() -> None:
     other_zone = changed("FTC-10", 19125, zone="width")
     assert (other_zone.how, other_zone.kind) == ("approximately", "inspected_orientation")
+    assert "in a direction that the file does not say" in other_zone.why  # D is square to the hole
+    along_a = changed("FTC-07", 14579, kind="parallelism", zone="width")  # along A, within a round position
+    assert (along_a.how, along_a.kind) == ("said", "parallelism")
     to_another = next(each for each in step_text("FTC-10").tolerances if each.id == 18842)
     other_datum = changed("FTC-10", 19125, datums=to_another.datums)
     assert "its datums are not the first of #19103" in other_datum.why

@@ -10,7 +10,7 @@ import numpy as np
 from tol3d.drafting.dimensions import sized, take_distance, take_size
 from tol3d.drafting.entry import LAW, Entry, Wording
 from tol3d.drafting.features import USABLE, Features, Group
-from tol3d.drafting.words import Names, comment, length, scalar
+from tol3d.drafting.words import Names, comment, direction, length, scalar
 from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
 from tol3d.numerics.arrays import Array
 from tol3d.step.dimension import Dimension
@@ -454,6 +454,9 @@ class Drawing:
         projected = ""
         if tolerance.projected is not None and group.kind == "cylinder":
             projected = f", projected: {length(tolerance.projected.length.value)}"
+        along = self.meanings.limited(tolerance, group.members[0].direction)
+        if turned and group.kind == "cylinder" and tolerance.zone == "width" and along is not None:
+            projected += f", direction: {direction(along)}"
         limit = length(max(tolerance.magnitude.value, SMALLEST_ZONE))
         label = tolerance.name or kind.replace("_", " ")
         needs = (entry,) if entry is not None else ()

@@ -55,14 +55,10 @@ def limited(meanings: Meanings, tolerance: Tolerance, group: Group) -> Array:
     Raises:
         StepError: no datum says it.
     """
-    axis = np.array(group.members[0].direction)
-    for each in reversed(tolerance.datums):
-        shape = meanings.datum_shape(each)
-        if shape is not None and shape.kind in ("plane", "slot"):
-            normal = np.array(shape.surfaces[0].direction)
-            if abs(float(normal @ axis)) < SQUARE:
-                return normal
-    raise StepError("a width of an axis, in a direction that the file does not say")
+    found = meanings.limited(tolerance, group.members[0].direction)
+    if found is None:
+        raise StepError("a width of an axis, in a direction that the file does not say")
+    return np.array(found)
 
 
 def modifier_of(tolerance: Tolerance) -> str:

@@ -13,6 +13,7 @@ from typing import Final, Literal
 from tol3d.step.datum import Compartment, Datum, DatumReference
 from tol3d.step.feature import NamedFeature
 from tol3d.step.outline import StepText
+from tol3d.step.placement import Vector
 from tol3d.step.shape import Shape, shape_of
 from tol3d.step.surfaces import SAME_PLACE, Surface, aligned, dot, product_unit, surface_of
 from tol3d.step.tolerance import Tolerance
@@ -327,9 +328,18 @@ class Meanings:
         letters = [[each.letters for each in own.datums] for own in (tolerance, location)]
         if letters[0] != letters[1][: len(letters[0])]:
             return f"its datums are not the first of #{location.id}: it only limits what is inspected"
-        if tolerance.zone != location.zone:
-            return f"its zone has another form than that of #{location.id}: it only limits what is inspected"
+        if location.kind == "circular runout":
+            return f"an axis does not lean in #{location.id}, a circular run-out: it only limits what is inspected"
+        axes = shape_of(tolerance.feature, self.surfaces, self.text.structure).of_kinds("cylinder")
+        if axes and tolerance.zone == "width" and self.limited(tolerance, axes[0].direction) is None:
+            return "a width of an axis, in a direction that the file does not say: it only limits what is inspected"
         return ""
+
+    def limited(self, tolerance: Tolerance, axis: Vector) -> Vector | None:
+        """The one direction in which a width limits an axis: across the last flat datum along it; None if none is."""
+        shapes = (self.datum_shape(each) for each in reversed(tolerance.datums))
+        flat = (own.surfaces[0].direction for own in shapes if own is not None and own.kind in ("plane", "slot"))
+        return next((own for own in flat if abs(dot(own, axis)) < SQUARE), None)
 
     def turn_loss(self, tolerance: Tolerance, shape: Shape, location: Tolerance) -> str:
         """Loss of an orientation to one datum whose feature may turn about it, within a zone that stops it."""
