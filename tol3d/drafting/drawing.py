@@ -251,20 +251,19 @@ class Drawing:
                 known = [self.features.named(own) for own in found]
                 groups = list({id(own[0]): own[0] for own in known if own is not None}.values())
             datums = self.datum_wordings(tolerance)
-            together = (
-                [own for own in groups if own.name not in self.located] if self.is_set(tolerance, meaning) else []
-            )
+            first, *others = self.together(tolerance, meaning, groups) or [None]
             for group in groups:
-                if group not in together[1:]:
-                    self.say_of(tolerance, meaning, group, datums, together[1:] if group in together else ())
+                if group not in others:
+                    self.say_of(tolerance, meaning, group, datums, others if group is first else ())
         except StepError as error:
             self.reasons[tolerance.id] = str(error)
 
-    def is_set(self, tolerance: Tolerance, meaning: Meaning) -> bool:
-        """True if a lower segment holds the faces of a profile to each other."""
-        return meaning.kind == "profile" and any(
-            each.above == tolerance.id and other.kind == "profile" for each, other in self.tolerances
-        )
+    def together(self, tolerance: Tolerance, meaning: Meaning, groups: Sequence[Group]) -> list[Group]:
+        """Those groups that the lower segment of a profile holds to each other, but for what others locate."""
+        below = [other for each, other in self.tolerances if each.above == tolerance.id and other.kind == "profile"]
+        if meaning.kind != "profile" or not below:
+            return []
+        return [own for own in groups if own.name not in self.located and own.kind != "cone"]
 
     def left_to_all(self) -> list[Group]:
         """Features that a tolerance of the whole part locates: the largest planes that nothing else names.
@@ -312,7 +311,8 @@ class Drawing:
     ) -> None:
         """A tolerance of one group of features, and of others that are one rigid set with it."""
         kind = self.kind_of(tolerance, meaning, group)
-        below = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
+        lower = [each for each, other in self.tolerances if each.above == tolerance.id and other.kind == kind]
+        below = [] if group.kind == "cone" else lower
         segments = ", ".join(f"#{own.id}" for own in below)
         remark = (f"(lower segment {segments}) " if below else "") + source(tolerance)
         count = sum(len(own.members) for own in (group, *rigid_with))
@@ -379,7 +379,7 @@ class Drawing:
         own = zone(self.meanings, tolerance, kind, group) + piece(tolerance, kind)
         if kind == "straightness" and group.kind == "plane":
             own += f", lines: {'x' if group.members[0].extent[0] >= group.members[0].extent[1] else 'y'}"
-        segments = [*self.lower_segments(tolerance, kind, group)]
+        segments = [("", [])] if group.kind == "cone" else [*self.lower_segments(tolerance, kind, group)]
         if rigid_with:
             others = ", ".join(self.of(own.name) for own in rigid_with)
             segments = [(f", rigid_with: [{others}]{lower}", lost) for lower, lost in segments if lower]

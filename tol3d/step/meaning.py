@@ -38,6 +38,8 @@ SQUARE: Final = 1e-6  # cosine between directions that are square
 
 PROFILED: Final = ("plane", "cylinder", "cone", "sphere")
 """Surfaces that a profile may be of."""
+RIGID: Final = ("plane", "cylinder", "sphere")
+"""Those that the lower segment of one may hold to each other."""
 FLAT_ALONE: Final = "it is of its flat faces alone"
 LOST_RELATION: Final = "how the faces lie to each other is lost"
 FORM_ALONE: Final = {
@@ -279,12 +281,12 @@ class Meanings:
             return kind, f"{tolerance.kind} of median points is taken of the axis or median plane"
         return tolerance.kind, ""
 
-    def profile_loss(self, tolerance: Tolerance, shape: Shape) -> str:
-        """Loss of a profile: faces that no feature of a scene is of."""
+    def profile_loss(self, tolerance: Tolerance, shape: Shape, kinds: Sequence[str] = PROFILED) -> str:
+        """Loss of a profile: faces that are not of some kinds."""
         if tolerance.feature.whole:
             return "it is of the largest flat faces alone that nothing else names"
-        lost = sorted({each.kind for each in shape.surfaces} - {*PROFILED})
-        words = {"torus": "tori", "other": "free forms"}
+        lost = sorted({each.kind for each in shape.surfaces} - {*kinds})
+        words = {"cone": "cones", "torus": "tori", "other": "free forms"}
         return f"its {' and '.join(words[own] for own in lost)} are left out" if lost else ""
 
     def lower_segment(self, tolerance: Tolerance, shape: Shape, upper: Meaning | None) -> Meaning:
@@ -299,8 +301,8 @@ class Meanings:
         if shape.kind in ("cylinders", "spheres"):
             lost = self.segment_loss(tolerance, above)
             return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
-        if upper.kind == "profile" and len(shape.of_kinds(*PROFILED)) > 1:
-            lost = self.segment_loss(tolerance, above) or self.profile_loss(tolerance, shape)
+        if upper.kind == "profile" and len(shape.of_kinds(*RIGID)) > 1:
+            lost = self.segment_loss(tolerance, above) or self.profile_loss(tolerance, shape, RIGID)
             return Meaning(tolerance.id, "approximately" if lost else "said", upper.kind, shape.words, lost)
         flat = shape.of_kinds("plane")
         if shape.kind in ("mixed", "round") and flat:
