@@ -251,10 +251,10 @@ class Drawing:
                 known = [self.features.named(own) for own in found]
                 groups = list({id(own[0]): own[0] for own in known if own is not None}.values())
             datums = self.datum_wordings(tolerance)
-            first, *others = self.together(tolerance, meaning, groups) or [None]
+            together = self.together(tolerance, meaning, groups)
             for group in groups:
-                if group not in others:
-                    self.say_of(tolerance, meaning, group, datums, others if group is first else ())
+                if group not in together[1:]:
+                    self.say_of(tolerance, meaning, group, datums, together[1:] if group in together else ())
         except StepError as error:
             self.reasons[tolerance.id] = str(error)
 
