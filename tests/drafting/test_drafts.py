@@ -2,7 +2,9 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import cadquery as cq
 import numpy as np
@@ -14,6 +16,7 @@ from foreign_parts import nist_file, slotted_block, solid, step_file
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
 from tol3d.drafting import scene_from
+from tol3d.drafting.dimensions import enveloped
 from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.drafting.parts import drafted_parts, read_files
@@ -21,6 +24,7 @@ from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
+from tol3d.step import read_step_text
 from tol3d.step.found import FoundFeature
 from tol3d.step.reading import read_step
 from tol3d.study.draws import drawn
@@ -333,3 +337,17 @@ def scene_file(text: str, folder: Path) -> SceneOfFile:
     """A scene as a file, which is read."""
     (folder / "scene.yaml").write_text(text, encoding="utf-8")
     return load(folder / "scene.yaml")
+
+
+@pytest.mark.parametrize(
+    ("notes", "kind", "expected"),
+    [
+        (("envelope requirement",), "cylinder", ", envelope: true"),
+        (("independency",), "slot", ", envelope: false"),
+        (("statistical",), "cylinder", ""),
+        (("envelope requirement",), "sphere", ""),  # of which a scene has none
+    ],
+)
+def test_the_word_of_a_file_on_the_envelope_of_a_size_is_said(notes: tuple[str, ...], kind: str, expected: str) -> None:
+    (given,) = (own for own in read_step_text(nist_file("ctc_01").content, "a").dimensions if own.id == 122)
+    assert enveloped(replace(given, notes=notes), SimpleNamespace(kind=kind)) == expected  # type: ignore[arg-type]

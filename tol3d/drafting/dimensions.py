@@ -61,14 +61,23 @@ def size_entry(drawing: "Drawing", dimension: Dimension, group: Group, lower: fl
     """A size as an entry."""
     named = comment(dimension.name)
     remark = f"{comment(str(dimension))}{unit_of(dimension)}: {named + ', ' if named else ''}#{dimension.id}"
-    line = (
-        f"{{kind: size, of: {drawing.of(group.name)}, distribution: {{kind: {drawing.spread}, "
-        f"lower: {length(lower)}, upper: {length(upper)}}}}}"
-    )
+    envelope = enveloped(dimension, group)
+    head = f"{{kind: size, of: {drawing.of(group.name)}"
+    law = f"distribution: {{kind: {drawing.spread}, lower: {length(lower)}, upper: {length(upper)}}}}}"
     name = drawing.names.new(f"{group.name} size", "size", len(group.members))
-    made = Entry("tolerances", scalar(name), [Wording((line,), remark)], dimension.id, str(dimension))
+    made = Entry(
+        "tolerances", scalar(name), [Wording((f"{head}{envelope}, {law}",), remark)], dimension.id, str(dimension)
+    )
     drawing.entries.append(made)
     return made
+
+
+def enveloped(dimension: Dimension, group: Group) -> str:
+    """The word of a file on whether limits of a size bound its form, as YAML; "" where it has none."""
+    if group.kind not in ("cylinder", "slot"):
+        return ""
+    words = " ".join(dimension.notes).lower()
+    return ", envelope: true" if "envelope" in words else ", envelope: false" if "independen" in words else ""
 
 
 def take_distance(drawing: "Drawing", dimension: Dimension) -> None:
