@@ -169,11 +169,11 @@ def _pictures_text(run: "Run") -> str:
     """The pictures that were drawn of a run."""
     from tol3d.report.picture import HEAT_MAP, measure_files, system_files
 
-    pictures = [run.path / name for name in (PICTURE, HEAT_MAP, *system_files(run.found).values())]
-    drawn = [str(picture) for picture in pictures if picture.exists()]
+    pictures = (PICTURE, HEAT_MAP, *system_files(run.found).values())
+    drawn = [picture for picture in pictures if (run.path / picture).exists()]
     if any((run.path / name).exists() for name in measure_files(run.found.measures).values()):
-        drawn.append(str(run.path / "histogram-*.png"))
-    return f"    picture{'s' if len(drawn) > 1 else ''}: {', '.join(drawn)}" if drawn else ""
+        drawn.append("histogram-*.png")
+    return f"    picture{'s' if len(drawn) > 1 else ''} in it: {', '.join(drawn)}" if drawn else ""
 
 
 def pictured(run: "Run", wanted: str | None) -> str:

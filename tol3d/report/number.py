@@ -111,6 +111,18 @@ def limit_text(limit: float, unit: str) -> str:
     return with_unit(given_text(limit, unit), unit)
 
 
+def limits_text(lower: float | None, upper: float | None, unit: str) -> str:
+    """The limits of a measure with their unit.
+
+    >>> limits_text(40.0, 140.0, "um"), limits_text(15.0, None, "um"), limits_text(None, None, "um")
+    ('40 to 140 µm', '≥ 15 µm', '–')
+    """
+    if lower is not None and upper is not None:
+        return f"{given_text(lower, unit)} to {limit_text(upper, unit)}"
+    given = ((sign, limit) for sign, limit in (("≥", lower), ("≤", upper)) if limit is not None)
+    return "".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
+
+
 def with_unit(text: str, unit: str) -> str:
     """A value's text with its unit behind: nothing for an angle, whose text has its signs; one is singular.
 

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
-from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limit_text, measured_text, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limits_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
 from tol3d.report.shown_unit import shown_unit
 from tol3d.report.worst_found import WORST_FOUND, worst_text
@@ -187,9 +187,11 @@ def _value(measure: Measure, value: float | None, unit: str) -> Shown:
 
 
 def _limits(measure: Measure, unit: str) -> str:
-    limits = (("≥", measure.lower_limit), ("≤", measure.upper_limit))
-    given = ((sign, _in(measure, limit * measure.per_internal, unit)) for sign, limit in limits if limit is not None)
-    return ", ".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
+    lower, upper = (
+        None if limit is None else _in(measure, limit * measure.per_internal, unit)
+        for limit in (measure.lower_limit, measure.upper_limit)
+    )
+    return limits_text(lower, upper, unit)
 
 
 def _coefficients(

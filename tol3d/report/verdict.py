@@ -12,8 +12,7 @@ from tol3d.report.joint import yield_lines
 from tol3d.report.number import (
     NOTHING,
     bounded_share_text,
-    given_text,
-    limit_text,
+    limits_text,
     share_text,
     short_text,
     unsigned_zero,
@@ -178,7 +177,8 @@ def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool
     low, mean, high = ends_of(measure)
     judges = judged.verdict != "no limits"
     cells = [judged.verdict if judges else NOTHING, *(_short(value, measure.unit) for value in (mean, low, high))]
-    cells += [_limits(measure), bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING]
+    cells += [limits_text(*measure.limits, measure.unit)]
+    cells += [bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING]
     cells += [_ppk(measure)]
     cells += [_ppk_by(measure)] if by else []
     cells += [_largest(measure, 1)] if blame else []
@@ -212,15 +212,6 @@ def _by_quantiles(measure: MeasureSummary) -> bool:
 
 def _short(value: float | None, unit: str) -> Shown:
     return Shown(NOTHING if value is None else short_text(value, unit), value)
-
-
-def _limits(measure: MeasureSummary) -> str:
-    unit = measure.unit
-    lower, upper = measure.limits
-    if lower is None or upper is None:
-        given = [(sign, limit) for sign, limit in (("≥", lower), ("≤", upper)) if limit is not None]
-        return "".join(f"{sign} {limit_text(limit, unit)}" for sign, limit in given) or NOTHING
-    return f"{given_text(lower, unit)} to {limit_text(upper, unit)}"
 
 
 def _ppk(measure: MeasureSummary) -> Shown:

@@ -25,7 +25,7 @@ from tol3d.gears import (
     SpurPair,
 )
 from tol3d.numerics.arrays import Array
-from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, given_text, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, limits_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title, titled
 from tol3d.report.system_check import law_name, system_blocks
 from tol3d.report.worst_found import worst_blocks
@@ -306,11 +306,9 @@ def _positions(measure: Measure) -> str:
 
 
 def _limits(measure: Measure) -> str:
-    limits = ((sign, limit) for sign, limit in (("≥", measure.lower_limit), ("≤", measure.upper_limit)))
-    per, unit = measure.per_internal, measure.unit
-    sign_of_unit = "" if measure.kind.is_angle else f" {UNIT_SIGNS[unit]}"
-    given = [f"{sign} {given_text(limit * per, unit)}{sign_of_unit}" for sign, limit in limits if limit is not None]
-    return ", ".join(given) or NOTHING
+    limits = (measure.lower_limit, measure.upper_limit)
+    lower, upper = (None if limit is None else limit * measure.per_internal for limit in limits)
+    return limits_text(lower, upper, measure.unit)
 
 
 def contributors_table(model: Model) -> list[PageItem]:
