@@ -111,11 +111,30 @@ def test_a_slot_regardless_of_size_takes_its_motions_from_the_room_of_the_bore(t
     """It lies true: across it nothing floats, in a frame that is drawn and in one that is inspected."""
     drawn_to = "[floor, {feature: bore, mmb: random}, slot]"
     made = assembled(plate(drawn_to, drawn_to.replace("random", "least"), 0.03), tmp_path)
-    assert "shift of plate.bore to floor" in [own.name for own in made.system.contributors]
+    assert "shift of plate.bore to floor, then slot" in [own.name for own in made.system.contributors]
     found = made.values(drawn(made.simulation, 0, 20), method)
     np.testing.assert_allclose(found["near y"], 0.0, atol=1e-7)
     np.testing.assert_allclose(found["far y"], 0.03, atol=1e-7)
     np.testing.assert_allclose(found["least"], 0.06, atol=1e-7)
+
+
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_a_slot_that_is_placed_to_a_gauge_is_a_datum_after_it(tmp_path: Path, method: str) -> None:
+    """Two frames, with a shift each: the slot floats with the first, and holds the second where it lies itself."""
+    first = "[floor, {feature: bore, mmb: random}]"
+    text = plate(f"{first[:-1]}, slot]", "[floor, bore, slot]").replace(
+        "law: " + STILL + ", datums: [floor, bore]}", f"law: {STILL}, datums: {first}}}"
+    )
+    text = text.replace(
+        "measures:\n", "measures:\n  slot y: {kind: gap, from: plate.bore, to: plate.slot, along: [0, 1, 0]}\n"
+    )
+    made = assembled(text, tmp_path)
+    names = [own.name for own in made.system.contributors if own.kind == "datum_shift"]
+    assert sorted(names) == ["shift of plate.bore to floor", "shift of plate.bore to floor, then slot"]
+    found = made.values(drawn(made.simulation, 0, 200), method)
+    assert np.abs(found["slot y"]).max() > 0.9 * CLEAR_BORE
+    for name in ("near y", "far y"):  # the slot lies true, off by less than the bore lets its gauge go
+        np.testing.assert_allclose(found[name], found["slot y"], atol=1e-7)
 
 
 @pytest.mark.parametrize("method", ["exact", "analytic"])

@@ -147,6 +147,17 @@ def test_the_closed_form_of_a_bore_that_leans_is_that_of_trials(tmp_path: Path) 
     assert form.sigma == pytest.approx(found, rel=4 / math.sqrt(2 * COUNT) + 2e-3)
 
 
+def test_gauges_at_both_boundaries_shift_by_themselves(tmp_path: Path) -> None:
+    text = scene()
+    place = text.rindex("mmb: random")
+    made = assembled(text[:place] + "lmb: random" + text[place + 11 :], tmp_path)
+    found = [own.name for own in made.system.contributors if own.kind == "datum_shift"]
+    assert found == [SHIFT, SHIFT.replace(" to", " lmb to")]
+    drawn_ones = made.drawn(2_000)
+    correlation = np.corrcoef(drawn_ones["one along y"], drawn_ones["two from one"])[0, 1]
+    assert -0.9 < correlation < -0.4  # two less one, of like spreads: -0.7
+
+
 def test_a_centred_gauge_is_as_regardless_of_size(tmp_path: Path) -> None:
     centred, plain = (assembled(scene(mmb=own), tmp_path) for own in ("centred", ""))
     assert [own.name for own in centred.system.contributors] == [own.name for own in plain.system.contributors]

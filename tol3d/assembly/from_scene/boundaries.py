@@ -72,12 +72,16 @@ def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) 
     if _lying(datums) != "random":
         return Floating("centred")
     first = next(k for k, own in enumerate(datums) if own.gauge is not None)
-    own, to = (
-        ", ".join("-".join(each.features) for each in some)
-        for some in ([each for each in datums if each.gauge is not None], datums[:first])
+    own, to, then = (
+        ", ".join("-".join(each.features) + _least(each) for each in some)
+        for some in (
+            [each for each in datums if each.gauge is not None],
+            datums[:first],
+            [each for each in datums[first:] if each.gauge is None],
+        )
     )
     draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
-    name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "")
+    name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "") + (f", then {then}" if then else "")
     words = f"of the gauges at the {_boundary(datums)} material boundary of datums"
     return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))
 
@@ -111,6 +115,10 @@ def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec,
         nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
         found.append(GaugeRoom(feature, nominal + virtual, grows))
     return tuple(found)
+
+
+def _least(datum: DatumSpec) -> str:
+    return " lmb" if datum.lmb is not None else ""
 
 
 def _boundary(datums: Sequence[DatumSpec]) -> str:
@@ -153,7 +161,7 @@ def _virtual(scene: Scene, drawing: Drawing, feature: str, datums: Sequence[Datu
 def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, boundary: Boundary) -> Contribution:
     draw = _room(scene, drawing, effects, boundary)
     to = ", ".join(name for datum in boundary.earlier for name in datum.features)
-    name = f"shift of {boundary.feature} to {to}"
+    name = f"shift of {boundary.feature}{_least(boundary.own)} to {to}"
     columns = slice(effects.width, effects.width + len(draw.components))
     words = f"of the gauge at the {_boundary((boundary.own,))} material boundary of a datum"
     effects.contributors.append(PlainContributor(name, "datum_shift", draw, description=words))
