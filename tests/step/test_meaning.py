@@ -9,6 +9,7 @@ from nist import FILES, step_text
 from places import TESTS
 
 from tol3d.step import frame
+from tol3d.step.datum import Compartment
 from tol3d.step.feature import NamedFeature
 from tol3d.step.meaning import Meaning, Meanings, meanings, surfaces_of
 from tol3d.step.nominals import disagreements, measured
@@ -99,6 +100,27 @@ def test_modifiers_without_a_word_are_dropped_aloud() -> None:
     tangent = changed("CTC-01", 56, modifiers=("tangent plane",))
     assert (tangent.how, tangent.why) == ("approximately", "the tangent plane is taken as the face itself")
     assert "separate requirement is dropped" in changed("FTC-10", 19674, modifiers=("separate requirement",)).why
+
+
+def test_datums_at_their_least_material_boundary_are_said_but_not_at_two_boundaries_together() -> None:
+    """Holes B and C of CTC-01; E, F and G of FTC-10 as one datum, two of them at the maximum boundary."""
+
+    def least(model: str, identifier: int, letters: str) -> tuple[Compartment, ...]:
+        own = next(each for each in step_text(model).tolerances if each.id == identifier)
+        return tuple(
+            replace(
+                each,
+                references=tuple(
+                    replace(one, modifiers=("least material requirement",)) if one.letter in letters else one
+                    for one in each.references
+                ),
+            )
+            for each in own.datums
+        )
+
+    assert changed("CTC-01", 21, datums=least("CTC-01", 21, "BC")).how == "said"
+    mixed = changed("FTC-10", 19248, datums=least("FTC-10", 19248, "E"))
+    assert (mixed.how, mixed.why) == ("left out", "the common datum E-F-G at different boundaries of its features")
 
 
 def test_a_bonus_needs_a_size_with_limits() -> None:
