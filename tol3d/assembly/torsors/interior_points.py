@@ -141,6 +141,9 @@ def climb(cones: Any, trial: Any, goal: Any, lifts: int, state: Any, system: Any
         scaled(cones, trial, TARGET * gap / used, state)
         equations(cones, trial, goal, lifts, state, system, step)
         solved(system, step, rows.shape[2] + lifts)
+        for i in range(rows.shape[2] + lifts):
+            if not np.isfinite(step[i]):
+                return  # the equations are rounding: the gap is as small as it gets
         up, down = changes(cones, trial, lifts, step, state)
         for i in range(rows.shape[2]):
             gone[i] += up * step[i]
