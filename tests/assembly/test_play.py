@@ -50,6 +50,44 @@ def test_hole_and_slot(method: str) -> None:
     assert np.abs(found["corner y"]).max() < abs(1 - x / length) * 0.08 + x / length * 0.06  # of sizes 5 sigma off
 
 
+def test_a_fit_of_size_and_size_goes_together_in_any_coordinates(tmp_path: Path) -> None:
+    """A pin in a hole as large, drawn askew: its slack is 0, and by rounding of the poses below it."""
+    z, x = [-0.017, 0.918, 0.397], [0.939, 0.151, -0.308]
+    axis = f"axis: {z}, length: 20 mm, diameter: 10 mm"
+    face = f"kind: plane, at: [0 mm, 0 mm, 0 mm], along: {x}, extent: [60 mm, 60 mm], normal"
+    size = "distribution: {kind: constant, value: 0 um}"
+    text = f"""scene: size and size
+parts:
+  plate:
+    kind: solid
+    features:
+      top: {{{face}: {z}}}
+      hole: {{kind: cylinder, at: [310.1 mm, -73.7 mm, 212.9 mm], {axis}, hole: true}}
+  shaft:
+    kind: solid
+    features:
+      face: {{{face}: {[-own for own in z]}}}
+      pin: {{kind: cylinder, at: [310.1 mm, -73.7 mm, 212.9 mm], {axis}}}
+tolerances:
+  hole size: {{kind: size, of: plate.hole, {size}}}
+  pin size: {{kind: size, of: shaft.pin, {size}}}
+moves:
+  bench: {{kind: fix, part: plate}}
+  in:
+    kind: pin_and_hole
+    part: shaft
+    relations: [{{kind: coincident, from: shaft.face, to: plate.top}}]
+    pairs: [{{from: shaft.pin, to: plate.hole}}]
+    float: {{kind: random}}
+measures:
+  aside: {{kind: gap, from: plate.hole, to: shaft.pin, along: {x}}}
+  slack: {{kind: slack, of: in}}
+"""
+    found = assembled(text, tmp_path).drawn(3)
+    assert found["slack"] == pytest.approx(0.0, abs=1e-9)
+    assert found["aside"] == pytest.approx(0.0, abs=1e-9)
+
+
 def key(width: float, floating: str) -> str:
     """The key of the shipped scene, alone, of exact sizes."""
     text = PLATE.replace("width: 20.03 mm", f"width: {width} mm").replace("sigma: 2 um", "sigma: 1e-6 um")

@@ -49,3 +49,6 @@ NOT_HELD: Final = 5
 OVERLAP: Final = 6
 DOES_NOT_CLOSE: Final = 7
 OTHER_BRANCH: Final = 8
+
+FITS: Final = -1e-9
+"""Slack [mm] down to which parts go together: a fit of size and size has it by rounding of its poses."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Engage, Engagement, Mate
-from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.engaged_places import at_places, engaged_arrays
@@ -85,7 +85,7 @@ class Engaging:
             pose, _ = self.mating.poses(world, seats, self._moved(pose, self.nudge[:, None] * np.ones(count)))
             return world.with_part_at(self.move.part, pose), codes
         pose, slacks, deciding, found = self._found(world, seats, pose)
-        codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
+        codes = np.where(codes == OK, np.where(slacks < FITS, NO_BUILD, OK), codes)
         if self.floats.by_pairs is not None:
             pose, met = self._by_pairs(world, seats, pose, found & (slacks > 0.0))
             found = found & met

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.assembly.model import Engage, Floating, Gauges
-from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
+from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
@@ -133,7 +133,7 @@ class GaugedFrame(SeenMotions):
             asked = asked & (lacking > MET)
             if not asked.any():
                 break
-        codes = np.where(codes == OK, np.where(slacks < 0.0, NO_BUILD, OK), codes)
+        codes = np.where(codes == OK, np.where(slacks < FITS, NO_BUILD, OK), codes)
         lost = ~(found & (lacking < LOST))
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
 
