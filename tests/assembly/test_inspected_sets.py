@@ -16,6 +16,7 @@ from tol3d.study.draws import drawn
 
 PADS = ", ".join(f"plate.pad {k}" for k in range(1, 5))
 ASKED = f"""  pads set: {{kind: inspected_set, of: [{PADS}], free: oriented}}
+  pads by AB: {{kind: inspected_set, of: [{PADS}], free: oriented, datums: [A, B]}}
   pads by A: {{kind: inspected_set, of: [{PADS}], free: oriented, datums: [A]}}
   held: {{kind: inspected_set, of: [{PADS}], datums: [A, B, C]}}
   holes set: {{kind: inspected_set, of: [{", ".join(HOLES)}], free: oriented, datums: [A]}}
@@ -98,13 +99,16 @@ def test_round_surfaces_count_with_their_size(made: Assembled) -> None:
 def test_coordinates_of_the_part_change_nothing(made: Assembled, tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     turn, at = Rotation.random(rng=rng).as_matrix(), rng.uniform(-500, 500, 3)
-    found = [made.drawn(40)]
+    drawn_elsewhere = [made]
     for folder, text in (("b", scene(at=at)), ("c", scene(turn, at))):
         (tmp_path / folder).mkdir()
-        found.append(assembled(text, tmp_path / folder).drawn(40))
-    for name in ("pads set", "pads by A", "held", "bore set", "ball set"):
-        assert found[1][name] == pytest.approx(found[0][name], abs=1e-9)
-        if name in ("pads set", "pads by A", "held"):  # pads state their x
+        drawn_elsewhere.append(assembled(text, tmp_path / folder))
+    stated = ("pads set", "pads by A", "pads by AB", "held")  # pads state their x
+    for method in ("exact", "analytic"):
+        found = [own.drawn(40, method) for own in drawn_elsewhere]
+        for name in (*stated, "bore set", "ball set"):
+            assert found[1][name] == pytest.approx(found[0][name], abs=1e-9)
+        for name in stated:
             assert found[2][name] == pytest.approx(found[0][name], abs=1e-9)
 
 

@@ -232,9 +232,9 @@ class PartTorsors:
         if not name:
             return np.eye(3)
         frame = self._frames[name]
-        left = kept_by(frame, self._datums(frame), self._columns, len(frame.datums)).left[3:]
-        ways, sizes, _ = np.linalg.svd(left)
-        return np.asarray(ways[:, : int(np.sum(sizes > NEARER * sizes.max(initial=0.0)))])
+        left = kept_by(frame, self._datums(frame), self._columns, len(frame.datums)).left
+        ways, sizes, _ = np.linalg.svd(left[3:])
+        return np.asarray(ways[:, : int(np.sum(sizes > NEARER * np.abs(left).max(initial=0.0)))])
 
     def gauges(self, name: str) -> GaugesRoom:
         """The play of the gauges of a datum frame."""
