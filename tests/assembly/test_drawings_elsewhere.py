@@ -24,7 +24,7 @@ SCENES: Mapping[str, str] = {
 }
 FAR = (-2000.0, 700.0, -900.0)
 TRIALS = 40
-REFERENCES = {"of", "datums", "feature", "from", "to"}
+REFERENCES = {"of", "datums", "feature", "from", "rigid_with", "to"}
 
 
 def elsewhere(scene: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -215,7 +215,7 @@ def test_a_check_shows_slopes_of_planets_with_their_sign_and_what_they_are_of() 
     rows = [" ".join(line.split()) for line in console.file.getvalue().splitlines()]
     assert "P1 thinning ′/µm -0.04814 each" in rows
     assert "ring 1 thinning ′/µm -0.09092" in rows
-    assert any(row.startswith("each: of every one of several deviations") for row in rows)
+    assert any(row.startswith("each: of every single deviation, such as one per planet") for row in rows)
 
 
 def test_the_cost_of_a_trial_is_a_contact_for_each_mesh_of_each_planet_at_each_position() -> None:

@@ -37,4 +37,4 @@ def test_the_page_quotes_what_its_commands_give(
     assert asked is not None
     code, printed, _ = tol3d("what-if", "spur_pair.yaml", "--set", asked[1])
     before, after = re.findall(r"^sigma +([\d.]+) +([\d.]+) ", printed, re.MULTILINE)[0]
-    assert f"Sigma of the normal backlash falls from {float(before):.1f} µm to {float(after):.1f} µm." in PAGE
+    assert f"sigma of the normal backlash falls from {float(before):.1f} µm to {float(after):.1f} µm." in PAGE
