@@ -79,7 +79,8 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "feature of the wrong kind": (
         [added(TOLERANCES, f"thick: {{kind: size, of: base.floor, {SPREAD}}}")],
         "tolerances.thick.of",
-        "expected a cylinder or cone or slot or sphere, got 'base.floor', which is a plane; did you mean \"base.hole\"?",
+        "expected a cylinder or cone or slot or sphere, got 'base.floor', which is a plane; "
+        'did you mean "base.hole"?',
     ),
     "point with an orientation": (
         [added(TOLERANCES, "level: {kind: parallelism, of: base.rim, zone: {width: 0.1 mm}, datums: [floor]}")],
@@ -309,7 +310,8 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "a key that is a word elsewhere": (
         [changed(BASE_HOLE, "kind: position", "kind: position, width: 1 mm")],
         "tolerances.base hole position.width",
-        'unknown key "width"; known here: kind, description, of, zone, law, datums, lower_segment, rigid_with, modifier',
+        'unknown key "width"; known here: '
+        "kind, description, of, zone, law, datums, lower_segment, rigid_with, modifier",
     ),
     "a word of another kind of feature": (
         [("      rim:   {kind: point", "      rim:   {kind: taper")],
