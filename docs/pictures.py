@@ -40,7 +40,7 @@ Path("curve.yaml").write_text(scene.model_copy(update={"measures": curve}).dump(
 
 @dataclass(frozen=True)
 class Picture:
-    """How a picture is drawn.
+    """A picture of the pages, by the commands that draw it.
 
     Args:
         commands: in an empty folder; `python:PAGE:WORD` runs the first example of a page that holds a
@@ -143,7 +143,7 @@ def shown_by(picture: Picture) -> dict[str, str]:
 
 
 def kept() -> dict[str, dict[str, object]]:
-    """What is written down of each picture: when it was drawn, its own checksum and those of what it shows."""
+    """The entry of each picture: when it was drawn, its own checksum and those of what it shows."""
     return dict(json.loads(KEPT.read_text("utf-8"))) if KEPT.exists() else {}
 
 

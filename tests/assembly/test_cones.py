@@ -44,7 +44,7 @@ def reached(cone: Cone, components: Array) -> float:
 
 @pytest.mark.parametrize("cone", [TAPER, SINK])
 def test_the_zone_of_a_surface_is_what_its_points_have_inside_and_outside(cone: Cone) -> None:
-    """Of second order apart: a circle of radius r that lies off by e is e^2 / 2 r out of round."""
+    """The difference is of second order: a circle of radius r that lies off by e is e^2 / 2 r out of round."""
     draw = uniform_in(catalogue.cone_surface(T, cone))
     inside = np.stack(draw.deviations(*np.random.default_rng(1).random((5, 40))), axis=1)
     for scale in (1.0, 1.5):

@@ -77,7 +77,7 @@ def columns(made: Assembled, count: int) -> dict[str, Array]:
 
 @pytest.mark.parametrize("modifier", ["", "mmc", "lmc"])
 def test_a_zone_loses_what_form_the_size_of_the_trial_leaves(modifier: str, tmp_path: Path) -> None:
-    """Of a hole: t - min(f, size - MMC) and its bonus, reached and never left; without an envelope t - f."""
+    """A hole keeps t - min(f, size - MMC) and its bonus, reached and never left; without an envelope t - f."""
     for envelope in ("envelope: true\n", ""):
         found = assembled(fit(envelope, modifier=modifier), tmp_path).drawn(COUNT, "analytic")
         size = found["hole diameter"] - 10.02

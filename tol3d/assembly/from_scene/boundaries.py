@@ -87,7 +87,7 @@ def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) 
 
 
 def _lying(datums: Sequence[DatumSpec]) -> Lying | None:
-    """How the gauges of a frame lie; None without any."""
+    """Position of the gauges of a frame in their room; None without any."""
     return next((own.gauge for own in datums if own.gauge is not None), None)
 
 

@@ -101,7 +101,7 @@ def _turn(frame: DatumFrame, drawing: Drawing) -> Array:
 
 
 def _asked(datum: Datum, features: Sequence[FeatureUnion], reach: float, left: Array) -> Iterator[tuple[Array, Array]]:
-    """What a datum asks, as equations (equations, 6) and their values, of a part that grows by 1."""
+    """Equations that a datum asks (equations, 6), and their values, of a part that grows by 1."""
 
     def rows(place: Array, ways: Array) -> Array:
         return np.hstack([ways, np.cross(place, ways) / reach])

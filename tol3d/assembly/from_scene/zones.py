@@ -96,7 +96,7 @@ class Refined:
 
 
 def _refined(own: Stated, drawing: Drawing) -> Refined | None:
-    """How the orientation within a location zone is refined; not by a zone along another of two flat ones."""
+    """The orientation that refines a location zone; not by a zone along another of two flat ones."""
     spec = own.spec
     assert isinstance(spec, LocationSpec)
     beside = drawing.of(own.feature, LocationSpec)

@@ -12,7 +12,7 @@ from tol3d.strict import Strict, refused
 from tol3d.units import shown
 
 Lying = Literal["random", "centred", "least"]
-"""How a gauge lies in its room; least, of a measure, where that is best."""
+"""Position of a gauge in its room; least, of a measure, where that is best."""
 
 
 def _joined(value: Any) -> Any:
@@ -57,7 +57,7 @@ class DatumSpec(Strict):
 
     @property
     def gauge(self) -> Lying | None:
-        """How its gauge lies, at either boundary; None regardless of size."""
+        """Position of its gauge, at either boundary; None regardless of size."""
         return self.lmb if self.mmb is None else self.mmb
 
     @property

@@ -20,7 +20,7 @@ ON_END: Final = 1e-9
 
 @dataclass(frozen=True)
 class ConeSeat:
-    """Where one cone lies in another, along the axis of the target [mm].
+    """The place of one cone in another, along the axis of the target [mm].
 
     Args:
         height: of the moving cone's middle over the target's.

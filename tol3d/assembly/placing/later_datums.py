@@ -46,7 +46,7 @@ class Ask:
     target: Array | None = None
 
     def offsets(self, pose: Pose, actual: ActualFeature, trials: int) -> Array:
-        """What it lacks at a pose of the part (places, 2, n) [mm]."""
+        """Distances that it lacks at a pose of the part (places, 2, n) [mm]."""
         own, (x, y, z) = actual.moved(pose), (column(axis) for axis in self.nominal.feature.frame[:3, :3].T)
         if self.what == "direction":
             found = [(-self.reach * dot(own.direction, y), self.reach * dot(own.direction, x))]
@@ -97,7 +97,7 @@ class Taken:
 
 @dataclass(frozen=True, eq=False)
 class LaterDatums:
-    """What the later datums of a frame ask, in order.
+    """The asks of the later datums of a frame, in order.
 
     Args:
         taken: each ask.
@@ -142,7 +142,7 @@ def times(rows: Array, steps: Array) -> Array:
 
 
 def later_datums(frame: DatumFrame, nominal: Sequence[ActualFeature], seen: SeenMotions) -> LaterDatums:
-    """What the later datums of a frame ask.
+    """The asks of the later datums of a frame.
 
     Args:
         frame: the datum frame.

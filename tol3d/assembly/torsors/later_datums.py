@@ -86,7 +86,7 @@ class Ask:
     held: Array
 
     def offsets(self, read: Array, steps: Array) -> Array:
-        """What it lacks after steps (freedoms, trials), (places, 2, trials) [mm]."""
+        """Distances that it lacks after steps (freedoms, trials), (places, 2, trials) [mm]."""
         places = len(self.rows)
         found = read[: 2 * places].reshape(places, 2, -1) + _times(self.rows, steps)
         if len(self.corners):
@@ -97,7 +97,7 @@ class Ask:
 
 @dataclass(frozen=True, eq=False)
 class LaterDatums:
-    """What the later datums of a frame ask, in order.
+    """The asks of the later datums of a frame, in order.
 
     Args:
         asks: each.
@@ -109,7 +109,7 @@ class LaterDatums:
 
     @property
     def forms(self) -> Array:
-        """What they read (lengths, columns)."""
+        """Lengths that they read (lengths, columns)."""
         return np.concatenate([ask.forms for ask in self.asks])
 
     def nearest(self, read: Array, offsets: Array, clearances: Array, rows: Array) -> Array:
@@ -175,7 +175,7 @@ class RoomAfter:
 def later_datums(
     datums: Sequence[tuple[Datum, Feature, Array]], rest: Array, motions: Array, reach: float, name: str
 ) -> LaterDatums:
-    """What the later datums of a frame ask.
+    """The asks of the later datums of a frame.
 
     Args:
         datums: each with its feature and that one's torsor (6, columns).

@@ -98,7 +98,7 @@ class Bonus:
         return replace(self, low=low, high=high, envelope=envelope)
 
     def spared(self, size: Array) -> Array:
-        """What the form leaves (trials,) [mm] of its tolerance at deviations of size (trials,) [mm]."""
+        """Part of its tolerance (trials,) [mm] that the form leaves at deviations of size (trials,) [mm]."""
         return np.zeros(np.shape(size)) if self.envelope is None else self.envelope.form - self.envelope.of(size)
 
     def of(self, size: Array) -> Array:
