@@ -91,6 +91,10 @@ CHANGES = {
         ("lower: -30 um", "lower: -30"),
         'tolerances.pinion tooth thickness.distribution.lower: expected a length with its unit, such as "4.5 um"',
     ),
+    "neither true nor false": (
+        ("measures:", "envelope: perhaps\nmeasures:"),
+        "envelope: expected true or false, got 'perhaps'",
+    ),
     "a decimal comma": (
         ("module: 2.5 mm", "module: 2,5 mm"),
         'parts.pinion.5 mm: expected a key, got "5 mm"; write decimals with a point: a comma starts a new entry',

@@ -226,6 +226,8 @@ SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
     "dict_type": _keys,
     "mapping_type": _keys,
     "string_type": _text_expected,
+    "bool_type": _got("true or false"),
+    "bool_parsing": _got("true or false"),
     "int_type": _whole_number,
     "int_from_float": _whole_number,
     "int_parsing_size": _whole_number,
