@@ -5,7 +5,7 @@ looked for, which may be one of its limits or lie between them.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, Protocol
 
@@ -78,6 +78,8 @@ class _Side:
     group: Sequence[Ended]
     slopes: Mapping[str, Array]
     alone: Mapping[str, Array]
+    known: dict[tuple[str, bytes], Array] = field(default_factory=dict)
+    """Furthest points of those that read others, by the bits of what they read: most stay from place to place."""
 
     @cached_property
     def furthest(self) -> Mapping[str, Array]:
@@ -110,6 +112,9 @@ class _Side:
         found = dict(at)
         for own in self.group:
             if isinstance(own.draw, Dependent):
-                given = {name: found[name][:, None] for name in own.draw.reads}
-                found[own.name] = own.draw.furthest_given(given, self.slopes[own.name])
+                key = own.name, b"".join(found[name].tobytes() for name in own.draw.reads)
+                if key not in self.known:
+                    given = {name: found[name][:, None] for name in own.draw.reads}
+                    self.known[key] = own.draw.furthest_given(given, self.slopes[own.name])
+                found[own.name] = self.known[key]
         return found

@@ -89,9 +89,9 @@ def in_draw_order(contributors: Sequence[Own]) -> tuple[Own, ...]:
             raise UnfitError(f"contributor {own.name!r} reads {unknown[0]!r}, which is no contributor")
     ordered: list[Own] = []
     while waiting:
-        ready = [own for own in waiting.values() if not any(name in waiting for name in reads_of(own))]
+        ready = {name: own for name, own in waiting.items() if not any(read in waiting for read in reads_of(own))}
         if not ready:
             raise UnfitError(f"contributors read each other in a ring: {', '.join(map(repr, waiting))}")
-        ordered += ready
-        waiting = {name: own for name, own in waiting.items() if own not in ready}
+        ordered += ready.values()
+        waiting = {name: own for name, own in waiting.items() if name not in ready}
     return tuple(ordered)
