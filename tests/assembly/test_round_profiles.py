@@ -19,6 +19,7 @@ from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Rows = NDArray[np.int_]
 
 T, FEW, MANY = 0.1, 20_000, 200_000
 RARE = 1e-7
@@ -31,7 +32,7 @@ LAWS: Mapping[str, Callable[[Zone], Confined]] = {"uniform": uniform_in, "normal
 
 def sides(name: str, points: Array) -> Array:
     """The largest distance of a surface's points from where they lie nominally (trials,): by round sections."""
-    turns = 2 * math.pi * np.arange(720) / 720
+    turns = 2 * math.pi * np.arange(180) / 180
     round_ = np.stack([np.cos(turns), np.sin(turns)])
     if name == "cylinder":
         ends = [points[:, own] @ round_ for own in (slice(1, 3), slice(3, 5))]
@@ -52,10 +53,10 @@ def rejected(name: str, law: str, count: int) -> Array:
             found = np.concatenate([found, box[np.abs(box[:, 0]) + reach <= 1]])
         return found[:count]
     middle = redrawn(
-        rng, np.zeros((count, size // 2 if size == 5 else 3)), lambda own: np.linalg.norm(own, axis=1) <= 1
+        rng, np.zeros((count, size // 2 if size == 5 else 3)), lambda own, _: np.linalg.norm(own, axis=1) <= 1
     )
     off = np.linalg.norm(middle, axis=1)
-    outward = redrawn(rng, np.zeros((count, 1)), lambda own: np.abs(own[:, 0]) + off <= 1)
+    outward = redrawn(rng, np.zeros((count, 1)), lambda own, rows: np.abs(own[:, 0]) + off[rows] <= 1)
     if size == 4:
         return np.hstack([outward, middle])
     left, turn = 1.0 - np.abs(outward[:, 0]), rng.uniform(0, 2 * math.pi, count)
@@ -72,12 +73,12 @@ def rejected(name: str, law: str, count: int) -> Array:
     return np.hstack([outward, middle - length[:, None] * way, middle + length[:, None] * way])
 
 
-def redrawn(rng: np.random.Generator, points: Array, inside: Callable[[Array], Flags]) -> Array:
-    """Normals of sigma 1/3 until they lie inside."""
-    out = np.ones(len(points), dtype=bool)
-    while out.any():
-        points[out] = rng.standard_normal((out.sum(), points.shape[1])) / 3
-        out = ~inside(points)
+def redrawn(rng: np.random.Generator, points: Array, inside: Callable[[Array, Rows], Flags]) -> Array:
+    """Normals of sigma 1/3 until they lie inside, which is asked of points in these rows."""
+    out = np.arange(len(points))
+    while out.size:
+        points[out] = rng.standard_normal((out.size, points.shape[1])) / 3
+        out = out[~inside(points[out], out)]
     return points
 
 

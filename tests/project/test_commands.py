@@ -101,7 +101,7 @@ def prepare(page: str, tol3d: Command) -> None:
         Path("scene.yaml").write_text(thin("two_plates"), "utf-8")
     elif page == "step.md":
         for name, file in (
-            ("box", "nist_ftc_07"),
+            ("box", "nist_ctc_01"),
             ("cover", "nist_ftc_10"),
             ("nist_ftc_10_asme1_ap242-e2", "nist_ftc_10"),
         ):

@@ -26,8 +26,9 @@ LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
 HANGS = 900  # s; a guard against waiting for ever, no claim
 HEAVY = """
-import cadquery, fcl, matplotlib.pyplot, numba, numpy, pyarrow.parquet, pydantic.json_schema, pytest, pyvista
-import rich.console, ruamel.yaml, scipy.optimize, scipy.stats, trimesh, typer, xdist.scheduler
+import cadquery, fcl, hypothesis, matplotlib.pyplot, numba, numpy, pandas, pyarrow.parquet, pydantic.json_schema, pytest
+import pytest_cov.plugin, pyvista, rich.console, rich.live, rich.progress, rich.table, ruamel.yaml, scipy.optimize
+import scipy.stats, trimesh, typer, xdist.scheduler
 """
 FORKS = f"""
 {HEAVY}

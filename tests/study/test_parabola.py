@@ -301,7 +301,7 @@ def test_a_witness_that_is_further_off_than_it_says_is_told_of(monkeypatch: pyte
 
 @pytest.mark.slow
 def test_chords_are_an_engine_of_processes_and_made_once_in_the_parent(tmp_path: Path, small_blocks: None) -> None:
-    asked = Overrides(trials=4000, engine="chords")
+    asked = Overrides(trials=400, engine="chords")
     alone = run_scene(SPRING, overrides=asked, out=tmp_path / "alone")
     several = run_scene(SPRING, overrides=asked, out=tmp_path / "several", execution=Execution(workers=2))
     assert_bits(alone, several)

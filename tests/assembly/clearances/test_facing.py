@@ -56,7 +56,7 @@ def test_edges_that_cross_have_one_pair() -> None:
     assert len(found.lengths) == 1
 
 
-@pytest.mark.parametrize("steps", [120, pytest.param(240, marks=pytest.mark.slow)])  # finer: neighbours come as near
+@pytest.mark.parametrize("steps", [120, pytest.param(180, marks=pytest.mark.slow)])  # finer: neighbours come as near
 def test_a_ball_over_a_plate_has_one_pair(steps: int) -> None:
     found = faced(block((60.0, 60.0, 10.0)), ball(6.0, steps), (1.0, 2.0, 11.5), (0.05, 1e-3))
     assert len(found.lengths) == 1
