@@ -19,9 +19,11 @@ from tol3d.gearing.engines.fcl import FclEngine
 from tol3d.gearing.model import Model, model_from_scene
 
 # shared machines stall for longer than any deadline and examples are the same;
-# HYPOTHESIS_PROFILE=search tries others
+# HYPOTHESIS_PROFILE=search tries others, HYPOTHESIS_PROFILE=found makes none smaller that fails
 hypothesis.settings.register_profile("tol3d", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("search", deadline=None)
+FOUND = (hypothesis.Phase.explicit, hypothesis.Phase.generate)
+hypothesis.settings.register_profile("found", deadline=None, derandomize=True, phases=FOUND)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "tol3d"))
 
 # what pyproject.toml makes an error here, numpy's warnings, is one in the processes that tests start too

@@ -100,7 +100,7 @@ def test_a_worker_of_another_processor_is_refused(paper_model: Model, request: p
     asked = installed_versions()
     request.getfixturevalue("generic")
     with pytest.raises(RunError, match=r"a worker has processor generic instead of .*last bit"):
-        Task(simulated(paper_model), None, {}, "other", True, asked).columns(0, 1)
+        Task(simulated(paper_model, engine="analytic"), None, {}, "other", True, asked).columns(0, 1)
 
 
 def test_a_trial_of_another_processor_again_is_told_of(tmp_path: Path, request: pytest.FixtureRequest) -> None:

@@ -80,7 +80,7 @@ class Tree:
             # by their content: a mutant is written within the second that times of files are compared by
             compileall.compile_dir(folder / name, quiet=2, invalidation_mode=PycInvalidationMode.CHECKED_HASH)
 
-        more = {"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        more = {"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1", "HYPOTHESIS_PROFILE": "found"}
         if "TOL3D_CACHE" not in os.environ:
             more["TOL3D_CACHE"] = str(self.folder / "cache")
         self.forks = subprocess.Popen(
