@@ -140,6 +140,12 @@ def test_a_variant_that_cannot_be_built_is_a_row_with_its_reason(found: Sweep) -
     assert [own.values[1] for own in failed] == ["30"] * 3
     assert all("the teeth interfere" in str(own.reason) and not own.measures for own in failed)
     text = as_text(sweep_report(found), 160)
+    ppk = {k: own.measures["normal backlash"].ppk or 0.0 for k, own in enumerate(found.variants) if own.measures}
+    best, worst = max(ppk, key=ppk.__getitem__), min(ppk, key=ppk.__getitem__)
+    upper, teeth = (found.variants[best].numbers[k] for k in (0, 1))
+    varied = f"(centre distance upper {upper:g} µm, pinion teeth {teeth:g})"
+    assert f"normal backlash: best variant {best + 1} {varied}" in text
+    assert f"; worst variant {worst + 1} (" in text
     assert text.count("not assembled") == (3 + 1) * 2  # a row in each of two measures, and a heading
     assert text.count("could not be assembled") == 1
     assert "the teeth interfere" in text

@@ -50,9 +50,7 @@ ANSWER = "import json, sys, pathlib; folder = pathlib.Path(sys.argv[1]); "
         ("raise RuntimeError('a\\x1b[31m\\nb')", "fails on it (b)"),
         ("pass", "fails on it (exit code 0)"),
         (ANSWER + "(folder / 'answer.json').write_text('[' * 100000)", "fails on it (exit code 0)"),
-        pytest.param(
-            ANSWER + "(folder / 'answer.json').write_text('{\"roots\": []}')", "reads 0 of ", id="no bodies"
-        ),
+        pytest.param(ANSWER + "(folder / 'answer.json').write_text('{\"roots\": []}')", "reads 0 of ", id="no bodies"),
         (ANSWER + "(folder / 'answer.json').write_text('{\"roots\": 1}')", "numbers that no part has"),
         (ANSWER + "import os; os.mkfifo(folder / 'answer.json')", "fails on it (exit code 0)"),
         (ANSWER + "(folder / 'answer.json').symlink_to('/dev/zero')", "fails on it (exit code 0)"),

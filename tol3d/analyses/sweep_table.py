@@ -5,7 +5,7 @@ from typing import Final
 
 from tol3d.analyses.sweep import Sweep, Variant, VariantMeasure, measures_of
 from tol3d.report.number import NOTHING, share_cell, unsigned_zero, value_cell
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
@@ -14,11 +14,12 @@ SPAN: Final = "low, high: mean ∓ 3 sigma, or the 0.135 % and 99.865 % quantile
 
 
 def sweep_report(found: Sweep) -> Page:
-    """A table for each measure, then the variants that could not be built."""
+    """The best and the worst variant of each measure with limits, a table for each, and what could not be built."""
     count = len(found.variants)
     words = f" · {count} variants of {found.trials} trials, seed {found.seed}, the same draws in all"
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (words, "")))]
     names = measures_of(found)
+    blocks += [BLANK, *answers] if (answers := [*_answers(found, names[:MOST_MEASURES])]) else []
     for name in names[:MOST_MEASURES]:
         blocks += [title(name), BLANK, _of_measure(found, name).shortened(MOST_ROWS)]
     if len(names) > MOST_MEASURES:
@@ -27,13 +28,34 @@ def sweep_report(found: Sweep) -> Page:
     return page(*blocks)
 
 
+def _answers(found: Sweep, names: Sequence[str]) -> Iterator[PageItem]:
+    """Ppk of each measure at its best and at its worst variant, the first of those that are alike."""
+    for name in names:
+        known = {k: own.measures[name].ppk for k, own in enumerate(found.variants) if name in own.measures}
+        ppk = {k: value for k, value in known.items() if value is not None}
+        if ppk:
+            ends = (("best", max(ppk, key=ppk.__getitem__)), ("worst", min(ppk, key=ppk.__getitem__)))
+            yield line(f" {name}: " + "; ".join(f"{word} {_variant(found, k)}, Ppk {ppk[k]:.2f}" for word, k in ends))
+
+
+def _variant(found: Sweep, k: int) -> str:
+    """A variant by its number and what is varied."""
+    varied = zip(_named(found), found.variants[k].numbers, strict=True)
+    words = (f"{field} {number:g} {unit}".rstrip() for (field, unit), number in varied)
+    return f"variant {k + 1} ({', '.join(words)})"
+
+
 def _headings(found: Sweep) -> list[Heading]:
     return [Heading(f"{field} [{unit}]" if unit else field) for field, unit in _named(found)]
 
 
 def _named(found: Sweep) -> Iterator[tuple[str, str]]:
-    """Fields without their common prefix, for tables."""
-    yield from zip(short_names(found.fields), found.units, strict=True)
+    """Fields without their common prefix, and their units, for tables."""
+    yield from zip(short_names(found.fields), map(_sign, found.units), strict=True)
+
+
+def _sign(unit: str) -> str:
+    return "µm" if unit == "um" else unit
 
 
 def short_names(fields: Sequence[str]) -> list[str]:
@@ -50,7 +72,7 @@ def _of_measure(found: Sweep, name: str) -> Table:
     unit = built[0].measures[name].unit
     heads = [*_headings(found), *(Heading(head) for head in NUMBERS)]
     rows = [Row(str(k + 1), [*_values(own), *_cells(own.measures.get(name))]) for k, own in enumerate(found.variants)]
-    return Table(f"variant [{'µm' if unit == 'um' else unit}]", heads, rows, repeated=len(found.fields))
+    return Table(f"variant [{_sign(unit)}]", heads, rows, repeated=len(found.fields))
 
 
 def _values(own: Variant) -> list[Shown]:
