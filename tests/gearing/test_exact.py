@@ -5,14 +5,9 @@ the working flanks must touch there, none of them overlap, and the others must s
 """
 
 import math
-import os
-import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,13 +22,11 @@ from oracles.involute_gear import InvoluteGear
 from oracles.plain import plain_spur
 from oracles.poses import world_from_gears
 from oracles.random_builds import Builds, Spread, random_builds, searched_spurs
-from places import ROOT, TESTS
 from scipy.spatial.transform import Rotation
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.builds.build import Build
 from tol3d.gearing.engines import INTERFERES, NO_CONTACT, OK, OUT_OF_RANGE, MeshReading
-from tol3d.gearing.engines import exact as engines_exact
 from tol3d.gearing.engines.exact import ExactEngine
 from tol3d.gearing.engines.gaps import Gaps
 from tol3d.gearing.meshing.backlash import measure_backlash, read_backlash
@@ -616,65 +609,3 @@ def test_threads_at_once_give_the_same_bits(many: Builds) -> None:
     whole = read(many)
     with ThreadPoolExecutor(4) as pool:
         assert all(same_bits(seen, whole) for seen in pool.map(read, [many] * 8))
-
-
-# kernels kept on disk -------------------------------------------------------------------------------------------------
-
-FIRST_READ = """
-import sys
-sys.path[:0] = sys.argv[1:]
-import tol3d.gearing
-assert tol3d.gearing.__file__.startswith(sys.argv[1]) or len(sys.argv) == 3
-from test_exact import PAIRS, RIGHT, Spread, random_builds, read
-print(read(random_builds(PAIRS["paper"], RIGHT, 3, 1, spread=Spread(), thinner=0.1)).gap.tobytes().hex())
-"""
-
-
-def first_read(cache: Path, *tree: Path) -> str:
-    """Output of another process, its kernels kept in `cache`; of a copy of the tree elsewhere if one is given."""
-    command = [sys.executable, "-c", FIRST_READ, *map(str, tree), str(Path(__file__).parent), str(TESTS)]
-    environment = os.environ | {"TOL3D_CACHE": str(cache)}
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
-    return done.stdout.strip()
-
-
-def kept(folder: Path) -> dict[str, tuple[int, int]]:
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {str(path.relative_to(folder)): (path.stat().st_mtime_ns, path.stat().st_size) for path in files}
-
-
-@pytest.fixture(scope="module")
-def filled(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """A cache in which a first process has left its kernels, and what it read."""
-    cache = tmp_path_factory.mktemp("cache")
-    return cache, first_read(cache)
-
-
-@pytest.mark.slow
-def test_a_second_process_takes_the_kernels_of_the_first(filled: tuple[Path, str]) -> None:
-    cache, first = filled
-    before = kept(cache)
-    assert any(name.startswith("kernel-read_rows-") for name in before)
-    assert first_read(cache) == first
-    # what it had compiled anew it would have written anew
-    assert kept(cache) == before
-
-
-@pytest.mark.slow
-def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(filled: tuple[Path, str], tmp_path: Path) -> None:
-    cache, first = filled
-    before = kept(cache)
-    shutil.copytree(ROOT / "tol3d", tmp_path / "tol3d", ignore=shutil.ignore_patterns("__pycache__"))
-    assert first_read(cache, tmp_path) == first
-    assert kept(cache) == before
-
-
-@pytest.mark.slow
-def test_kernels_run_where_nothing_can_be_kept(filled: tuple[Path, str], tmp_path: Path) -> None:
-    blocked = tmp_path / "a file, no folder"
-    blocked.write_text("")
-    beside = Path(engines_exact.__file__).parent / "__pycache__"
-    before = {path.name for path in beside.glob("*.nb?")}
-    assert first_read(blocked) == filled[1]
-    # beside the sources they would be known by the date of one of them only
-    assert {path.name for path in beside.glob("*.nb?")} == before
