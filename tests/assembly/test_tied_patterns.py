@@ -172,3 +172,62 @@ def test_one_end_of_one_hole_off_leaves_half_of_it(floating: str, tmp_path: Path
     x, codes = placing.values(made.system.assembly, rows, ["x"])["x"]
     assert np.isfinite(x).all()
     assert np.isfinite(torsors.values(made.system.assembly, rows, ["x"])["x"]).all()
+
+
+PUSHED = """
+scene: a plate on two pins
+parts:
+  base:
+    kind: solid
+    features:
+      top: {kind: plane, at: [50 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 50 mm]}
+      pin 1: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10 mm}
+      pin 2: {kind: cylinder, at: [100 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10 mm}
+      q: {kind: point, at: [0 mm, 0 mm, 0 mm]}
+      r: {kind: point, at: [100 mm, 0 mm, 0 mm]}
+  plate:
+    kind: solid
+    features:
+      bottom: {kind: plane, at: [50 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 50 mm]}
+      hole 1: {kind: cylinder, at: [0 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: 10.1 mm, hole: true}
+      hole 2: {kind: cylinder, at: [100 mm, 0 mm, 5 mm], axis: [0, 0, 1], length: 10 mm, diameter: WIDE mm, hole: true}
+      q: {kind: point, at: [0 mm, 0 mm, 0 mm]}
+      r: {kind: point, at: [100 mm, 0 mm, 0 mm]}
+tolerances:
+  size 1: {kind: size, of: base.pin 1, distribution: {kind: constant, value: 0 mm}}
+  size 2: {kind: size, of: base.pin 2, distribution: {kind: constant, value: 0 mm}}
+  size 3: {kind: size, of: plate.hole 1, distribution: {kind: uniform, lower: -0.02 mm, upper: 0.02 mm}}
+  size 4: {kind: size, of: plate.hole 2, distribution: {kind: constant, value: 0 mm}}
+moves:
+  fixed: {kind: fix, part: base}
+  on:
+    kind: pattern
+    part: plate
+    relations: [{kind: coincident, from: plate.bottom, to: base.top}]
+    pairs: [{from: PAIR 1}, {from: PAIR 2}]
+    float: {kind: toward, along: ALONG, at: plate.q}
+measures:
+  qx: {kind: gap, from: base.q, to: plate.q, along: [1, 0, 0]}
+  qy: {kind: gap, from: base.q, to: plate.q, along: [0, 1, 0]}
+  ry: {kind: gap, from: base.r, to: plate.r, along: [0, 1, 0]}
+"""
+
+
+@pytest.mark.parametrize("wide", [10.12, 10.4, 12.0])
+@pytest.mark.parametrize("along", [(0.8, 0.6), (-0.6, 0.8), (0.0, 1.0), (0.96, -0.28)])
+def test_a_hole_is_pushed_as_far_as_its_own_clearance_whichever_way(
+    along: tuple[float, float], wide: float, tmp_path: Path
+) -> None:
+    """The other hole leaves a turn about this one open, which its clearance centres to second order of 0.05 mm."""
+    pins = "plate.hole {0}, to: base.pin {0}"
+    text = PUSHED.replace("WIDE", str(wide)).replace("ALONG", str([*along, 0.0]))
+    made = assembled(text.replace("PAIR 1", pins.format(1)).replace("PAIR 2", pins.format(2)), tmp_path)
+    sizes = made.drawn(20, "analytic")
+    for method in ("exact", "analytic"):
+        found = made.drawn(20, method)
+        clearances = np.hypot(found["qx"], found["qy"])
+        assert 0.04 < clearances.min() < 0.045 < 0.055 < clearances.max() < 0.06  # (10.1 ± 0.02 - 10) / 2
+        for name, share in zip(("qx", "qy"), along, strict=True):
+            np.testing.assert_allclose(found[name], share * clearances, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(clearances, np.hypot(sizes["qx"], sizes["qy"]), rtol=0, atol=1e-9)
+        np.testing.assert_allclose(found["ry"], 0.0, atol=2 * 0.06**2 / 100)

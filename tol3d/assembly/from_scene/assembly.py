@@ -30,12 +30,14 @@ class Meant:
         contributors: in the scene's order, that of a part that copies another after the other's.
         measures: in the scene's order.
         named: what each measure names: features, or two measures.
+        second_order: shift times turn by which pushes displace parts nominally [mm].
     """
 
     assembly: Assembly
     contributors: tuple[PlainContributor, ...]
     measures: tuple[PlainMeasure, ...]
     named: Mapping[str, tuple[str, ...]]
+    second_order: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.engaged_places import BOLT_IN_HOLE, rows_here
+from tol3d.assembly.placing.engaged_places import BOLT_IN_HOLE, PIN_IN_HOLE, rows_here
 from tol3d.assembly.placing.one_sided_gaps import restored, wrench
 from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.rests import begin
@@ -149,23 +149,48 @@ def way_of(x: float, y: float, a: float, b: float, square_room: float) -> Any:
 
 
 @nested
-def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, push: Any) -> float:
-    """The direction of the freedoms in which a part goes as far as it can (freedoms,), its largest component."""
-    _, given, point, along, _ = goal
+def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, nominal: bool, push: Any) -> float:
+    """The direction of the freedoms in which a part goes as far as it can (freedoms,), its largest component.
+
+    Where motions are nominal, so is the arm of a point: by that of the pose a turn that leaves the point where it is
+    would count as a way on.
+    """
+    _, given, point, along, _, _ = goal
     arm, pull, square, largest = np.empty(3), np.empty(6), 0.0, 0.0
     p = min(i, point.shape[1] - 1)
+    as_given = nominal or (along[0] == 0.0 and along[1] == 0.0 and along[2] == 0.0)
     for r in range(3):
         arm[r] = pose[r, 0] * point[0, p] + pose[r, 1] * point[1, p] + pose[r, 2] * point[2, p]
     wrench(arm, along, reach, pull)
     for f in range(tangents.shape[1]):
-        push[f] = given[f]
+        push[f] = given[f] if as_given else 0.0
         for r in range(6):
-            push[f] += pull[r] * tangents[r, f]
+            push[f] += 0.0 if as_given else pull[r] * tangents[r, f]
         square += push[f] * push[f]
     for f in range(push.shape[0]):
         push[f] *= 1.0 / np.sqrt(square) if square > 0.0 else 1.0
         largest = max(largest, abs(push[f]))
     return largest
+
+
+@nested
+def as_nominally(pose: Any, engaged: Any, i: int, turn: Any, offsets: Any) -> None:
+    """Turn the axes of offsets that turn with the part back, each about its hole's, to where they lie nominally."""
+    axes, inner_moves, kinds = engaged[2], engaged[5], engaged[6]
+    for k in range(kinds.shape[0]):
+        if not inner_moves[k] or (kinds[k] != PIN_IN_HOLE and kinds[k] != BOLT_IN_HOLE):
+            continue
+        a, b = 0.0, 0.0
+        for r in range(3):
+            x, y, own = 0.0, 0.0, 0.0
+            for s in range(3):
+                x += pose[r, s] * axes[k, 0, s, i]
+                y += pose[r, s] * axes[k, 1, s, i]
+                own += turn[r, s] * axes[k, 0, s, i]
+            a += x * own
+            b += y * own
+        length, o, p = np.sqrt(a * a + b * b), offsets[k, 0], offsets[k, 1]
+        offsets[k, 0], offsets[k, 1] = (a * o + b * p) / length, (a * p - b * o) / length
 
 
 @nested
@@ -195,7 +220,8 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
     """Find a stationary pose; True if found, with the slack of the centred one and a cone that has it.
 
     Where the first round of the nominal programme leaves freedoms open, rows stay nominal: what those of the pose would
-    gain along them is of second order, and a part would swing through its clearance for it.
+    gain along them is of second order, and a part would swing through its clearance for it. A push is then nominal too,
+    and offsets are in the axes that holes have nominally.
 
     Args:
         pose: changed, from a nearby pose.
@@ -216,7 +242,9 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
             gone += more
             size = abs(more)
         else:
-            strength = goal_at(pose, goal, i, reach, tangents, push) if mode == PUSHED else 0.0
+            strength = goal_at(pose, goal, i, reach, tangents, nominal, push) if mode == PUSHED else 0.0
+            if nominal and mode == PUSHED:
+                as_nominally(pose, trial[0], i, goal[5], place[0])
             found, slack, which, left = lain(place[:3], freedoms, push, strength, before, basis, done, q, inner)
             if not found:
                 return False, slack, which
@@ -282,7 +310,7 @@ def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
     arrays="float64[:,:,::1], float64[:,:,::1], float64[:,:,:,::1], float64[:,:,::1], float64[:,:,::1], boolean[::1], "
     "int64[::1], int64[::1], float64[:,:,::1], float64[:,:,::1], float64[:,:,::1], float64[::1], float64[:,::1], "
     "float64[:,::1], float64[:,:,::1], "
-    "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], "
+    "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], float64[:,::1], "
     "float64[:,:,::1], float64[:,::1], "
     "float64[::1], int64[::1], boolean[::1]"
 )
@@ -290,7 +318,7 @@ def engaged_poses_found(
     moving: Any, fixed: Any, axes: Any, others: Any, halves: Any, inner_moves: Any, kinds: Any,
     bolt_of: Any, bolts: Any,
     kept_vectors: Any, kept_normals: Any, kept_shifts: Any, kept_steps: Any, steps: Any, rows: Any, start: Any,
-    reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any,
+    reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any, turn: Any,
     turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
 ) -> None:  # fmt: skip
     """Poses of parts within their clearances.
@@ -312,9 +340,10 @@ def engaged_poses_found(
         rows: nominal change of offsets by them and by each bolt's shifts and leans (cones, 2, freedoms + 4 bolts).
         start: poses where relations lay the part (3, 4, n).
         reach: of all places about their middle [mm].
-        pushes: whether it goes as far as it can along `push` (freedoms,), or its point (3, n) along a direction (3,);
-            the one that does not count is 0.
+        pushes: whether it goes as far as it can: along `push` (freedoms,), or its point (3, n) along a direction (3,),
+            if that is not 0; `push` is then the nominal way.
         drawn: directions of the freedoms, and shares of the way to go along them (freedoms + 1, n); (0, 0) if not.
+        turn: of the part as it lies nominally (3, 3).
         turns, shifts: found (3, 3, n), (3, n) [mm].
         slacks: the least slack of the centred pose (n,) [mm].
         deciding: a cone that has that slack (n,).
@@ -325,7 +354,7 @@ def engaged_poses_found(
     pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
     rooms = work_rooms(cones, freedoms, bolts.shape[0], len(first))
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
-    goal = (pushes, push, point, along, drawn)
+    goal = (pushes, push, point, along, drawn, turn)
     for i in range(found.shape[0]):
         begin(pose, first, start, i, kept)
         fill(rooms[6][1], 0)

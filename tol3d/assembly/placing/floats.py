@@ -27,36 +27,38 @@ class Floats:
         move: the move.
         freedoms: (6, freedoms), orthonormal.
         along: direction in the world in which its point is pushed to the limit (3,); 0 for none.
-        push: a direction of the freedoms, instead of all else (freedoms,); None where there is none.
+        push: the direction of the freedoms in which the part is pushed to the limit (freedoms,), that of the nominal
+            point where one is; None where it is not pushed.
+        turn: of the part as it lies nominally (3, 3).
         by_pairs: True for a random float pin by pin.
     """
 
     move: Engage
     freedoms: Array
     along: Array
-    push: Array | None = None
+    push: Array | None
+    turn: Array
     by_pairs: "Discs | None" = None
 
     def at_support_point(self, push: Array) -> "Floats":
         """The float pushed to the limit along a direction of the freedoms (freedoms,); centred along 0."""
-        return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push))
+        return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push), self.turn)
 
-    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array]:
-        """Inputs of `engaged_poses_found`: flag, direction and distance of the push, and the draws.
+    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array, Array]:
+        """Inputs of `engaged_poses_found`: flag, direction and point of the push, the draws, the part's nominal turn.
 
         Args:
             world: before the move.
             origin: the middle of all places in the part's frame (3,) [mm].
         """
-        kind, nothing = self.move.floating.kind, np.zeros((0, 0))
-        push, point = np.zeros(self.freedoms.shape[1]), np.zeros((3, 1))
+        drawn, point = np.zeros((0, 0)), np.zeros((3, 1))
         if self.push is not None:
-            return bool(self.push.any()), self.push, point, self.along, nothing
-        if kind == "toward":
-            point = np.ascontiguousarray(_pushed_point(self.move, world).origin - column(origin))
-        elif kind == "random" and self.by_pairs is None:
-            return False, push, point, self.along, self._rays(world.columns[self.move.floating.columns])
-        return kind == "toward", push, point, self.along, nothing
+            if self.along.any():
+                point = np.ascontiguousarray(_pushed_point(self.move, world).origin - column(origin))
+            return bool(self.push.any()), self.push, point, self.along, drawn, self.turn
+        if self.move.floating.kind == "random" and self.by_pairs is None:
+            drawn = self._rays(world.columns[self.move.floating.columns])
+        return False, np.zeros(self.freedoms.shape[1]), point, self.along, drawn, self.turn
 
     def _rays(self, drawn: Array) -> Array:
         """Directions of the freedoms, of unit length, and shares of the way along them (freedoms + 1, n)."""
@@ -92,15 +94,17 @@ def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: 
     Raises:
         InputError: the part has no play along the direction.
     """
-    floating, along = move.floating, np.zeros(3)
+    floating, along, push = move.floating, np.zeros(3), None
     if floating.kind == "toward":
         assert floating.along is not None
         along = np.ascontiguousarray(world.poses[world.part_of(floating.at)].turn[:, :, 0] @ floating.along)
         arm = world.placed(floating.at).origin[:, 0] - middle
-        if np.abs(np.concatenate([along, np.cross(arm, along) / reach]) @ freedoms).max() < PART:
+        push = np.concatenate([along, np.cross(arm, along) / reach]) @ freedoms
+        if np.abs(push).max() < PART:
             raise InputError(f"moves.{move.name}: {floating.at} does not move along its direction: it is held there")
     discs = discs_of(move, rows) if floating.kind == "random" and floating.by_pairs else None
-    return Floats(move, freedoms, along, None, discs)
+    turn = np.ascontiguousarray(world.poses[move.part].turn[:, :, 0])
+    return Floats(move, freedoms, along, push, turn, discs)
 
 
 @dataclass(frozen=True, eq=False)
