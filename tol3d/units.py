@@ -82,6 +82,8 @@ BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
 WRITTEN_DIGITS: Final = 10  # of what is computed and written for users
 KEPT: Final = 4096  # quantities of which a text is read once
 LONGEST_TEXT: Final = 100  # characters of a quantity; seventeen digits and a unit are far shorter
+RESOLVED: Final = 1e-9
+"""mm or rad; methods promise to resolve no less: flanks at angles of many turns are rounded to some 1e-10 mm."""
 UNITS: Final[dict[str, Dimension]] = {unit: dimension for dimension, table in FACTORS.items() for unit in table}
 
 

@@ -149,7 +149,7 @@ def test_many_measures_are_a_row_each_and_their_tables_come_when_asked(tmp_path:
 
 
 def test_the_screen_of_two_measures_has_its_verdict_first_and_thirty_lines(tmp_path: Path) -> None:
-    """At 80 columns, with two lines left for the folder and its pictures. What is not explained is told.
+    """At 80 columns, with two lines left for the folder and its pictures. What is not explained is told, and which Ppk.
 
     So are warnings.
     """
@@ -163,9 +163,14 @@ def test_the_screen_of_two_measures_has_its_verdict_first_and_thirty_lines(tmp_p
     fault = "part of wheel eccentricity"
     explanation = measure["agreement"]["explanation"] | {"faults": [fault]}
     measure["agreement"] = measure["agreement"] | {"explanation": explanation}
-    summary |= {"measures": summary["measures"] | {"lost motion": measure}, "warnings": ["too warm"]}
+    limited = dict(summary["measures"]["normal backlash"])
+    limited["geometric"] = limited["geometric"] | {"ppk_by": "share out of limits", "ppk_reason": "4 failed"}
+    changed = {"lost motion": measure, "normal backlash": limited}
+    summary |= {"measures": summary["measures"] | changed, "warnings": ["too warm"]}
     told = lines_of(run_report(typed_run(summary), Detail.SHORT), 80)
     assert f"lost motion: NOT EXPLAINED: {fault}" in told
+    assert any(line.startswith(" Ppk of normal backlash: by share out of limits (4 failed)") for line in told)
+    assert not any("Ppk of" in line for line in lines)
     assert told[-1] == "warning: too warm"
 
 

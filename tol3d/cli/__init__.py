@@ -81,6 +81,7 @@ COMMANDS = (
 """In the order in which help shows them."""
 
 NO_ROOM_TO_LOAD = "failed to map segment"  # of the dynamic loader, where a library does not fit into memory
+FULL = 0.8  # of an allowed address space; the piece that did not fit would have gone beyond it
 OBJECTS_A_COLLECTION = 200_000  # instead of Python's 700: 0.3 s of a command of 2 s
 
 
@@ -174,7 +175,8 @@ def _out_of_memory(error: Exception) -> str:
     import errno
 
     failed = isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM)
-    if not failed and not (isinstance(error, ImportError) and NO_ROOM_TO_LOAD in str(error)):
+    failed = failed or (isinstance(error, ImportError) and NO_ROOM_TO_LOAD in str(error))
+    if not failed and not _has_filled_its_room():
         return ""
     why = " ".join(str(error).split())
     return (
@@ -182,6 +184,21 @@ def _out_of_memory(error: Exception) -> str:
         "address space and some for each worker), or use fewer --workers; finished blocks are kept, and the same "
         "command resumes the run"
     )
+
+
+def _has_filled_its_room() -> bool:
+    """True if the address space is limited (`ulimit -v`) and nearly used up: libraries then fail in any way."""
+    try:
+        import resource
+
+        allowed, _ = resource.getrlimit(resource.RLIMIT_AS)
+        with open("/proc/self/status", "rb") as status:  # noqa: PTH123, pathlib wants more memory
+            peak = next(int(row.split()[1]) << 10 for row in status if row.startswith(b"VmPeak"))
+    except MemoryError:
+        return True
+    except (ImportError, OSError, ValueError, StopIteration):  # another system
+        return False
+    return allowed != resource.RLIM_INFINITY and peak > FULL * allowed
 
 
 def _refused_write(error: Exception) -> str:

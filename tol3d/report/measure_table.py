@@ -22,6 +22,7 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveMethods, Methods
 from tol3d.system.outcome import SEATED
+from tol3d.units import FACTORS, RESOLVED, UNITS
 
 ROWS = {
     "low_3sigma": "low (−3 sigma)",
@@ -180,9 +181,12 @@ def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> fl
 
 
 def _varies(measure: MeasureSummary, column: Column) -> bool:
-    """True if there is a variance to attribute: a method finds none if all that acts is constant."""
+    """True if there is a variance to attribute: a method finds none, or rounding, if all that acts is constant."""
     own = measure.sample(column.method) if column.method in ("analytic", "geometric") else None
-    return own is None or own.sigma != 0.0
+    if own is None or own.sigma is None:
+        return True
+    factor = FACTORS[UNITS[measure.unit]][measure.unit] if measure.unit in UNITS else 1.0
+    return own.sigma * factor > (RESOLVED if measure.unit in UNITS else 0.0)
 
 
 def not_attributed(measure: MeasureSummary) -> list[float | None]:

@@ -127,6 +127,15 @@ class Presenter(Protocol):
         ...
 
 
+@runtime_checkable
+class ShowsNotes(Protocol):
+    """A presenter with words that belong below the first tables of a run, such as what a negative mean is."""
+
+    def first_notes(self, summary: "RunSummary") -> Sequence[PageItem]:
+        """Notes; nothing where a run gives no occasion."""
+        ...
+
+
 class Map(Protocol):
     """A picture of values over a workspace."""
 

@@ -20,7 +20,7 @@ from tol3d.report.measure_table import (
 )
 from tol3d.report.number import COUNTED, counted, difference_text, limit_text, percent_text, share_text
 from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, some, title, warning
-from tol3d.report.presenter import Presenter, presenter_of
+from tol3d.report.presenter import Presenter, ShowsNotes, presenter_of
 from tol3d.report.published import published_blocks, published_notes
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
@@ -153,10 +153,11 @@ def run_report(
     warnings = [*map(warning, some(run.warnings, ", all in summary.json"))]
     if detail is Detail.VERDICT:
         return page(*verdict_report(shown, accepted_ppm, blame=True), *warnings)
+    own = presenter_of(run, presenter)
     if detail is Detail.SHORT:
         head = [_run_line(run), *short_verdict(shown, accepted_ppm), *_unexplained(shown)]
-        return page(*head, status_line(run), _time_line(run, elapsed, brief=True), note(MORE), *warnings)
-    own = presenter_of(run, presenter)
+        told = own.first_notes(run) if isinstance(own, ShowsNotes) else ()
+        return page(*head, status_line(run), _time_line(run, elapsed, brief=True), *told, note(MORE), *warnings)
     blocks: list[PageItem] = [_run_line(run), *verdict_report(shown, accepted_ppm)]
     for name in shown_measures(shown.measures):
         blocks += measure_blocks(name, shown.measures[name], shown, own)

@@ -12,6 +12,7 @@ from tol3d.report.joint import yield_lines
 from tol3d.report.number import (
     NOTHING,
     bounded_share_text,
+    counted,
     limits_text,
     share_text,
     short_text,
@@ -35,6 +36,7 @@ PPK_MEANS: Final[Mapping[PpkBy, str]] = {
     "share out of limits": "share out: that of a normal measure with as much out",
     "mean and sigma": "mean, sigma: distance of the nearest limit over 3 sigma",
 }
+PLAIN: Final[PpkBy] = "mean and sigma"
 FEW_MEASURES: Final = 4  # with so many, a few contributors of each are named
 FEW_NAMED: Final = 3
 LEAST_NAMED: Final = 0.5  # %; a smaller share is 0 in print
@@ -97,7 +99,7 @@ def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame
 def short_verdict(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM) -> list[PageItem]:
     """The verdict of every measure, and the largest contributors of each: a first look."""
     table = verdict_table(run, accepted_ppm, brief=True)
-    below = [*_left_out(run, accepted_ppm), *yield_lines(run), note(_ends_note(run))]
+    below = [*_left_out(run, accepted_ppm), *yield_lines(run), note(_ends_note(run)), *map(note, _other_ppks(run))]
     return [_verdict_line(run, accepted_ppm), BLANK, table, *below, *_largest_contributors(run)]
 
 
@@ -249,6 +251,18 @@ def _notes(run: RunSummary) -> Iterator[str]:
     }
     if words:
         yield f"Ppk by {'; by '.join(words[key] for key in PPK_BY if key in words)}"
+
+
+def _other_ppks(run: RunSummary) -> Iterator[str]:
+    """A sentence on each Ppk that is not by mean and sigma, with its reason; of many alike their number."""
+    limited = [name for name in shown_measures(run.measures) if run.measures[name].has_limits]
+    others = {name: own for name in limited if (own := run.measures[name].shares).ppk_by not in (None, PLAIN)}
+    named: dict[str, list[str]] = {}
+    for name, shares in others.items():
+        why = f" ({shares.ppk_reason})" if shares.ppk_reason and len(others) <= FEW_MEASURES else ""
+        named.setdefault(f"{shares.ppk_by}{why}", []).append(name)
+    for by, names in named.items():
+        yield f"Ppk of {', '.join(names) if len(names) <= FEW_MEASURES else counted(len(names), 'measure')}: by {by}"
 
 
 def _ends_note(run: RunSummary) -> str:

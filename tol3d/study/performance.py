@@ -17,6 +17,7 @@ By = Literal["quantiles", "share out of limits", "mean and sigma"]
 OUTER: Final = 0.00135  # beyond each outer quantile of ISO 22514-2
 NOT_NORMAL: Final = 0.2  # of skewness or excess kurtosis; less moves a Ppk of 1 by a tenth at most
 SURE: Final = 5.0  # standard errors of a normal law's; by chance once in two million
+CONSTANT: Final = 1e-7  # of a limit's distance; a smaller sigma is rounding
 FEWEST: Final = math.ceil(1 / OUTER)  # trials; of fewer less than one lies beyond an outer quantile
 
 
@@ -71,6 +72,12 @@ class Performance:
     reason: str
 
 
+def varying(side: Side, margin: float) -> float:
+    """Sigma of what a limit judges; 0 where it is rounding beside the limit's distance."""
+    sigma = side.moments.sigma
+    return sigma if sigma > CONSTANT * abs(margin) else 0.0
+
+
 @dataclass(frozen=True)
 class Judged:
     """Limits of a measure, and the statistics of its trials against them.
@@ -102,9 +109,11 @@ class Judged:
             return Performance(
                 equivalent_ppk(self.counts.out_of_limits), "share out of limits", f"{self.counts.failed} failed"
             )
+        if not any(varying(side, margin) for side, margin in self._sides):
+            return Performance(None, "mean and sigma", "")
         reason = "as asked" if asked else next(self._reasons_against_normal(), "")
         if asked == "sigma" or not reason:
-            indices = [margin / (3 * side.moments.sigma) for side, margin in self._sides if side.moments.sigma > 0.0]
+            indices = [margin / (3 * sigma) for side, margin in self._sides if (sigma := varying(side, margin))]
             return Performance(min(indices, default=None), "mean and sigma", reason)
         found = quantile_ppk(self.lower, self.upper, self.low.pair(OUTER, 0.5), self.high.pair(0.5, 1 - OUTER))
         few = any(side.moments.count < FEWEST for side, _ in self._sides)
@@ -122,7 +131,7 @@ class Judged:
 
     def _reasons_against_normal(self) -> Iterator[str]:
         yield from (words for side, _ in self._sides if (words := side.not_normal))
-        shares = [normal_share(margin, side.moments.sigma) for side, margin in self._sides if side.moments.sigma > 0.0]
+        shares = [normal_share(margin, sigma) for side, margin in self._sides if (sigma := varying(side, margin))]
         out = 1e6 * sum(shares)
         if shares and self.interval and not self.interval[0] <= out <= self.interval[1]:
             yield f"a normal law would have {out / 1e4:.3g} % out"

@@ -26,6 +26,10 @@ class CycloidPresenter(GearPresenter):
         """Its cycloid stage by formula, published and by first principles, and the sense of a negative lost motion."""
         return (*_lazily("formulas").below_zero(summary), *self.link_sections(summary))
 
+    def first_notes(self, summary: "RunSummary") -> "Sequence[PageItem]":
+        """The sense of a negative lost motion; see ShowsNotes."""
+        return _lazily("formulas").below_zero(summary)  # type: ignore[no-any-return]
+
     def check(self, simulation: "Simulation") -> "Sequence[PageItem]":
         """Data of the reducer, then the items of any system."""
         return _lazily("tables").check_blocks(simulation)  # type: ignore[no-any-return]

@@ -27,7 +27,7 @@ from tol3d.system.regressors import has_square
 from tol3d.system.stated import component_count, component_slices, mean_deviations
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
-from tol3d.units import FACTORS
+from tol3d.units import FACTORS, RESOLVED
 
 SURE = 5.0  # standard errors; by chance once in two million
 SUREST = 1e6  # standard errors, at most, in a summary; without any chance there are infinitely many
@@ -170,9 +170,10 @@ class _Case:
         A share of sigma; of a measure that does not vary, for all that acts on it is constant, rounding and the same
         share of the shift by its constants in second order: that of higher order is less.
         """
-        rounding = ROUNDINGS * max(REACH * self.measure.per_internal, self.fits.magnitude)
+        resolution = RESOLVED * self.measure.per_internal
+        rounding = max(resolution, ROUNDINGS * max(REACH * self.measure.per_internal, self.fits.magnitude))
         if self.fits.sigma > rounding:
-            return LEAST_LEFT * self.fits.sigma
+            return max(LEAST_LEFT * self.fits.sigma, resolution)
         return rounding + LEAST_LEFT * _rms(self.look.second_order[self.measure.name][: self.looked])
 
     # linear parts -----------------------------------------------------------------------------------
