@@ -8,7 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Final, assert_never
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.tolerances.location import Composite
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Part, Plane, RoundPlane
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Part, Plane, Point, RoundPlane
 from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.zones import ZoneDraw, catalogue
 from tol3d.numerics.arrays import Array
@@ -67,8 +67,10 @@ class Member:
                 ends = np.array([[0.0, 0.0, shape.length / 2], [0.0, 0.0, shape.length / 2 + self.reach]])
             case RoundPlane():
                 ends = shape.radius * np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
-            case _:
+            case Axis() | Plane() | Point():
                 ends = shape.ends
+            case _:
+                assert_never(shape)
         return np.asarray(ends @ axes)
 
     def levers(self, centre: Array) -> Array:

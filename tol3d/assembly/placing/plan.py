@@ -106,7 +106,7 @@ def _planned(move: Move, nominal: World) -> Placing:
             return engaging(move, nominal)
         case StatedMove():
             return move.placing(nominal)
-        case _:
+        case Fix() | Weld():
             return move
 
 

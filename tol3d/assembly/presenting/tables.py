@@ -72,7 +72,7 @@ def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
                 rows.append(Row(move.name, ("all six", f"{', '.join(move.others)} with {move.part}")))
             case StatedMove():
                 rows += [Row(move.name, (f"all six of {part}", move.words)) for part in move.parts]
-            case _:
+            case Locate() | BestFit() | Mate() | Engage() | Rest() | Touch():
                 found = held_by(assembly, plan)
                 rows += [Row(move.name, (in_words(own), _by(own))) for own in found.taken]
                 if found.left.count:

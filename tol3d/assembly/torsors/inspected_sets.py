@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, assert_never
 
 import numpy as np
 
@@ -76,8 +76,10 @@ def inspected_set(measured: Measured, world: World) -> Array:
                 directions = turn[:, 2:].T
             case Plane():
                 points, directions = shape.ends, turn[:, 2:].T
-            case _:
+            case Point():
                 points, directions = np.zeros((1, 3)), turn.T
+            case _:
+                assert_never(shape)
         directions = np.concatenate([directions, np.zeros((size - len(directions), 3))])
         torsor = world.own[part].feature(name) - frame
         off = np.zeros((size, world.columns.count))

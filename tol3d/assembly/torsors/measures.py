@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import combinations
+from typing import assert_never
 
 import numpy as np
 
@@ -235,8 +236,10 @@ def orientation(measured: Measured, world: World) -> Array:
             return 2.0 * _disc(measured, world, feature.shape.radius)[1]
         case Axis():
             directions = rotation[:, :2].T if measured.direction is None else measured.direction[None]
-        case _:
+        case Plane() | Point():
             directions = rotation[:, 2:].T
+        case _:
+            assert_never(feature.shape)
     ends = _at_ends(measured, world, directions)
     return world.columns.largest(np.array([one - other for one, other in combinations(ends, 2)]))
 

@@ -193,7 +193,7 @@ def _word(shape: Shape) -> str:
             return "point"
         case Axis():
             return "axis"
-        case _:
+        case Plane() | RoundPlane():
             return "plane"
 
 
