@@ -13,7 +13,7 @@ from tol3d.distributions.empirical import Empirical
 from tol3d.distributions.normal import Normal, NormalSpec
 from tol3d.distributions.rayleigh import Rayleigh
 from tol3d.distributions.triangular import Triangular
-from tol3d.distributions.truncated_normal import TruncatedNormal
+from tol3d.distributions.truncated_normal import TruncatedNormal, TruncatedNormalSpec
 from tol3d.distributions.uniform import Uniform, UniformSpec
 
 U = (np.arange(200) + 0.5) / 200
@@ -103,3 +103,12 @@ class Stranger(Normal):
 def test_what_cannot_be_is_refused(ask: Any, words: str) -> None:
     with pytest.raises(InputError, match=words):
         ask()
+
+
+def test_a_truncated_normal_has_the_numbers_of_one_that_is_as_wide() -> None:
+    given = {"lower": "-20 um", "upper": "10 um", "mean": "0 um", "sigma": "10 um"}
+    spec = TruncatedNormalSpec.model_validate({"kind": "truncated_normal", **given})
+    own = LAWS["truncated normal"].scaled(2.0)
+    about = (1.0 - 2.0) * LAWS["truncated normal"].mean
+    expected = {"lower": -0.04 + about, "upper": 0.02 + about, "mean": about, "sigma": 0.02}
+    assert spec.numbers(own) == pytest.approx(expected, abs=1e-15)
