@@ -366,8 +366,9 @@ def _pushed_alike(settled: Meant, drawn: Meant) -> Meant:
         if isinstance(move, Engage) and isinstance(own, Engaging) and move.floating.kind == "toward":
             turn = settled.assembly.part[settled.assembly.features[move.floating.at].part].pose[:3, :3]
             moves[k] = replace(move, floating=replace(move.floating, along=turn.T @ own.floats.along))
-            gone = np.abs(settled.assembly.part[move.part].pose - drawn.assembly.part[move.part].pose)
-            second_order += float(gone[:3, 3].max() * gone[:3, :3].max())
+            pose = settled.assembly.part[move.part].pose
+            gone = pose[:3, :3] @ own.origin + pose[:3, 3] - own.middle  # by the push, not from where it was drawn
+            second_order += float(np.linalg.norm(gone) * np.linalg.norm(pose[:3, :3] - own.floats.turn, 2))
     return replace(settled, assembly=replace(settled.assembly, moves=tuple(moves)), second_order=second_order)
 
 
