@@ -164,7 +164,7 @@ def test_trials_against_two_equations_in_two_unknowns(sample: Sample, pose: str)
                 float(sample.column(f"{name} of travel {side}")[k, 0]) * share
                 for name, share in (
                     ("zero", 1.0),
-                    ("lead", abs(nominal[s]) / 300),
+                    ("lead", nominal[s] / 300),
                     ("backlash", 5 / (2 * np.pi)),
                     ("sine", 5 / (2 * np.pi)),
                 )

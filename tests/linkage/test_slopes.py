@@ -98,8 +98,13 @@ INPUT = """
           turn error: {distribution: {kind: normal, lower: -0.5 arcmin, upper: 0.5 arcmin}, per: 100 mm}"""
 
 
-def test_deviations_of_an_input_by_its_way_and_by_its_lead(tmp_path: Path) -> None:
-    """A slide of 12 mm by a screw of 5 mm: lead 12/300, an angle 5/2π, an angle per 100 mm 5/2π 12/100."""
+@pytest.mark.parametrize("order", ["frame.way, car.way", "car.way, frame.way"])
+def test_deviations_of_an_input_by_its_way_and_by_its_lead(order: str, tmp_path: Path) -> None:
+    """A slide of 12 mm by a screw of 5 mm: lead 12/300, an angle 5/2π, an angle per 100 mm 5/2π 12/100.
+
+    Of -30 mm: -30/300 and -5/2π 30/100, for the car stands at s (1 + e/300). So a path across 0 is longer by what a path
+    of its length on one side is. It counts from where the parts are placed, here 100 mm.
+    """
     text = f"""
 scene: one slide
 parts:
@@ -118,29 +123,87 @@ moves:
   slide:
     kind: close_loop
     bodies: [car]
-    joints: {{way: {{kind: prismatic, between: [frame.way, car.way]}}}}
+    joints: {{way: {{kind: prismatic, between: [{order}]}}}}
     inputs:
       travel:
         of: way
         lead: 5 mm
         as_placed: 100 mm
         deviations: {INPUT}
-    poses: {{ahead: {{travel: 112 mm}}, behind: {{travel: 70 mm}}}}
+    poses:
+      ahead: {{travel: 112 mm}}
+      home: {{travel: 100 mm}}
+      behind: {{travel: 70 mm}}
+      across: {{path: [behind, ahead], steps: 4}}
 measures:
   ahead: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], at: ahead}}
+  home: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], at: home}}
   behind: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], at: behind}}
+  stroke: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], over: across, take: range}}
+  least: {{kind: gap, from: frame.zero, to: car.nose, along: [1, 0, 0], over: across, take: min}}
 study: {{trials: 10}}
 """
     made = assembled(text, tmp_path)
     slices = component_slices(made.system)
     by = 5.0 / (2 * np.pi)
-    for where, way in (("ahead", 12.0), ("behind", -30.0)):
-        shares = {"zero": 1.0, "lead": abs(way) / 300, "backlash": by, "turn error": by * abs(way) / 100}
-        for method in ("exact", "analytic"):
-            answers = made.system.method(method, made.system.materials(method))
-            rows = np.zeros((5, component_count(made.system)))
-            for k, name in enumerate(shares):
-                rows[k, slices[f"{name} of travel"]] = 1e-3
-            measures = [own for own in made.system.measures if own.name == where]
-            found = answers.answers(stated(made.system, rows), measures).values[where][:, 0]
-            assert found == pytest.approx(3.0 + way + 1e-3 * np.array([*shares.values(), 0.0]), abs=1e-12)
+    sense = 1.0 if order.startswith("frame") else -1.0
+    rows = np.zeros((5, component_count(made.system)))
+    for k, name in enumerate(("zero", "lead", "backlash", "turn error")):
+        rows[k, slices[f"{name} of travel"]] = 1e-3 * (k + 1)
+
+    def way(nominal: float) -> Array:
+        shares = [1.0, nominal / 300, by, by * nominal / 100, 0.0]
+        return nominal + 1e-3 * np.array([1, 2, 3, 4, 0]) * np.array(shares)
+
+    expected = {name: 3.0 + sense * way(at) for name, at in (("ahead", 12.0), ("home", 0.0), ("behind", -30.0))}
+    expected["stroke"] = way(12.0) - way(-30.0)
+    expected["least"] = expected["behind" if sense > 0 else "ahead"]
+    for method in ("exact", "analytic"):
+        answers = made.system.method(method, made.system.materials(method))
+        read = answers.answers(stated(made.system, rows), made.system.measures).values
+        found = {name: own[:, 0] for name, own in read.items() if own.shape[1] == 1}
+        found |= {"stroke": np.ptp(read["stroke"], axis=1), "least": read["least"].min(axis=1)}
+        for name, values in expected.items():
+            assert found[name] == pytest.approx(values, abs=1e-12), (method, name)
+
+
+def test_the_error_of_an_angle_has_the_sign_of_the_turn(tmp_path: Path) -> None:
+    """An arm of 50 mm, turned by t about z, with a mean error of 0.2 mrad a radian: 50 sin t + 50 cos(t) t 0.2e-3."""
+    text = """
+scene: one arm
+parts:
+  frame:
+    kind: solid
+    features:
+      zero: {kind: point, at: [0 mm, 0 mm, 0 mm]}
+      axis: {kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 20 mm}
+  arm:
+    kind: solid
+    features:
+      axis: {kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 20 mm}
+      tip: {kind: point, at: [50 mm, 0 mm, 0 mm]}
+moves:
+  base: {kind: fix, part: frame}
+  turn:
+    kind: close_loop
+    bodies: [arm]
+    joints: {hinge: {kind: revolute, between: [frame.axis, arm.axis]}}
+    inputs:
+      t:
+        of: hinge
+        deviations:
+          scale: {distribution: {kind: normal, mean: 0.2 mrad, sigma: 0.01 mrad}, per: 1 rad}
+    poses: {left: {t: 40 deg}, right: {t: -70 deg}}
+measures:
+  left: {kind: gap, from: frame.zero, to: arm.tip, along: [0, 1, 0], at: left}
+  right: {kind: gap, from: frame.zero, to: arm.tip, along: [0, 1, 0], at: right}
+study: {trials: 10}
+"""
+    made = assembled(text, tmp_path)
+    trials = stated(made.system, np.array([[0.2e-3]]))
+    for method in ("exact", "analytic"):
+        found = made.values(trials, method)
+        for name, t in (("left", np.radians(40)), ("right", np.radians(-70))):
+            second_order = 50 * (t * 0.2e-3) ** 2 / 2
+            expected = 50 * (np.sin(t) + np.cos(t) * t * 0.2e-3)
+            assert found[name][0] == pytest.approx(expected, abs=1.01 * second_order), (method, name)

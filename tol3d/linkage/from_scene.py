@@ -426,6 +426,6 @@ def _deviations(
                 assert own.lead is not None
                 share *= own.lead.internal / (2 * np.pi)
             if each.per is not None:
-                share *= abs(values[of]) / each.per.internal
+                share *= values[of] / each.per.internal
             found.setdefault(of, []).append(InputDeviation(drawn[deviation_name(key, of)].start, share))
     return found

@@ -29,7 +29,9 @@ class InputDeviationSpec(Strict):
         description="its law: as the input is measured, or an angle of the screw or gears that drive it, by `lead`"
     )
     per: Annotated[Quantity, Of("length", "angle"), Positive()] | None = Field(
-        default=None, description="travel to which it refers, such as 300 mm of a lead error; default: none"
+        default=None,
+        description="travel to which it refers, such as 300 mm of a lead error: it grows with the travel from where "
+        "parts are placed, and has the sign of that travel; default: none, the same in all poses",
     )
     description: str = Field(default="", description="the user's own words, shown in reports")
 
