@@ -102,8 +102,8 @@ INPUT = """
 def test_deviations_of_an_input_by_its_way_and_by_its_lead(order: str, tmp_path: Path) -> None:
     """A slide of 12 mm by a screw of 5 mm: lead 12/300, an angle 5/2π, an angle per 100 mm 5/2π 12/100.
 
-    Of -30 mm: -30/300 and -5/2π 30/100, for the car stands at s (1 + e/300). So a path across 0 is longer by what a path
-    of its length on one side is. It counts from where the parts are placed, here 100 mm.
+    Of -30 mm: -30/300 and -5/2π 30/100, for the car stands at s (1 + e/300). A path across 0 is as much longer as one
+    of its length on one side. It counts from where the parts are placed, here 100 mm.
     """
     text = f"""
 scene: one slide
