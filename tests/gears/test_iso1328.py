@@ -1,5 +1,7 @@
 """Flank tolerances of ISO 1328-1:2013: values worked out by hand, rounding, ranges."""
 
+import itertools
+from decimal import ROUND_HALF_UP, Decimal, localcontext
 from typing import Any
 
 import pytest
@@ -32,6 +34,34 @@ def test_limits_of_a_class_are_those_worked_out_by_hand(
 def test_limits_are_rounded_to_1_um_above_10_to_half_above_5_and_to_a_tenth_below() -> None:
     pairs = {12.49: 12.0, 12.5: 13.0, 10.4: 10.0, 10.0: 10.0, 7.3: 7.5, 7.2: 7.0, 5.0: 5.0, 4.96: 5.0, 4.94: 4.9}
     assert [rounded(value) for value in pairs] == pytest.approx(list(pairs.values()), abs=1e-12)
+
+
+def test_limits_are_those_of_exact_decimals() -> None:
+    """Decimals of 40 digits, of which those within 1e-30 of a half are one: 5.25 um of class 3, module 10."""
+    modules = ("0.5", "0.9", "1", "1.25", "2", "3", "4.5", "6", "7", "10", "14", "22", "30", "50", "70")
+    halves = 0
+    faces = ("4", "16", "36", "100")
+    for tolerance_class, z, m, b in itertools.product(range(1, 12), (11, 20, 25, 57), modules, faces):
+        found = flank_tolerances(tolerance_class, z, float(m), float(b))
+        own = (found.single_pitch, found.cumulative_pitch, found.profile_slope, found.profile_form, found.helix_slope)
+        with localcontext(prec=40):
+            module, face = Decimal(m), Decimal(b)
+            d, q = z * module, Decimal(2) ** ((tolerance_class - 5) // 2)
+            q = q * Decimal(2).sqrt() if tolerance_class % 2 == 0 else q
+            exact = [
+                (d / 1000 + 2 * module / 5 + 5) * q,
+                (d / 500 + Decimal("0.55") * d.sqrt() + Decimal("0.7") * module + 12) * q,
+                (2 * module / 5 + d / 1000 + 4) * q,
+                (Decimal("0.55") * module + 5) * q,
+                (Decimal("0.05") * d.sqrt() + Decimal("0.35") * face.sqrt() + 4) * q,
+            ]
+            for value, limit in zip(exact, own, strict=True):
+                step = Decimal("1") if value > 10 else Decimal("0.5") if value >= 5 else Decimal("0.1")
+                steps = (value / step).quantize(Decimal("1e-30"))
+                halves += steps % 1 == Decimal("0.5")
+                rounded_up = steps.quantize(Decimal(1), rounding=ROUND_HALF_UP) * step
+                assert 1e3 * limit == pytest.approx(float(rounded_up), abs=1e-9), (tolerance_class, z, m, b, value)
+    assert halves > 200
 
 
 @pytest.mark.parametrize(

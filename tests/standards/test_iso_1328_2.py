@@ -1,5 +1,8 @@
 """Run-out and radial composite tolerances by grade, against rows of published tables and each other."""
 
+import itertools
+import math
+
 import pytest
 
 from tol3d.errors import InputError
@@ -25,6 +28,16 @@ def test_the_total_is_run_out_and_tooth_to_tooth_together() -> None:
         for d in DIAMETERS:
             total, run_out, single = (KINDS[name].of_grade_5(m, d) for name in ("F_i''", "F_r", "f_i''"))
             assert total == pytest.approx(run_out + single, abs=1e-12)
+
+
+def test_no_tolerance_lies_at_a_half() -> None:
+    """Geometric means of the ranges have irrational roots, so rounding of the formulae decides nothing: 1e-6 is far."""
+    for kind in KINDS.values():
+        for (m, n), (d, e) in itertools.product(itertools.pairwise(kind.modules), itertools.pairwise(kind.diameters)):
+            at_5 = kind.of_grade_5(math.sqrt(m * n), math.sqrt(d * e))
+            for grade in kind.grades:
+                value = at_5 * 2.0 ** ((grade - 5) / 2)
+                assert abs(value / (1.0 if value > 10.0 else 0.5) % 1 - 0.5) > 1e-6
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from tol3d.errors import GeometryError
+from tol3d.standards import half_up
 
 UM: Final = 1e-3  # mm
 CLASSES: Final = (1, 11)
@@ -88,4 +89,4 @@ def rounded(value: float) -> float:
     (13.0, 7.5, 5.0, 4.9)
     """
     grain = 1.0 if value > 10.0 else 0.5 if value >= 5.0 else 0.1
-    return math.floor(value / grain + 0.5) * grain
+    return half_up(value, grain)

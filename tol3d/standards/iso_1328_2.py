@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Final, NamedTuple
 
 from tol3d.errors import InputError
+from tol3d.standards import half_up
 
 DIAMETERS: Final = (5.0, 20.0, 50.0, 125.0, 280.0, 560.0, 1000.0, 1600.0, 2500.0, 4000.0, 6000.0, 8000.0, 10000.0)
 """Ends of the ranges of reference diameters [mm]; those of composite deviations end at 1000."""
@@ -65,5 +66,4 @@ def tolerance(deviation: str, grade: int, module: float, diameter: float) -> flo
         place = max(sum(value > end for end in ends), 1)
         means.append(math.sqrt(ends[place - 1] * ends[place]))
     value = kind.of_grade_5(*means) * math.sqrt(2.0) ** (grade - 5)
-    grain = 1.0 if value > 10.0 else 0.5
-    return math.floor(value / grain + 0.5) * grain
+    return half_up(value, 1.0 if value > 10.0 else 0.5)

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 from tol3d.errors import InputError
+from tol3d.standards import half_up
 
 RANGES: Final = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)
 """Upper ends of the main ranges [mm]: all standard tolerances and the deviations c, d to p."""
@@ -300,5 +301,4 @@ def _mean(size: float, ends: tuple[int, ...]) -> float:
 
 
 def _rounded(value: float, steps: tuple[tuple[float, int], ...] | list[tuple[float, int]]) -> float:
-    step = next(step for top, step in steps if value <= top)
-    return math.floor(value / step + 0.5) * step
+    return half_up(value, next(step for top, step in steps if value <= top))
