@@ -22,10 +22,12 @@ from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.fitted_law import fitted
 from tol3d.analyses.methods import Drawn, methods, modified_factor
 from tol3d.analyses.methods_section import MeasureMethods, Methods
+from tol3d.analyses.methods_table import NO_SLOPE, methods_report
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of, text_of_section
 from tol3d.cli import app
 from tol3d.distributions import Distribution, Normal, Uniform
+from tol3d.report.page import Line
 from tol3d.runs.run import open_run
 from tol3d.simulate import load, simulation_of
 from tol3d.study.simulation import Simulation
@@ -90,6 +92,8 @@ def test_the_motor_assembly_has_its_published_worst_case_rss_and_modified_rss() 
     per_inch = 1e3 * INCH
     low, high = worst_of(found)
     assert (high - low) / 2 / per_inch == pytest.approx(0.0955, abs=1e-9)
+    assert found.by_slopes is not None
+    assert found.rss is not None
     assert found.by_slopes / per_inch == pytest.approx(0.0955, abs=1e-9)
     assert found.rss / per_inch == pytest.approx(0.0381, abs=0.00005)
     assert found.modified_rss is not None
@@ -161,10 +165,14 @@ def test_a_worst_case_inside_the_tolerances_is_found() -> None:
 
 
 def test_a_measure_that_has_no_slope_at_its_mean_has_a_worst_case_all_the_same() -> None:
-    found = alone(formula(lambda x: np.abs(x[:, 0]) * np.abs(x[:, 1]), scalars([Uniform(-1.0, 1.0)] * 2)))
+    own = formula(lambda x: np.abs(x[:, 0]) * np.abs(x[:, 1]), scalars([Uniform(-1.0, 1.0)] * 2))
+    found = alone(own)
     assert worst_of(found) == pytest.approx((0.0, 1000.0), abs=1e-9)
-    assert found.by_slopes == 0.0
-    assert found.factor is None
+    assert (found.by_slopes, found.rss, found.factor, found.modified_rss) == (None, None, None, None)
+    page = methods_report(methods(own), own.contributors)
+    told = {row.label: [str(cell) for cell in row.cells[:2]] for row in page.tables[0].rows}
+    assert {name: told[name] for name in ("worst by slopes", "RSS")} == {"worst by slopes": ["–"] * 2, "RSS": ["–"] * 2}
+    assert NO_SLOPE in "".join(str(block) for block in page.blocks if isinstance(block, Line))
 
 
 def test_directions_are_all_at_their_worst_together() -> None:

@@ -1,5 +1,6 @@
-"""Limits of size that bound the form (Rule #1): zones that the form narrows, fits that see it, refusals."""
+"""Limits of size that bound the form: zones that the form narrows, fits that see it, standards, refusals."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from tol3d.errors import SceneError
 from tol3d.study.draws import drawn
 from tol3d.study.extremes import ends_together
 from tol3d.study.first_order import first_orders
+from tol3d.study.worst_cases import worst_cases
 from tol3d.system.draw import Scalar
 from tol3d.system.plain import PlainContributor
 
@@ -181,6 +183,57 @@ def test_least_and_largest_clearance_are_those_of_the_envelope(tmp_path: Path) -
     measure = next(own for own in made.system.measures if own.name == "slack")
     assert made.system.closed_form(measure) is None  # form and size go together
     assert first_orders(made.simulation, None, [measure])["slack"]["analytic"].ends == pytest.approx((10, 70), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "form", "least"),
+    [
+        ("envelope: true", "diameter: 40 um", 10.0),  # at its maximum material size it may not bend
+        ("standard: asme", "diameter: 40 um", -10.0),  # a straightness of the axis releases Rule #1
+        ("standard: asme\nenvelope: true", "diameter: 40 um", -10.0),
+        ("standard: asme", "width: 40 um", 10.0),  # lines of the surface do not
+        ("standard: asme\nenvelope: false", "width: 40 um", -10.0),  # all sizes with an I in a circle
+        ("standard: iso", "width: 40 um", -10.0),
+    ],
+)
+def test_the_standard_says_which_worst_build_lies_within_the_tolerances(
+    words: str, form: str, least: float, tmp_path: Path
+) -> None:
+    """Least clearance of a hole of 10.02 and a pin of 10 mm, upright: half of 20 um, or of 20 - 40 um."""
+    of_the_pin = "kind: straightness, of: shaft.pin, zone:"
+    text = fit(f"{words}\n").replace(f"{of_the_pin} {{diameter: 0.04 mm}}", f"{of_the_pin} {{{form}}}")
+    made = assembled(text, tmp_path)
+    measure = next(own for own in made.system.measures if own.name == "slack")
+    found = worst_cases(made.simulation, None, [measure])["slack"]["analytic"]
+    assert found is not None
+    assert found.low is not None
+    assert found.low.value == pytest.approx(least, abs=2e-3)  # it leans by half a nanometre
+    deviations = {own.name: 1e3 * found.low.deviations[columns] for own, columns in made.slices}
+    most = min(40.0, -deviations["pin size"][0]) if least > 0.0 else 40.0
+    assert 0.0 <= deviations["pin form"][0] <= most + 1e-9
+
+
+def test_a_size_keeps_its_envelope_whatever_the_standard(tmp_path: Path) -> None:
+    drawn_ = columns(assembled(fit("standard: asme\n", "envelope: true, "), tmp_path), COUNT)
+    assert (drawn_["pin size"] + drawn_["pin form"]).max() <= 1e-15
+
+
+@pytest.mark.parametrize(
+    ("form", "around", "warned"),
+    [
+        ("straightness, of: plate.hole, zone: {diameter: 30 um}", "{diameter: 10 um}", "30 um"),
+        ("straightness, of: plate.hole, zone: {width: 11 um}", "{diameter: 10 um}", "11 um"),
+        ("straightness, of: plate.hole, zone: {diameter: 10 um}", "{diameter: 10 um}", ""),
+        ("straightness, of: plate.hole, zone: {diameter: 30 um}", "{width: 10 um, along: [1, 0, 0]}", ""),
+        ("cylindricity, of: plate.hole, zone: {width: 30 um}", "{diameter: 10 um}", ""),  # it may be lobed
+    ],
+)
+def test_a_form_wider_than_its_orientation_is_warned_of(form: str, around: str, warned: str, tmp_path: Path) -> None:
+    text = fit().replace("kind: straightness, of: plate.hole, zone: {diameter: 0.04 mm}", f"kind: {form}")
+    text = text.replace(UPRIGHT, UPRIGHT.replace("{diameter: 1 nm}", around))
+    (found,) = assembled(text, tmp_path).simulation.implausible or ("",)
+    place = "tolerances.hole form.zone: expected at most the 10 um of 'upright'"
+    assert re.match(f"{place}, .* got {warned}; " if warned else "$", found)
 
 
 @pytest.mark.parametrize(

@@ -152,7 +152,11 @@ def test_every_field_uses_every_field_of_every_kind(tmp_path: Path) -> None:
     measured = f"tolerances: {{span: {span}, pins: {pins}, graded: {teeth[0]}, sized: {teeth[1]}}}"
     said |= set(
         fields_said(
-            load(tmp_path, f"{SMALL}default_law: {{kind: uniform}}\nenvelope: false\ngeneral: mK\n{measured}\n", GEARS)
+            load(
+                tmp_path,
+                f"{SMALL}default_law: {{kind: uniform}}\nstandard: iso\nenvelope: false\ngeneral: mK\n{measured}\n",
+                GEARS,
+            )
         )
     )
     heights = ", ".join(f"{name}: {{kind: tooth_thickness, of: {name[0]}, {TIGHT}}}" for name in ("a1", "b1"))

@@ -218,6 +218,7 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
     square = float(np.sum(halves**2)) + _together(response, space, slopes)
     rss, count = math.sqrt(max(square, 0.0)), int(np.count_nonzero(halves > NEGLIGIBLE * total))
     factor = modified_factor(total, rss, count)
+    sloping = total > 0.0 or not len(space.acting)
     return made(
         MeasureMethods,
         unit=cast(Unit, own.unit),
@@ -225,8 +226,8 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
         upper_limit=None if own.upper_limit is None else own.upper_limit * own.per_internal,
         mean=_known(value[0]),
         contributors=count,
-        by_slopes=total,
-        rss=rss,
+        by_slopes=total if sloping else None,
+        rss=rss if sloping else None,
         factor=factor,
         modified_rss=None if factor is None else factor * rss,
         worst=None if worst is None else _worst_found(response, space, worst),

@@ -66,8 +66,10 @@ class MeasureMethods(Section):
     upper_limit: Known
     mean: Known = Field(description="of the mean build")
     contributors: Count = Field(description="that act, features that are drawn each for itself one by one")
-    by_slopes: NotNegative = Field(description="sum of all half tolerances by slopes at the mean build")
-    rss: NotNegative = Field(description="root of the sum of their squares")
+    by_slopes: NotNegative | None = Field(
+        description="sum of all half tolerances by slopes at the mean build; null of a measure without slope there"
+    )
+    rss: NotNegative | None = Field(description="root of the sum of their squares; null likewise")
     factor: NotNegative | None = Field(description="C_f of modified RSS; null of one contributor")
     modified_rss: NotNegative | None
     worst: WorstFound | None = Field(description="null where it would take too many builds, or nothing acts")

@@ -11,6 +11,7 @@ from tol3d.system.contributor import Contributor
 MOST_SHOWN: Final = 12
 """Contributors of a worst build."""
 NOTHING: Final = "–"
+NO_SLOPE: Final = "no slope at the mean build, such as of an amount: nothing by slopes, no RSS"
 WORDS: Final = (
     "worst found: the worst of a search among builds within the tolerances, from several builds and positions; worse "
     "ones may exist. By slopes: sum of all half tolerances at the mean build. RSS: root of the sum of their squares. A "
@@ -89,7 +90,8 @@ def _told(own: MeasureMethods) -> Iterator[PageItem]:
     sample, law = own.simulation, own.simulation.law
     count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} that act"
     factor = f"C_f {own.factor:.3f}" if own.factor is not None else "no C_f of fewer than two"
-    yield note(f"mean build {measured_text(own.mean, own.unit)}; {count}, {factor}")
+    by_slopes = f"{count}, {factor}" if own.by_slopes is not None else NO_SLOPE
+    yield note(f"mean build {measured_text(own.mean, own.unit)}; {by_slopes}")
     shape = [
         f"{word} {NOTHING if value is None else f'{value:.3f}'}"
         for word, value in (("skewness", sample.skewness), ("excess kurtosis", sample.kurtosis))

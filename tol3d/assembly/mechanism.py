@@ -12,7 +12,11 @@ from tol3d.assembly.grammar.contact_checks import (
     unfit_engagements,
     unfit_pairs,
 )
-from tol3d.assembly.grammar.drawing_checks import contradicting_tolerances, implausible_sizes
+from tol3d.assembly.grammar.drawing_checks import (
+    contradicting_tolerances,
+    forms_beyond_orientations,
+    implausible_sizes,
+)
 from tol3d.assembly.grammar.general import general_sizes
 from tol3d.assembly.grammar.measure_checks import (
     missing_solids,
@@ -60,7 +64,7 @@ OTHER_KEYS: Final = (
     ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
     ("st", "statistical tolerances (ST) are not supported: name the law of the process"),
     ("non_uniform", "non-uniform profiles are not supported: `outward` makes one unequal"),
-    ("rule_1", "write envelope: true, of the scene or of a size"),
+    ("rule_1", "write standard: asme; of single sizes, or for the envelope requirement of ISO, envelope: true"),
 )
 
 ASSEMBLY: Final = Mechanism(
@@ -90,7 +94,7 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
         round_contacts,
     ),
-    warnings=(implausible_sizes,),
+    warnings=(implausible_sizes, forms_beyond_orientations),
     general=(general_sizes,),
     other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,

@@ -229,10 +229,15 @@ class Scene(Strict):
         default=None,
         description="general tolerances of ISO 2768-1 for dimensions without one of their own, such as m or mK",
     )
-    envelope: bool = Field(
-        default=False,
-        description="whether limits of size bound the form of what they are of (Rule #1 of ASME Y14.5), unless the "
-        "size says else; default: they do not (ISO 8015)",
+    standard: Literal["iso", "asme"] = Field(
+        default="iso",
+        description="iso: limits of size bound the form where `envelope` says so (ISO 8015, ISO 14405-1); asme: always "
+        "but of a feature whose axis or median plane has a straightness or flatness (Y14.5, Rule #1)",
+    )
+    envelope: bool | None = Field(
+        default=None,
+        description="whether limits of size bound the form of what they are of, unless the size says else; default: "
+        "they do not (iso), they do (asme)",
     )
     parts: Mapping[Name, PartSpec] = Field(min_length=1)
     tolerances: Mapping[Name, ToleranceEntry] = Field(default_factory=dict)

@@ -26,7 +26,7 @@ from tol3d.scene.schema import SECTIONS, Scene
 from tol3d.scene.text import scene_text
 from tol3d.units import BARE_NUMBER, NUMBER_UNIT, Quantity
 
-TOP: Final = ("scene", "description", DEFAULT_LAW, "general", "envelope", *SECTIONS, "study", "published")
+TOP: Final = ("scene", "description", DEFAULT_LAW, "general", "standard", "envelope", *SECTIONS, "study", "published")
 INDEX: Final = re.compile(r"(.*)\[(\d+)\]")
 
 

@@ -4,7 +4,7 @@ Contributors that read others lie where these leave them: so far towards their f
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from tol3d.distributions import DeviationLaw
 from tol3d.numerics.arrays import Array
-from tol3d.system.dependent import Dependent, in_draw_order, reads_of
+from tol3d.system.dependent import Dependent, Given, in_draw_order, reads_of
 from tol3d.system.draw import Draw, component_sigmas
 from tol3d.system.measure import Measure
-from tol3d.system.region import Region, region_of
+from tol3d.system.region import Filled, Region, region_of
 from tol3d.system.stated import component_slices
 from tol3d.system.system import System
 
@@ -112,7 +112,7 @@ class Rows:
     Args:
         deviations: (rows, components).
         towards: of contributors that read others, their direction in the remaining region (rows, components).
-        reach: fraction of that way, 0 in the middle and 1 at the end (rows, components).
+        reach: fraction of that way, 0 in the middle of what remains and 1 at the end (rows, components).
     """
 
     deviations: Array
@@ -206,19 +206,58 @@ def gradient_of(
 
 
 def settled(space: Space, rows: Rows) -> Rows:
-    """Contributors that read others where these leave them: so far towards their furthest point."""
+    """Contributors that read others where these leave them: so far from its middle towards their furthest point."""
     for own in space.bound:
         assert isinstance(own.draw, Dependent)
-        middle, known = space.mean[own.columns], dict[bytes, Array]()
+        known: dict[bytes, Remaining] = {}
         given = {name: rows.deviations[:, _columns(space, name)] for name in own.draw.reads}
         towards, reach = rows.towards[:, own.columns], rows.reach[:, own.columns]
         for k, slopes in enumerate(towards):
-            key = b"".join([slopes.tobytes(), *(each[k].tobytes() for each in given.values())])
+            key = b"".join(each[k].tobytes() for each in given.values())
             if key not in known:
                 one = {name: each[k][:, None] for name, each in given.items()}
-                known[key] = own.draw.furthest_given(one, slopes) if slopes.any() else middle
-            rows.deviations[k, own.columns] = middle + reach[k] * (known[key] - middle)
+                known[key] = Remaining(own.draw, one, space.mean[own.columns], space.sigmas[own.columns])
+            rows.deviations[k, own.columns] = known[key].point(slopes, reach[k])
     return rows
+
+
+@dataclass(frozen=True, eq=False)
+class Remaining:
+    """The region that what a contributor reads leaves it, in one build.
+
+    Args:
+        draw: its own.
+        given: what it reads (components, 1).
+        mean, sigmas: of its components over all that it may read.
+    """
+
+    draw: Dependent
+    given: Given
+    mean: Array
+    sigmas: Array
+    known: dict[bytes, Array] = field(default_factory=dict)
+
+    def point(self, slopes: Array, reach: Array) -> Array:
+        """The point (components,) so far from the middle to the furthest along slopes; the middle where these are 0.
+
+        The furthest at once of a draw that may not lie between two of its deviations.
+        """
+        if not (isinstance(self.draw, Filled) and self.draw.fills):
+            return self._furthest(slopes if slopes.any() else np.ones_like(slopes))
+        return self.middle + reach * (self._furthest(slopes) - self.middle) if slopes.any() else self.middle
+
+    @cached_property
+    def middle(self) -> Array:
+        """Half way between two opposite points; the mean over all that is read, where it lies there too."""
+        ones = np.ones_like(self.mean)
+        found = 0.5 * (self._furthest(ones) + self._furthest(-ones))
+        return np.where(np.abs(found - self.mean) <= NOISE * self.sigmas, self.mean, found)
+
+    def _furthest(self, slopes: Array) -> Array:
+        key = slopes.tobytes()
+        if key not in self.known:
+            self.known[key] = self.draw.furthest_given(self.given, slopes)
+        return self.known[key]
 
 
 def _columns(space: Space, name: str) -> slice:

@@ -35,7 +35,7 @@ class Filled(Protocol, metaclass=Remembered):
 
     @property
     def fills(self) -> bool:
-        """True if its region is convex; of a draw that does not say, only its ends and its mean are taken."""
+        """True if its region is convex; of others its ends alone are taken, and the mean of one that reads none."""
         ...
 
 

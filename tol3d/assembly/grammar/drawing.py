@@ -21,10 +21,12 @@ from tol3d.assembly.grammar.tolerances.location import (
     AxialRunOutSpec,
     CircularRunOutSpec,
     Composite,
+    FlatnessSpec,
     FormSpec,
     LocationSpec,
     OrientationSpec,
     ProfileSpec,
+    StraightnessSpec,
     TotalRunOutSpec,
     is_of_round_surface,
 )
@@ -245,12 +247,17 @@ class Drawing:
         return bool(self.of(feature, SizeSpec)) or any(surfaces)
 
     def is_enveloped(self, feature: str) -> bool:
-        """True if limits of size bound its form: its size says so, or else the scene."""
+        """True if limits of size bound its form: its size says so, or else the scene and its standard.
+
+        Rule #1 of ASME Y14.5 does not hold for a feature whose axis or median plane has a form tolerance of its own.
+        """
         if self.kind(feature).kind not in ENVELOPED:
             return False
         specs = [own.spec for own in self.of(feature, SizeSpec)]
         said = next((spec.envelope for spec in specs if isinstance(spec, SizeSpec)), False)
-        return self.scene.envelope if said is None else said
+        if said is None and self.scene.standard == "asme":
+            return self.scene.envelope is not False and not any(map(_is_of_middle, self.of(feature, FormSpec)))
+        return bool(self.scene.envelope if said is None else said)
 
     def datums(self, feature: str) -> tuple[DatumSpec, ...]:
         """Datums of its location tolerance; those of its orientation if it has none."""
@@ -300,6 +307,16 @@ class Drawing:
 def _split(feature: str) -> tuple[str, str]:
     part, _, own = feature.partition(".")
     return part, own
+
+
+def _is_of_middle(own: Stated) -> bool:
+    """True of the straightness of an axis and the flatness of a median plane; lines of a surface have a width alone."""
+    match own.spec:
+        case StraightnessSpec(zone=zone):
+            return zone.diameter is not None or zone.along is not None
+        case FlatnessSpec():
+            return True
+    return False
 
 
 def _group(spec: FeatureTolerance) -> type[FeatureTolerance]:

@@ -1,6 +1,7 @@
 """Checks across the tolerances of each feature."""
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import Final
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
@@ -14,6 +15,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     CircularRunOutSpec,
     CoaxialitySpec,
     Composite,
+    FlatnessSpec,
     FormSpec,
     LocationSpec,
     OrientationSpec,
@@ -23,7 +25,7 @@ from tol3d.assembly.grammar.tolerances.location import (
     is_of_round_surface,
 )
 from tol3d.assembly.grammar.tolerances.plus_minus import ENVELOPED, PlusMinusSpec, SizeSpec
-from tol3d.assembly.grammar.zone import ProcessLawSpec
+from tol3d.assembly.grammar.zone import ProcessLawSpec, are_alike
 from tol3d.assembly.model import RoundPlane
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files
@@ -323,6 +325,29 @@ def implausible_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
             rule = SIZE if isinstance(spec, SizeSpec) else HALF
             if sentence := rule.sentence(of, nominal, deviation):
                 yield ("tolerances", name, *field), sentence
+
+
+def forms_beyond_orientations(scene: Scene) -> Iterator[Problem]:
+    """Straightnesses and flatnesses wider than the orientation of the same feature, whose zone holds its form too.
+
+    A form beyond its location is refused. An orientation that grows with the size, as the form does, does not limit it.
+    """
+    drawing = Drawing(scene)
+    for feature in drawing.names:
+        forms = [own for own in drawing.of(feature, FormSpec) if isinstance(own.spec, StraightnessSpec | FlatnessSpec)]
+        for own, other in product(filter(lambda each: each.is_own, forms), drawing.of(feature, OrientationSpec)):
+            form, around = own.spec, other.spec
+            assert isinstance(form, FormSpec)
+            assert isinstance(around, OrientationSpec)
+            grows = around.modifier is not None and drawing.is_enveloped(feature)
+            apart = around.zone.along is not None and not are_alike(around.zone, form.zone)
+            if grows or apart or isinstance(around, AxialRunOutSpec) or around.zone.projected is not None:
+                continue
+            if form.zone.size <= around.zone.size:
+                continue
+            limit, got = (f"{zone.size * 1e3:g} um" for zone in (around.zone, form.zone))
+            words = f"expected at most the {limit} of {other.entry!r}, whose zone holds the form of {feature!r} too"
+            yield ("tolerances", own.entry, "zone"), f"{words}, got {got}; state the form that is left"
 
 
 def _deviations(spec: FeatureTolerance, files: Files) -> Iterator[tuple[KeyPath, float]]:

@@ -56,7 +56,7 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
     envelope: bool | None = Field(
         default=None,
         description="whether the limits bound the form too (ISO: E in a circle), or not (ASME: I in a circle); "
-        "default: as the scene's `envelope` says",
+        "default: as the scene's `standard` and `envelope` say",
     )
 
     @model_validator(mode="after")
