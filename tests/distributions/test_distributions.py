@@ -25,6 +25,7 @@ from tol3d.distributions import (
     TruncatedNormal,
     Uniform,
 )
+from tol3d.distributions.empirical import Draws
 from tol3d.errors import SceneError
 from tol3d.files import read_file
 
@@ -41,6 +42,8 @@ LAWS: dict[str, Distribution] = {
     "triangular_mode_at_upper": Triangular(-0.02, 0.05, 0.05),
     "rayleigh": Rayleigh(0.0045),
     "empirical": Empirical(SAMPLE),
+    "empirical_lengths": Empirical(np.abs(SAMPLE - 0.01)),
+    "empirical_as_measured": Empirical(SAMPLE, "as_measured"),
     "constant": Constant(0.003),
 }
 SCIPY_LAWS = {
@@ -53,7 +56,7 @@ SCIPY_LAWS = {
     "triangular_mode_at_upper": stats.triang(1.0, -0.02, 0.07),
     "rayleigh": stats.rayleigh(scale=0.0045),
 }
-VARYING = [name for name in LAWS if name != "constant"]
+VARYING = [name for name in LAWS if name not in ("constant", "empirical_as_measured")]
 U = np.concatenate([[1e-9, 1e-4], np.linspace(0.001, 0.999, 199), [1 - 1e-4, 1 - 1e-9]])
 
 
@@ -164,29 +167,70 @@ def test_rayleigh_length_in_a_random_direction_is_two_independent_normals() -> N
     assert abs(np.mean((x**2 - 4) * (y**2 - 4))) < 4 * 32.0 / math.sqrt(n)
 
 
-@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=30).map(sorted))
-def test_empirical_moments_are_exact_for_the_interpolated_law(values: list[float]) -> None:
+@given(st.lists(st.floats(-1e3, 1e3).map(lambda x: round(x, 6)), min_size=3, max_size=30).map(sorted))
+def test_a_smoothed_sample_keeps_its_mean_and_its_variance_with_n_less_1(values: list[float]) -> None:
     law = Empirical(np.array(values))
-    # Gauss-Legendre of order 2 integrates Q and Q^2 exactly on each linear segment
-    nodes, segments = (np.array([-1, 1]) / math.sqrt(3) + 1) / 2, np.arange(len(values) - 1)
-    q = law.ppf(((segments[:, None] + nodes) / (len(values) - 1)).ravel())
-    span = values[-1] - values[0]
-    finest = len(values) * math.ulp(0.0)  # each sum of numbers near 0 is rounded to the finest there are
-    assert law.mean == pytest.approx(np.mean(q), abs=1e-12 * max(abs(values[0]), abs(values[-1]), span) + finest)
-    assert law.variance == pytest.approx(np.mean((q - law.mean) ** 2), rel=1e-9, abs=1e-12 * span * 1e3)
+    size = max(abs(values[0]), abs(values[-1]))
+    assert law.mean == pytest.approx(np.mean(values), abs=1e-12 * size)
+    assert law.variance == pytest.approx(np.var(values, ddof=1), rel=1e-9, abs=1e-24 * size**2)
+    low, high = law.extremes
+    assert low >= 0.0 or values[0] < 0.0
+    assert high <= 0.0 or values[-1] > 0.0
 
 
-@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=30), st.floats(0.001, 0.999))
-def test_empirical_ppf_equals_numpy_quantile(values: list[float], u: float) -> None:
-    law = Empirical(np.sort(values))
-    assert law.ppf(np.array([u]))[0] == pytest.approx(np.quantile(values, u), rel=1e-11, abs=1e-9)
+@given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=30).map(sorted))
+def test_values_as_measured_are_drawn_as_often_as_the_others(values: list[float]) -> None:
+    law = Empirical(np.array(values), "as_measured")
+    u = (np.arange(7 * len(values)) + 0.5) / (7 * len(values))
+    np.testing.assert_array_equal(law.ppf(u), np.repeat(values, 7))
+    size = max(abs(values[0]), abs(values[-1]))
+    assert law.mean == pytest.approx(np.mean(values), abs=1e-12 * size)
+    assert law.variance == pytest.approx(np.var(values), rel=1e-9, abs=1e-24 * size**2)
+
+
+@pytest.mark.parametrize("shift", [-7.0, -2.0, 0.0, 2.5, 9.0])
+def test_a_smoothed_sample_is_a_mean_of_uniform_laws(shift: float) -> None:
+    """Equal widths sqrt(3/n) s where values have both signs or lie far from 0; of one sign, none reaches over 0.
+
+    Widths of the latter by bisection of the sum of their squares, 3 s^2.
+    """
+    values = np.sort(np.random.default_rng(4).exponential(2.0, 23) + shift)
+    near = np.abs(values) if values[0] * values[-1] > 0.0 else np.full(23, np.inf)
+    low, high = 0.0, 100.0
+    for _ in range(100):
+        middle = (low + high) / 2
+        small = np.sum(np.minimum(near, middle) ** 2) < 3 * np.var(values, ddof=1)
+        low, high = (middle, high) if small else (low, middle)
+    widths = np.minimum(near, low)
+    x = np.linspace(values[0] - 3, values[-1] + 3, 1001)
+    expected = np.mean([stats.uniform(v - w, 2 * w).cdf(x) for v, w in zip(values, widths, strict=True)], axis=0)
+    np.testing.assert_allclose(Empirical(values).cdf(x), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("n", [6, 10, 25, 100])
+def test_drawn_variance_of_small_samples_is_the_process_own(n: int) -> None:
+    """Averaged over 2000 samples sigma^2 smoothed, sigma^2 (n - 1)/n as measured, within 4 standard errors."""
+    random, sigma = np.random.default_rng(n), 3.0
+    samples = np.sort(random.normal(-20.0, sigma, (2000, n)))
+    u = (np.arange(10 * n) + 0.5) / (10 * n)
+    laws: tuple[tuple[Draws, float], ...] = (("smoothed", sigma**2), ("as_measured", sigma**2 * (n - 1) / n))
+    for draws, expected in laws:
+        drawn = np.array([np.var(Empirical(sample, draws).ppf(u)) for sample in samples])
+        # the midpoints of 10 n quantiles see the variance to 1e-3 of itself
+        assert abs(drawn.mean() - expected) < 4 * drawn.std() / math.sqrt(2000) + 1e-3 * expected
+
+
+def test_zeros_among_lengths_stay_zeros_and_the_others_stay_lengths() -> None:
+    law = Empirical(np.array([0.0, 0.0, 0.0, 1.0, 2.0]))
+    np.testing.assert_array_equal(law.ppf(np.array([1e-9, 0.3, 0.6 - 1e-12])), 0.0)
+    # s^2 = 0.8, so the squares of both widths have the sum 2.4: 1 and sqrt(1.4)
+    assert law.extremes == pytest.approx((0.0, 2 + math.sqrt(1.4)), abs=1e-12)
+    assert law.variance == pytest.approx(0.8, rel=1e-12)
 
 
 def test_empirical_cdf_jumps_where_values_repeat() -> None:
-    law = Empirical(np.array([1.0, 2.0, 2.0, 2.0, 5.0]))
-    np.testing.assert_array_equal(
-        law.cdf(np.array([0.5, 1.0, 1.5, 2.0, 3.5, 5.0, 6.0])), [0, 0, 0.125, 0.75, 0.875, 1, 1]
-    )
+    law = Empirical(np.array([1.0, 2.0, 2.0, 2.0, 5.0]), "as_measured")
+    np.testing.assert_array_equal(law.cdf(np.array([0.5, 1.0, 1.5, 2.0, 3.5, 5.0, 6.0])), [0, 0.2, 0.2, 0.8, 0.8, 1, 1])
 
 
 def test_empirical_law_tends_to_the_law_of_its_sample() -> None:
@@ -232,8 +276,14 @@ def test_low_and_high_are_the_stated_limits_or_percentiles(fields: dict[str, obj
 
 
 def test_empirical_low_and_high_are_its_percentiles() -> None:
-    assert LAWS["empirical"].low == pytest.approx(np.quantile(SAMPLE, 0.00135), rel=1e-12)
-    assert LAWS["empirical"].high == pytest.approx(np.quantile(SAMPLE, 0.99865), rel=1e-12)
+    """Beyond the outermost value alone: a share p of n values lies w (1 - 2 p n) outside it, w = sqrt(3/n) s."""
+    width = math.sqrt(3 / 41) * np.std(SAMPLE, ddof=1)
+    apart = np.diff(SAMPLE)[[0, -1]]
+    assert all(apart > 2 * 0.00135 * 41 * width)  # the next values have no part in it
+    outside = width * (1 - 2 * 0.00135 * 41)
+    assert LAWS["empirical"].low == pytest.approx(SAMPLE[0] - outside, rel=1e-12)
+    assert LAWS["empirical"].high == pytest.approx(SAMPLE[-1] + outside, rel=1e-12)
+    assert (LAWS["empirical_as_measured"].low, LAWS["empirical_as_measured"].high) == (SAMPLE[0], SAMPLE[-1])
 
 
 @pytest.mark.parametrize(
@@ -252,7 +302,8 @@ def test_a_circular_law_ends_at_its_limit_or_where_99_73_percent_stay(fields: di
 
 
 def test_the_radius_of_measured_lengths_is_their_quantile() -> None:
-    assert LAWS["empirical"].radius == pytest.approx(np.quantile(SAMPLE, 0.9973), rel=1e-9)
+    law = Empirical(np.sort(np.random.default_rng(2).rayleigh(3.0, 500)))
+    assert law.radius == pytest.approx(law.ppf(np.array([0.9973]))[0], rel=1e-9)
 
 
 def test_normal_by_limits_has_them_at_the_stated_sigmas() -> None:

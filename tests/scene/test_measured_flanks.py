@@ -170,4 +170,4 @@ def test_a_measured_sample_is_a_law_of_slopes_too(tmp_path: Path) -> None:
     law = "law: {kind: stated, distribution: {kind: empirical, file: sample.csv, column: s, unit: um}}"
     entry = f"kind: profile_slope, of: pinion, flanks: each, each: tooth, {law}"
     (own,) = model(tmp_path, entry, []).contributors
-    assert own.draw.sigma == pytest.approx(1e-3 / 3**0.5)  # uniform from 1 to 3 um: 2/sqrt(12)
+    assert own.draw.sigma == pytest.approx(1e-3)  # s of 1, 2, 3 um

@@ -143,6 +143,43 @@ def test_check_shows_it(tmp_path: Path) -> None:
     assert "power" in printed(check_report(simulation_of(load_scene(written(tmp_path, PAIR)))), 160)
 
 
+@pytest.mark.parametrize(
+    ("draws", "sigma", "tails"),
+    [
+        ("", 9.690, "smoothed to sigma 9.69 µm; tails end at -19 µm and 27 µm, by the sample alone"),
+        (
+            ", draws: as_measured",
+            9.494,
+            "each drawn as often: sigma 9.49 µm (n); no tails beyond -15.64 µm and 23.64 µm",
+        ),
+    ],
+)
+def test_a_measured_sample_states_its_number_and_its_tails(
+    draws: str, sigma: float, tails: str, tmp_path: Path
+) -> None:
+    """25 normal scores of sigma 10 um about 4 um, spread by sqrt(3/25) s: s is 9.690, with n 9.494 um."""
+    scores = 4 + 10 * stats.norm.ppf((np.arange(25) + 0.625) / 25.25)
+    assert np.std(scores, ddof=1) == pytest.approx(9.690, abs=5e-3)
+    (tmp_path / "sample.csv").write_text("v\n" + "\n".join(f"{own:.6f}" for own in scores), "utf-8")
+    law = f"{{kind: empirical, file: sample.csv, column: v, unit: um{draws}}}"
+    scene = f"""\
+scene: sample
+parts: {{p: {{kind: solid, features: {{
+  A: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [60 mm, 60 mm]}},
+  h: {{kind: point, at: [10 mm, 0 mm, 5 mm], normal: [0, 0, 1]}}}}}}}}
+tolerances: {{x: {{kind: plus_minus, of: p.h, along: [1, 0, 0], distribution: {law}}}}}
+moves: {{a: {{kind: fix, part: p}}}}
+measures: {{g: {{kind: gap, from: p.A, to: p.h, along: [1, 0, 0]}}}}
+study: {{trials: 4000, seed: 3}}
+"""
+    path = written(tmp_path, scene)
+    words = " ".join(printed(check_report(simulation_of(load_scene(path)))).split())
+    assert f"x: 25 measured values, s 9.69 µm (n − 1), {tails}" in words
+    found = run_scene(path, out=tmp_path / "run").summary["measures"]["g"]["geometric"]
+    assert abs(1e3 * found["mean"] - 1e4 - 4) < 4 * sigma / math.sqrt(4000)
+    assert 1e3 * found["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * 4000))
+
+
 def test_what_its_package_requires_is_in_the_fingerprint_of_scenes_that_state_it(tmp_path: Path) -> None:
     assert "jsonschema" in simulation_of(load_scene(written(tmp_path, PAIR))).requires
     plain = PAIR.replace("{kind: power, lower: -40 um, upper: -10 um, k: 3.0}", "{kind: constant, value: 0 um}")

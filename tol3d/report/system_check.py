@@ -1,9 +1,12 @@
 """Tables of any scene: contributors, measures, and the effect of each contributor on each measure."""
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from tol3d.distributions import DeviationLaw, Distribution
+import numpy as np
+
+from tol3d.distributions import DeviationLaw, Distribution, Empirical
+from tol3d.distributions.derived import Derived
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limits_text, measured_text, unsigned_zero, value_text
 from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
@@ -136,6 +139,27 @@ def law_words(contributor: Contributor) -> str:
     return f"{law}, random direction" if draw.uniforms > 1 else f"{law}, fixed direction"
 
 
+def sample_notes(laws: Iterable[tuple[str, DeviationLaw, float, str]]) -> list[Line]:
+    """A note on each law of measured values: their number, s, and the law's tails.
+
+    Args:
+        laws: name of the contributor, its law, mm, rad or K of its unit, and the unit.
+    """
+    notes = []
+    for name, stated, per, unit in laws:
+        law = stated.measured if isinstance(stated, Derived) else stated
+        if isinstance(law, Empirical):
+            spread, own, sign = float(np.std(law.values, ddof=1)) / per, law.sigma / per, UNIT_SIGNS[unit]
+            first, last = (f"{unsigned_zero(f'{end / per:.4g}')} {sign}" for end in law.extremes)
+            words = f"{len(law.values)} measured values, s {spread:.3g} {sign} (n − 1)"
+            if law.draws == "smoothed":
+                words += f", smoothed to sigma {own:.3g} {sign}; tails end at {first} and {last}, by the sample alone"
+            else:
+                words += f", each drawn as often: sigma {own:.3g} {sign} (n); no tails beyond {first} and {last}"
+            notes.append(note(f"{name}: {words}"))
+    return notes
+
+
 def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
     rows = []
     for own in contributors:
@@ -146,6 +170,7 @@ def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
     words = [Heading("kind", words=True), Heading("law", words=True)]
     table = Table("", [*words, *map(Heading, ("mean", "sigma", "unit", "least"))], rows)
     notes = [note(MIDDLE)] if any(isinstance(own.draw, MiddleDraw) for own in contributors) else []
+    notes += sample_notes((own.name, own.draw.distribution, own.per_unit, own.unit) for own in contributors)
     return [*titled("contributors", table), *notes] if rows else []
 
 

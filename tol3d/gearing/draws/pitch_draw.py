@@ -17,7 +17,7 @@ from typing import ClassVar, Final, Self
 import numpy as np
 
 from tol3d.distributions import Distribution, standard_normal
-from tol3d.distributions.empirical import Empirical
+from tol3d.distributions.empirical import Piecewise
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.draw import Values
@@ -212,7 +212,8 @@ class PitchDraw:
     @cached_property
     def distribution(self) -> Distribution:
         """The law of one component, by the same net."""
-        return Empirical(np.quantile(self._net.ravel(), np.linspace(0.0, 1.0, QUANTILES)))
+        shares = np.linspace(0.0, 1.0, QUANTILES)
+        return Piecewise(shares, np.quantile(self._net.ravel(), shares))
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: the pattern along the steepest direction, and its opposite, as full as limits get."""
@@ -265,7 +266,7 @@ class GivenDraw:
     @property
     def distribution(self) -> Distribution:
         """Distribution of the given values, as a sample."""
-        return Empirical(np.sort(np.array([*self.given, *self.given])))
+        return Piecewise(np.linspace(0.0, 1.0, 2 * len(self.given)), np.sort(np.array([*self.given, *self.given])))
 
     def deviations(self, *uniforms: Array) -> tuple[Array, ...]:
         """See Draw: of every trial."""

@@ -27,7 +27,7 @@ from tol3d.gears import (
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, limits_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title, titled
-from tol3d.report.system_check import law_name, system_blocks
+from tol3d.report.system_check import law_name, sample_notes, system_blocks
 from tol3d.report.worst_found import worst_blocks
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw
@@ -323,7 +323,8 @@ def contributors_table(model: Model) -> list[PageItem]:
         cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit])
         rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
     table = Table("", [Heading("law", words=True), *map(Heading, ("low", "high", "sigma", "unit"))], rows)
-    return [*titled("contributors", table), *coefficients_tables(model)]
+    notes = sample_notes((own.name, own.distribution, own.per_unit, own.unit) for own in model.contributors)
+    return [*titled("contributors", table), *notes, *coefficients_tables(model)]
 
 
 def distribution_words(contributor: Contributor) -> str:
