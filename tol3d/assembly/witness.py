@@ -6,18 +6,18 @@ step.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
 from tol3d.assembly.clearances.distances import SolidDistances
 from tol3d.assembly.clearances.pair import SolidPair
-from tol3d.assembly.model import Assembly, Feature, Measured
+from tol3d.assembly.model import Assembly, Axis, Feature, Measured, Plane, RoundPlane
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.actual_feature import actual_size
-from tol3d.assembly.placing.surfaces import PARALLEL, kind_of
+from tol3d.assembly.placing.surfaces import kind_of, over
 from tol3d.assembly.witnessed import reads
 from tol3d.numerics.arrays import Array
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
@@ -30,7 +30,7 @@ CORE: Final = 0.5
 POINT: Final = 1e-3
 """mm; radius of the ball that stands for a point."""
 FAR: Final = 1e4
-"""mm; length of a cylinder and size of a plane, which have no ends."""
+"""mm; length of a cylinder beside a ball and size of a plane, which have no ends."""
 ALLOWANCE: Final = 1e-5
 """mm; where FCL's iterations between bodies without triangles end, with room."""
 FEW: Final = 1e-9
@@ -82,33 +82,44 @@ class FclWitness:
         """Gaps between two surfaces (trials,) [mm]; NaN where their parts are not placed."""
         start, end = (self.assembly.features[name] for name in measured.features)
         frames = placing.features_placed(self.assembly, deviations, measured.after)
-        bodies = _bodies(self.assembly, start, end)
-        taken = np.zeros(len(deviations))
-        for own, body in zip((start, end), bodies, strict=True):
-            taken = taken + _radius(own, deviations) - body.radius
+        bodies = _bodies(start, end)
+        radii = [_radius(own, deviations) for own in (start, end)]
+        if bodies[0].on_plane or bodies[1].on_plane:
+            own, other = (np.asarray(frames[feature.name])[:, :3, 2] for feature in (start, end))
+            sines = np.linalg.norm(np.cross(own, other), axis=1)  # a leaning cylinder stands on its rim
+            radii = [radius * sines for radius in radii]
+        taken = np.zeros(len(deviations)) + sum(radii) - sum(body.radius for body in bodies)
         nearest, found = NearestPoints(), np.full(len(deviations), np.nan)
         for k, (first, second) in enumerate(zip(frames[start.name], frames[end.name], strict=True)):
             if np.isfinite(first).all() and np.isfinite(second).all():
-                put(bodies[0].surface, first[:3, :3], first[:3, 3])
-                put(bodies[1].surface, second[:3, :3], second[:3, 3])
-                distance = nearest.of(bodies[0].surface, bodies[1].surface).distance
+                surfaces = [
+                    body.surface if body.on_plane is None else _over(body.on_plane, placed, plane)
+                    for body, placed, plane in zip(bodies, (first, second), (second, first), strict=True)
+                ]
+                put(surfaces[0], first[:3, :3], first[:3, 3])
+                put(surfaces[1], second[:3, :3], second[:3, 3])
+                distance = nearest.of(*surfaces).distance
                 found[k] = distance - taken[k] if distance > 0.0 else np.nan
         return found
 
 
-def _bodies(assembly: Assembly, start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
+def _bodies(start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
     """Bodies that represent two surfaces.
 
-    A cylinder beside a plane, and the second of two parallel ones, is represented by its middle. Two that cross are
-    represented by their axes: between cylinders FCL converges to some micrometres only.
+    Cylinders beside each other and over planes are represented by their axes, from end to end or over the plane:
+    between cylinders FCL converges to some micrometres only.
     """
     match kind_of(start.shape), kind_of(end.shape):
+        case "plane", "line":
+            return _plane(), replace(_line(end), on_plane=(end, start))
+        case "line", "plane":
+            return replace(_line(start), on_plane=(start, end)), _plane()
         case "plane", _:
             return _plane(), _ball(end)
         case _, "plane":
             return _ball(start), _plane()
-        case "line", "line" if not _are_parallel(assembly, start, end):
-            return _line(), _line()
+        case "line", "line":
+            return _line(start), _line(end)
         case "line", _:
             return _cylinder(start), _ball(end)
         case _, "line":
@@ -116,9 +127,14 @@ def _bodies(assembly: Assembly, start: Feature, end: Feature) -> tuple["_Body", 
     return _ball(start), _ball(end)
 
 
-def _are_parallel(assembly: Assembly, start: Feature, end: Feature) -> bool:
-    one, other = (assembly.part[own.part].pose[:3, :3] @ own.frame[:3, 2] for own in (start, end))
-    return bool(np.linalg.norm(np.cross(one, other)) < PARALLEL)
+def _over(pair: tuple[Feature, Feature], line: Array, plane: Array) -> Surface:
+    """What of the axis of a cylinder is over a plane, from the frames of both (4, 4)."""
+    shape, flat = (own.shape for own in pair)
+    assert isinstance(shape, Axis)
+    assert isinstance(flat, Plane | RoundPlane)
+    places = (own @ plane[:3, :2] for own in (line[:3, 3] - plane[:3, 3], shape.length / 2 * line[:3, 2]))
+    low, high = over(flat, *(own[:, None] for own in places))
+    return _segment(shape.length / 2 * float(low[0]), shape.length / 2 * float(high[0]))
 
 
 def _radius(feature: Feature, deviations: Array) -> Array:
@@ -128,10 +144,15 @@ def _radius(feature: Feature, deviations: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """Body that represents a surface, and its radius [mm]."""
+    """Body that represents a surface, and its radius [mm].
+
+    Args:
+        on_plane: of a cylinder over a plane, both features; its axis is cut to the plane's extent in each trial.
+    """
 
     surface: Surface
     radius: float
+    on_plane: tuple[Feature, Feature] | None = None
 
 
 def _plane() -> _Body:
@@ -139,9 +160,16 @@ def _plane() -> _Body:
     return _Body(mesh_surface(corners, np.array([[0, 1, 2], [0, 2, 3]])), 0.0)
 
 
-def _line() -> _Body:
-    points = FAR * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.1]])
-    return _Body(mesh_surface(points, np.array([[0, 1, 2]])), 0.0)
+def _line(feature: Feature) -> _Body:
+    """Its axis."""
+    assert isinstance(feature.shape, Axis)
+    return _Body(_segment(-feature.shape.length / 2, feature.shape.length / 2), 0.0)
+
+
+def _segment(low: float, high: float) -> Surface:
+    """Part of a z axis, as a triangle without an area."""
+    points = np.array([[0.0, 0.0, low], [0.0, 0.0, high], [0.0, 0.0, low + 0.6 * (high - low)]])
+    return mesh_surface(points, np.array([[0, 1, 2]]))
 
 
 def _core(feature: Feature) -> float:

@@ -1,13 +1,14 @@
-"""Surfaces of two features, at least one of them round: common normal, distance, and distance at contact."""
+"""Surfaces of two features, at least one of them round: common normal, least gap, and distance at contact."""
 
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.model import Plane, Point, RoundPlane, Shape
 from tol3d.assembly.model.moves import is_inner
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
-from tol3d.assembly.placing.poses import cross, dot, unit
+from tol3d.assembly.placing.poses import NO_LENGTH, cross, dot, unit
 from tol3d.numerics.arrays import Array
 
 Kind = Literal["point", "line", "plane"]
@@ -37,9 +38,113 @@ def is_inside(start: Shape, end: Shape) -> bool:
 
 
 def gap_of(start: ActualFeature, end: ActualFeature, columns: Array, *, parallel: bool) -> Array:
-    """Gap between two surfaces (n,) [mm]; negative if they overlap. See `common_normal`."""
-    gap = common_normal(start, end, parallel=parallel)[1] - touching_distance(start, end, columns)
+    """Least gap between two surfaces over the length that both have (n,) [mm]; negative if they overlap.
+
+    A cylinder in a bore is judged from the axes, over the stretch of its axis whose feet lie on the bore's: the bore's
+    radius less the farthest foot and its own. Cylinders outside each other are as far apart as their axes are between
+    their ends, less the radii. Over a plane a cylinder is judged by its lines, where its axis is over the plane, or all
+    along where it is over none of it. Parallel cylinders that have no length in common are judged at the ends that face
+    each other. Spheres and points have one place; planes and cylinders beside them have no ends, see `common_normal`.
+
+    Args:
+        start, end: the features in one frame.
+        columns: the deviations, (width, n) [mm].
+        parallel: whether two axes nominally lie along each other.
+    """
+    touching = touching_distance(start, end, columns)
+    match kind_of(start.feature.shape), kind_of(end.feature.shape):
+        case "plane", "line":
+            return _above(start, end, touching)
+        case "line", "plane":
+            return _above(end, start, touching)
+        case "line", "line" if is_inner(start.feature.shape):
+            return np.asarray(touching - np.maximum(*_aside(start, end)[1:]))
+        case "line", "line" if is_inner(end.feature.shape):
+            return np.asarray(touching - np.maximum(*_aside(end, start)[1:]))
+        case "line", "line" if parallel:
+            has_common, *facing = _aside(start, end)
+            return np.where(has_common, _between(start, end), np.minimum(*facing)) - touching
+        case "line", "line":
+            return _between(start, end) - touching
+    gap = common_normal(start, end, parallel=parallel)[1] - touching
     return -gap if is_inside(start.feature.shape, end.feature.shape) else gap
+
+
+def _stretch(middle: Array, half: Array, reach: Array | float) -> tuple[Array, Array]:
+    """From where to where an axis, -1 to 1 from end to end, has its feet on another feature (n,), (n,).
+
+    The first is the larger one where none of them has.
+
+    Args:
+        middle: along the other feature, from its middle to the foot of the axis' middle (n,) [mm].
+        half: from there to the foot of the axis' end at 1 (n,) [mm].
+        reach: of the other feature to both sides [mm].
+    """
+    steps = np.where(half == 0.0, NO_LENGTH, half)
+    bounds = (-reach - middle) / steps, (reach - middle) / steps
+    return np.maximum(-1.0, np.minimum(*bounds)), np.minimum(1.0, np.maximum(*bounds))
+
+
+def over(plane: Plane | RoundPlane, middle: Array, half: Array) -> tuple[Array, Array]:
+    """From where to where an axis, -1 to 1 from end to end, is over a plane (n,), (n,); all of it if it is nowhere.
+
+    Args:
+        plane: the plane.
+        middle: the axis' middle along x and y of the plane (2, n) [mm].
+        half: from there to its end at 1 (2, n) [mm].
+    """
+    if isinstance(plane, RoundPlane):
+        square = half[0] * half[0] + half[1] * half[1]
+        nearest = -(middle[0] * half[0] + middle[1] * half[1]) / np.where(square == 0.0, NO_LENGTH, square)
+        x, y = middle + nearest * half
+        beside = plane.radius**2 - x * x - y * y
+        low, high = _stretch(-nearest, np.ones(1), np.sqrt(np.maximum(beside / np.maximum(square, NO_LENGTH), 0.0)))
+        low = np.where(beside < 0.0, np.inf, low)
+    else:
+        (low, high), other = (_stretch(*own) for own in zip(middle, half, plane.reach, strict=True))
+        low, high = np.maximum(low, other[0]), np.minimum(high, other[1])
+    return np.where(low <= high, low, -1.0), np.where(low <= high, high, 1.0)
+
+
+def _above(plane: ActualFeature, line: ActualFeature, radius: Array) -> Array:
+    """Least height of a cylinder's lines over a plane (n,) [mm], where its axis is over the plane."""
+    normal, apart, (half,) = plane.direction, line.origin - plane.origin, line.spans
+    shape, turn, rise = plane.feature.shape, plane.pose.turn, dot(half, normal)
+    assert isinstance(shape, Plane | RoundPlane)
+    places = (np.stack(np.broadcast_arrays(*(dot(own, turn[:, k]) for k in (0, 1)))) for own in (apart, half))
+    low, high = over(shape, *places)
+    sine = np.sqrt(np.maximum(1.0 - rise * rise / dot(half, half), 0.0))
+    return np.asarray(dot(apart, normal) + np.minimum(low * rise, high * rise) - radius * sine)
+
+
+def _aside(own: ActualFeature, other: ActualFeature) -> tuple[NDArray[np.bool_], Array, Array]:
+    """Distances of an axis from another one at both ends of the length that they have in common (n,), (n,) [mm].
+
+    The first is True where they have some (n,); else the distances are those at the ends that face each other.
+    """
+    direction, apart, (half,) = own.direction, other.origin - own.origin, other.spans
+    middle, step = dot(apart, direction), dot(half, direction)
+    low, high = _stretch(middle, step, np.sqrt(dot(own.spans[0], own.spans[0])))
+    aside, change = apart - middle * direction, half - step * direction
+    start, end = (np.sqrt(dot(place, place)) for place in (aside + low * change, aside + high * change))
+    return low <= high, start, end
+
+
+def _between(start: ActualFeature, end: ActualFeature) -> Array:
+    """Least distance of two axes between their ends (n,) [mm].
+
+    Source: C. Ericson, Real-Time Collision Detection, 5.1.9.
+    """
+    apart, (own,), (other,) = end.origin - start.origin, start.spans, end.spans
+    own_square, other_square, both = dot(own, own), dot(other, other), dot(own, other)
+    own_share, other_share = dot(own, apart), dot(other, apart)
+    spread = own_square * other_square - both * both
+    free = np.where(spread > 0.0, own_share * other_square - other_share * both, 0.0)
+    own_at = np.clip(free / np.where(spread > 0.0, spread, 1.0), -1.0, 1.0)
+    other_at = np.clip((both * own_at - other_share) / other_square, -1.0, 1.0)
+    own_at = np.clip((both * other_at + own_share) / own_square, -1.0, 1.0)
+    nearest = apart + other_at * other - own_at * own
+    return np.asarray(np.sqrt(dot(nearest, nearest)))
 
 
 def common_normal(start: ActualFeature, end: ActualFeature, *, parallel: bool) -> tuple[Array, Array]:

@@ -1,12 +1,13 @@
 """Surfaces of two features, at least one of them round: the nominal common normal, and changes along it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, Plane, Point, RoundPlane, Shape
 from tol3d.assembly.model.moves import is_inner, unfit_surfaces
-from tol3d.assembly.torsors.columns import without_rounding
+from tol3d.assembly.torsors.columns import ROUNDING, without_rounding
 from tol3d.assembly.torsors.terms import Ends
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, perpendicular, shift_at, turn_about
 from tol3d.assembly.torsors.world import World
@@ -17,6 +18,8 @@ PARALLEL = 1e-6
 """Sine of the angle of axes that count as nominally parallel."""
 NEAR = 1.0
 """Nominally nearer than this [mm]: a distance is the length of its first-order vector, else linear."""
+STEEP = 0.1
+"""A cylinder whose axis makes less of a sine with a plane's normal stands on it: the sine is the length of a vector."""
 NO_DISTANCE = 1e-9
 """Centres or axes nearer than that [mm] have no direction from one to the other."""
 
@@ -117,24 +120,106 @@ class Surfaces:
         return nominal, signs[0] * varying[0] / 2 + signs[1] * varying[1] / 2
 
     def gap(self) -> Array:
-        """Gap between the surfaces (columns,) [mm]; between nearly coincident middles, by the length of their vector.
+        """Least gap between the surfaces over the length that both have (columns,) [mm]; see `_nearest`.
 
         Raises:
-            InputError: as `checked`.
+            InputError: as `refuse_unfit`.
         """
         columns, (nominal, varying) = self.world.columns, self.touching()
-        sides = self._sides
-        feet = self._feet
-        apart = feet[1] - feet[0]
-        moved = shift_at(feet[1]) @ self.world.placed(self.end) - shift_at(feet[0]) @ self.world.placed(self.start)
-        if len(sides) and np.linalg.norm(apart) < NEAR:
-            self.refuse_unfit()
-            distance = columns.largest((sides @ moved + columns.constants(sides @ apart))[None])
+        self.refuse_unfit()
+        touching = varying + columns.constants(np.array([nominal]))[0]
+        if set(map(_word, self.shapes)) == {"plane", "axis"}:
+            return np.asarray(self._extreme(self._over_plane(), is_largest=False) - self._lines(touching))
+        distance = self._extreme(self._nearest(), is_largest=self.is_inside)
+        return np.asarray(touching - distance if self.is_inside else distance - touching)
+
+    def _nearest(self) -> list[tuple[Array, Array]]:
+        """Points of both features, nominally, of which some pair is the nearest one, or of a pin the farthest one.
+
+        Of parallel axes: at both ends of the length that both have, or of the stretch between the ends that face each
+        other. Of axes that cross: where they are nearest; if that is near their ends or beyond, each end with the point
+        of the other axis nearest to it too.
+        """
+        (own, other), feet = self.shapes, self._feet
+        if not (isinstance(own, Axis) and isinstance(other, Axis)):
+            return [feet]
+        start, end = self.world.origin(self.start), self.world.origin(self.end)
+        a, b = self.world.axis(self.start), self.world.axis(self.end)
+        halves = own.length / 2, other.length / 2
+        if self.parallel:
+            ends = _common(float(a @ (end - start)), halves)
+            return [(start + along * a, end + a * (along - a @ (end - start))) for along in ends]
+        free = [abs(a @ (feet[0] - start)) - halves[0], abs(b @ (feet[1] - end)) - halves[1]]
+        if max(free) * np.linalg.norm(np.cross(a, b)) < -NEAR:
+            return [feet]
+        found = [feet] if max(free) <= 0.0 else []
+        for sign in (-1.0, 1.0):
+            here, there = start + sign * halves[0] * a, end + sign * halves[1] * b
+            found.append((here, end + b * np.clip(b @ (here - end), -halves[1], halves[1])))
+            found.append((start + a * np.clip(a @ (there - start), -halves[0], halves[0]), there))
+        lengths = [float(np.linalg.norm(second - first)) for first, second in found]
+        return [pair for pair, length in zip(found, lengths, strict=True) if length < min(lengths) + NEAR]
+
+    def _over_plane(self) -> list[tuple[Array, Array]]:
+        """Points of an axis and a plane, in their order, at both ends of what of the axis is over the plane, if any."""
+        is_first = isinstance(self.shapes[0], Axis)
+        line, plane = (self.start, self.end) if is_first else (self.end, self.start)
+        shape, flat = (self.world.assembly.features[name].shape for name in (line, plane))
+        assert isinstance(shape, Axis)
+        axis, normal, sides = self.world.axis(line), self.world.axis(plane), self.world.frame(plane)[:3, :2]
+        middle, slope = (self.world.origin(line) - self.world.origin(plane)) @ sides, axis @ sides
+        ends = -shape.length / 2, shape.length / 2
+        if isinstance(flat, RoundPlane):
+            limits = [_within(float(middle @ slope), float(slope @ slope), float(middle @ middle) - flat.radius**2)]
         else:
-            normal, length, _ = self.checked()
-            distance = normal @ moved + columns.constants(np.array([length]))[0]
-        sign = -1.0 if self.is_inside else 1.0
-        return np.asarray(sign * (distance - varying - columns.constants(np.array([nominal]))[0]))
+            assert isinstance(flat, Plane)
+            rows = zip(middle.tolist(), slope.tolist(), flat.reach, strict=True)
+            limits = [_within(own * by, by * by, own * own - reach * reach) for own, by, reach in rows]
+        low, high = max(ends[0], *(own[0] for own in limits)), min(ends[1], *(own[1] for own in limits))
+        tops = [self.world.origin(line) + end * axis for end in ((low, high) if low <= high else ends)]
+        feet = [top - normal * (normal @ (top - self.world.origin(plane))) for top in tops]
+        return list(zip(tops, feet, strict=True) if is_first else zip(feet, tops, strict=True))
+
+    def _lines(self, radius: Array) -> Array:
+        """From a cylinder's axis to its lowest line over a plane (columns,) [mm]: the radius times a sine."""
+        columns = self.world.columns
+        normal, axis = (self.world.axis(name) for name in (self.start, self.end))
+        turned = (self.world.placed(self.end) - self.world.placed(self.start))[3:]
+        across, cosine = np.cross(normal, axis), float(normal @ axis)
+        sine, size = float(np.linalg.norm(across)), float(radius[columns.constant])
+        if sine < STEEP:  # it stands on the plane
+            sides = perpendicular(normal)
+            return size * columns.largest((sides @ turned + columns.constants(sides @ across))[None])
+        return radius * sine + size * cosine / sine * (across @ turned)
+
+    def _extreme(self, places: Sequence[tuple[Array, Array]], *, is_largest: bool) -> Array:
+        """The least or largest of distances between points of both features (columns,) [mm], as they are displaced.
+
+        Args:
+            places: pairs of points nominally in the world.
+            is_largest: which.
+        """
+        columns, rows, vectors = self.world.columns, list[Array](), list[Array]()
+        sides = self._sides
+        if len(sides) == 1 and len(places) > 1:  # of axes that cross, their ends too
+            sides = np.eye(3)
+        for first, second in places:
+            apart = second - first
+            moved = shift_at(second) @ self.world.placed(self.end) - shift_at(first) @ self.world.placed(self.start)
+            length = float(np.linalg.norm(apart))
+            if len(sides) and length < NEAR:
+                vectors.append(sides @ moved + columns.constants(sides @ apart))
+                continue
+            normal = apart / length if len(sides) else self._normal
+            rows.append(normal @ moved + columns.constants(np.array([normal @ apart]))[0])
+        vectors = _distinct(vectors)
+        if is_largest and not rows:
+            return columns.largest(np.array(vectors))
+        rows = _distinct([*rows, *(columns.largest(own[None]) for own in vectors)])
+        if len(rows) == 1:
+            return rows[0]
+        made: Array = columns.made_by(Ends(np.array(rows), is_largest=is_largest))[0]
+        return made
 
     @property
     def _sides(self) -> Array:
@@ -185,6 +270,38 @@ class Surfaces:
                 turned = normal @ cross_matrix(axis) @ torsor[3:]
                 return normal, varying + np.outer(axis, turned - axis @ varying)
         return normal, varying
+
+
+def _common(middle: float, halves: tuple[float, float]) -> tuple[float, float]:
+    """Ends of the length that two features have in common, from the middle of the first along it [mm].
+
+    Or of the stretch between the ends that face each other.
+
+    Args:
+        middle: of the second one.
+        halves: of their lengths.
+    """
+    low, high = sorted((max(-halves[0], middle - halves[1]), min(halves[0], middle + halves[1])))
+    return low, high
+
+
+def _within(linear: float, square: float, constant: float) -> tuple[float, float]:
+    """Where square t^2 + 2 linear t + constant <= 0, t without a limit where it is so for all, (inf, -inf) for none."""
+    spread = linear * linear - square * constant
+    if square < NO_DISTANCE**2:
+        return (-np.inf, np.inf) if constant <= 0.0 else (np.inf, -np.inf)
+    if spread < 0.0:
+        return np.inf, -np.inf
+    return (-linear - spread**0.5) / square, (-linear + spread**0.5) / square
+
+
+def _distinct(rows: Sequence[Array]) -> list[Array]:
+    """Rows that differ by more than rounding."""
+    kept: list[Array] = []
+    for row in map(without_rounding, rows):
+        if not any(np.abs(row - own).max() < ROUNDING for own in kept):
+            kept.append(row)
+    return kept
 
 
 def _word(shape: Shape) -> str:

@@ -16,7 +16,10 @@ from tol3d.units import Dimension
 
 
 class SurfaceGapSpec(BetweenSpec):
-    """Gap between two surfaces, one of them round, at the sizes of the trial; negative if they overlap."""
+    """Least gap between two surfaces, one of them round, over the length that both have, at the sizes of the trial.
+
+    Negative if they overlap.
+    """
 
     reads: ClassVar[Reading] = Reading("surface_gap", f"{PLACING}:surface_gap", f"{TORSORS}:surface_gap")
 
@@ -29,7 +32,8 @@ class SurfaceGapSpec(BetweenSpec):
 class ContactAngleSpec(BetweenSpec):
     """Angle of a contact normal, from the middle or plane of `from` towards that of `to`, 0 to 180°.
 
-    It is measured to the normal of a plane or an axis, `against`, or to a direction, `along`; give one of the two.
+    Of parallel cylinders that is at the middle of `to`. It is measured to the normal of a plane or an axis, `against`,
+    or to a direction, `along`; give one of the two.
     """
 
     dimension: ClassVar[Dimension] = "angle"

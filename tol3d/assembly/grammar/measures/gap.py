@@ -34,19 +34,19 @@ class DirectedSpec(OverPlaySpec):
 
 
 class GapSpec(DirectedSpec):
-    """Signed distance of `to` from `from` along a direction."""
+    """Signed distance of the middle of `to` from that of `from` along a direction."""
 
     kind: Literal["gap"]
 
 
 class FlushSpec(DirectedSpec):
-    """The same number: positive where `to` stands proud of `from`."""
+    """The same number: positive where the middle of `to` stands proud of that of `from`."""
 
     kind: Literal["flush"]
 
 
 class PointPlaneSpec(OverPlaySpec):
-    """Height of a point above the plane `to`, along the plane's actual normal."""
+    """Height of a point, or the middle of a feature, above the plane `to`, along the plane's actual normal."""
 
     reads: ClassVar[Reading] = Reading(
         "point_plane", f"{PLACING}:point_plane", f"{TORSORS}:point_plane", is_linear=True
