@@ -21,6 +21,8 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
+from tol3d.current_folder import leave_settings_unread
+
 if TYPE_CHECKING:
     from tol3d.errors import InputError as InputError
     from tol3d.errors import RunError as RunError
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from tol3d.runs.run import open_run
     from tol3d.scene import Scene
     from tol3d.simulate import Overrides, run_scene
+
+leave_settings_unread()
 
 _HOMES = {
     "InputError": "tol3d.errors",

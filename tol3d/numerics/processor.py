@@ -7,8 +7,10 @@ are of one kind of processor.
 
 import os
 import platform
+import sys
 from collections.abc import Mapping
 from functools import cache
+from typing import Any
 
 import llvmlite.binding
 import numpy as np
@@ -18,6 +20,7 @@ ARITHMETIC_OF_X86 = ("sse", "ssse", "avx", "fma", "xop", "f16c", "amx")
 On other architectures all features count."""
 X86 = ("x86", "amd64", "i386", "i686")
 
+NUMBAS_SETTINGS = "numba.core.config"
 COMPILER_SETTINGS = ("NUMBA_OPT", "NUMBA_LOOP_VECTORIZE", "NUMBA_SLP_VECTORIZE", "NUMBA_ENABLE_AVX")
 """Variables by which numba makes other code for the same processor."""
 
@@ -25,9 +28,12 @@ COMPILER_SETTINGS = ("NUMBA_OPT", "NUMBA_LOOP_VECTORIZE", "NUMBA_SLP_VECTORIZE",
 @cache
 def processor() -> Mapping[str, str]:
     """Properties that decide the last bits here, by name; lists have commas."""
-    settings = [f"{name}={os.environ[name]}" for name in COMPILER_SETTINGS if os.environ.get(name)]
+    config = _compilers()
+    told = os.environ if config is None else config._env_reloader.old_environ  # of a file too, where numba has read one
+    settings = [f"{name}={told[name]}" for name in COMPILER_SETTINGS if told.get(name)]
+    named = os.environ.get("NUMBA_CPU_NAME") if config is None else config.CPU_NAME
     return {
-        "processor": ",".join([os.environ.get("NUMBA_CPU_NAME") or llvmlite.binding.get_host_cpu_name(), *settings]),
+        "processor": ",".join([named or llvmlite.binding.get_host_cpu_name(), *settings]),
         "instructions": ",".join(_instructions()),
         "numpy instructions": ",".join(_numpy_instructions()),
         "libm": " ".join(filter(None, platform.libc_ver())) or f"{platform.system()} {platform.release()}",
@@ -59,8 +65,23 @@ def _instructions() -> list[str]:
     return [name for name in used if name.startswith(ARITHMETIC_OF_X86)]
 
 
+def _compilers() -> Any:
+    """Settings that the compiler goes by, brought up to date as it does before it compiles; None if not loaded yet.
+
+    It then goes by the environment alone, unless it was imported before tol3d: see tol3d.current_folder.
+    """
+    config: Any = sys.modules.get(NUMBAS_SETTINGS)
+    if config is not None:
+        config.reload_config()
+    return config
+
+
 def _features() -> str:
     """Features that the processor has (+) and has not (-), in the compiler's form."""
+    config = _compilers()
+    if config is not None:
+        stated = config.CPU_FEATURES
+        return str(llvmlite.binding.get_host_cpu_features().flatten()) if stated is None else str(stated)
     generic = os.environ.get("NUMBA_CPU_NAME", "").lower() == "generic"
     stated = os.environ.get("NUMBA_CPU_FEATURES", "" if generic else None)
     return str(llvmlite.binding.get_host_cpu_features().flatten()) if stated is None else stated
