@@ -176,8 +176,8 @@ study: {{trials: 4000, seed: 3}}
     words = " ".join(printed(check_report(simulation_of(load_scene(path)))).split())
     assert f"x: 25 measured values, s 9.69 µm (n − 1), {tails}" in words
     found = run_scene(path, out=tmp_path / "run").summary["measures"]["g"]["geometric"]
-    assert abs(1e3 * found["mean"] - 1e4 - 4) < 4 * sigma / math.sqrt(4000)
-    assert 1e3 * found["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * 4000))
+    assert abs(found["mean"] - 1e4 - 4) < 4 * sigma / math.sqrt(4000)
+    assert found["sigma"] == pytest.approx(sigma, rel=4 / math.sqrt(2 * 4000))
 
 
 def test_what_its_package_requires_is_in_the_fingerprint_of_scenes_that_state_it(tmp_path: Path) -> None:
