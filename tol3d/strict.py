@@ -9,7 +9,7 @@ from tol3d.units import Quantity
 
 
 class Strict(BaseModel):
-    """A frozen pydantic model that names the nearest known key when it meets an unknown one."""
+    """A frozen pydantic model that names its keys where it meets an unknown one, or a value without keys."""
 
     model_config = ConfigDict(
         extra="forbid",
@@ -22,11 +22,13 @@ class Strict(BaseModel):
     @model_validator(mode="before")
     @classmethod
     def _refuse_unknown_keys(cls, data: Any) -> Any:
-        if isinstance(data, dict):
-            known = [str(field.validation_alias or name) for name, field in cls.model_fields.items()]
-            for key in data:
-                if key not in known:
-                    raise PydanticCustomError("unknown_key", "unknown key", {"key": str(key), "known": known})
+        known = [str(field.validation_alias or name) for name, field in cls.model_fields.items()]
+        if not isinstance(data, dict | BaseModel):
+            needed = [name for name, field in zip(known, cls.model_fields.values(), strict=True) if field.is_required()]
+            raise PydanticCustomError("keys_expected", "no keys", {"keys": needed or known[:3]})
+        for key in data if isinstance(data, dict) else ():
+            if key not in known:
+                raise PydanticCustomError("unknown_key", "unknown key", {"key": str(key), "known": known})
         return data
 
 

@@ -2,7 +2,7 @@
 
 The grammar is strict on purpose: one number, a blank or none, one unit of the table below. Inside tol3d
 lengths are mm, angles rad, temperature differences K, expansion coefficients 1/K, forces N, masses kg. What is counted
-has its own word for a unit: `3 pins`, `1 pin`.
+has its own word for a unit: `3 pins`, `1 pin`. Angles are read as they are printed too: `20°`, `1′25.2″`.
 """
 
 import math
@@ -74,8 +74,17 @@ LARGEST: Final[dict[Dimension, float]] = {
 LEAST_POSITIVE: Final = 1e-9  # mm or rad; a thousandth of an atom, a nanometre at a kilometre
 ABSOLUTE_ZERO: Final = -293.15  # K from 20 degC, from which temperatures count
 MICRO_SIGNS: Final = str.maketrans({"µ": "u", "μ": "u"})
+PRINTED_SIGNS: Final = MICRO_SIGNS | str.maketrans({"−": "-"})  # also the minus of pictures
 NUMBER: Final = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"  # YAML 1.2 core schema, 10.3.2
 NUMBER_UNIT: Final = re.compile(rf"\s*({NUMBER})(?:\s+|(?=[^\s\d.,+-]))(\S+)\s*")
+_WHOLE, _UNSIGNED = r"[0-9]+", r"[0-9]+(?:\.[0-9]*)?"
+SEXAGESIMAL: Final = (  # the last number may have decimals; ' and " as plain keyboards and terminals have them
+    rf"[+-]?(?:{_UNSIGNED}\s*°|(?:{_WHOLE}\s*°\s*)?{_UNSIGNED}\s*[′']"
+    rf"|(?:{_WHOLE}\s*°\s*)?(?:{_WHOLE}\s*[′']\s*)?{_UNSIGNED}\s*(?:″|\"|''))"
+)
+ANGLE: Final = re.compile(rf"\s*{SEXAGESIMAL}\s*")
+ANGLE_PARTS: Final = re.compile(rf"({_UNSIGNED})\s*(°|″|\"|''|[′'])")
+ANGLE_UNITS: Final = {"°": "deg", "′": "arcmin", "'": "arcmin", "″": "arcsec", '"': "arcsec", "''": "arcsec"}
 DECIMAL_COMMA: Final = re.compile(r"\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(\S*)\s*")
 COMMA_SEPARATES: Final = "write decimals with a point: a comma starts a new entry"
 BARE_NUMBER: Final = re.compile(rf"\s*{NUMBER}\s*")
@@ -148,14 +157,20 @@ class Quantity:
 @lru_cache(maxsize=KEPT)
 def _parsed(text: str) -> Quantity:
     """See Quantity.parse; scenes say the same few lengths over and over."""
-    match = NUMBER_UNIT.fullmatch(text) if len(text) <= LONGEST_TEXT else None
+    plain = text.translate(PRINTED_SIGNS)
+    match = NUMBER_UNIT.fullmatch(plain) if len(text) <= LONGEST_TEXT else None
+    if len(text) <= LONGEST_TEXT and ANGLE.fullmatch(plain):
+        parts = [Quantity(float(number), ANGLE_UNITS[sign]) for number, sign in ANGLE_PARTS.findall(plain)]
+        smallest = FACTORS["angle"][parts[-1].unit]
+        total = sum(own.number * round(FACTORS["angle"][own.unit] / smallest) for own in parts)
+        return Quantity(-total if plain.lstrip().startswith("-") else total, parts[-1].unit)
     if match is None:
         comma = DECIMAL_COMMA.fullmatch(text[:LONGEST_TEXT])
         advice = f", with a decimal comma: write {comma[1]}.{comma[2]} {comma[3]}".rstrip() if comma else ""
         raise ValueError(f"got {shown(text)}{advice}")
-    number, unit = float(match[1]), match[2].translate(MICRO_SIGNS)
+    number, unit = float(match[1]), match[2]
     if unit not in UNITS:
-        raise ValueError(f"got {shown(text)}: unknown unit {unit!r}")
+        raise ValueError(f"got {shown(text)}: unknown unit {text.strip().removeprefix(match[1]).strip()!r}")
     quantity = Quantity(number, unit)
     if not math.isfinite(number) or not math.isfinite(quantity.internal):
         raise ValueError(f"got {shown(text)}: too large a number")
@@ -290,11 +305,12 @@ def _value_refused(expected: str, quantity: Quantity) -> PydanticCustomError:
 
 def _json_schema(*dimensions: Dimension) -> dict[str, Any]:
     named = [re.sub("^u", "[uµμ]", re.escape(unit)) for dimension in dimensions for unit in FACTORS[dimension]]
+    angles = [rf"^\s*{SEXAGESIMAL}\s*$"] if "angle" in dimensions else []
     units, without_digit = "|".join(named), "|".join(own for own in named if not own[0].isdigit())
     return {
         "type": "string",
         "title": " or ".join(dimensions),
-        "pattern": rf"^\s*{NUMBER}(\s+({units})|({without_digit}))\s*$",
+        "pattern": "|".join([rf"^\s*{NUMBER}(\s+({units})|({without_digit}))\s*$", *angles]).replace("[+-]", "[+−-]"),
         "examples": [EXAMPLES[dimension] for dimension in dimensions],
     }
 

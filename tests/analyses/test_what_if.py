@@ -137,6 +137,9 @@ def test_the_first_order_is_there_at_once(spur: Response) -> None:
         ("+/- 0.01 mm", (-0.01, 0.01)),
         ("-5 um..+10 um", (-0.005, 0.01)),
         (" -5um .. 0.01mm ", (-0.005, 0.01)),
+        ("+0.02/0 mm", (0.0, 0.02)),
+        ("+20 um/-5 um", (-0.005, 0.02)),
+        ("[-30 um, 0.01 mm]", (-0.03, 0.01)),
     ],
 )
 def test_values_are_read_as_scenes_say_them(spur: Response, text: str, limits: tuple[float, float]) -> None:
@@ -161,6 +164,8 @@ def test_one_number_is_a_width_or_a_scale(spur: Response) -> None:
         ("centre distance=10", "a bare number without its unit"),
         ("centre distance=±10 arcmin", "expected a length with its unit"),
         ("centre distance=5 um", "centre distance: expected limits of a law that is normal, such as ±10 um"),
+        ("centre distance=172.5 mm +0.02/0", "expected limits alone, got .* with a nominal size; leave 172.5 mm out"),
+        ("centre distance=+0.02/0", "expected a unit in it"),
         ("centre distance=3um..-3um", "expected a lower limit below the upper one"),
         ("wheel eccentricity=±3um", "wheel eccentricity: expected a law with limits, got Rayleigh; state one number"),
         ("bearing clearance=±3um", "bearing clearance: expected at least 0 um, for less is not physical"),

@@ -394,6 +394,22 @@ def test_by_default_an_interrupted_run_is_found_again(tmp_path: Path, monkeypatc
     assert default_folder(SPUR_PAIR, MORE, Execution(resume=True)) == Path("runs") / "spur_pair"  # says what is there
 
 
+def test_a_run_that_is_being_written_is_not_called_interrupted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    partial = tmp_path / "runs" / "spur_pair.partial"
+    said = ""
+
+    def ask(done: int) -> None:
+        nonlocal said
+        place = folder_for(load("spur_pair"), simulation_of(load("spur_pair"), OTHER_SEED), Execution(), Path("runs"))
+        assert partial.exists()
+        assert place[0] == Path("runs") / "spur_pair-2"
+        said = place[1]
+
+    run_scene(SPUR_PAIR, overrides=FEW, out=default_folder(SPUR_PAIR), watch=Watch(progress=ask))
+    assert said.startswith("runs/spur_pair is being written by another run (study: ")
+
+
 def test_the_command_says_where_it_went_and_why(
     tol3d: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

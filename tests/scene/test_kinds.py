@@ -125,10 +125,7 @@ def test_a_scene_of_kinds_from_outside_is_pickled_with_its_class(tmp_path: Path,
 CHANGES = {
     "unknown kind": (
         ("kind: spring,", "kind: sprig,"),
-        "3: parts.spring.kind: expected one of arm, bearing, bevel_gear, housing, internal_gear, shaft, spur_gear, "
-        "solid, step, flexible_carrier, planet, planet_carrier, crank_carrier, crankshaft, cycloid_disc, pin_ring, "
-        "spring, got 'sprig'; "
-        'did you mean "spring"?',
+        "3: parts.spring.kind: expected a kind of part, got 'sprig'; did you mean \"spring\"?",
     ),
     "unknown key": (
         ("length: 12 mm", "lenght: 12 mm"),

@@ -60,6 +60,12 @@ def test_each_unit_belongs_to_one_dimension() -> None:
         ("-1e-3mm", -0.001),
         ("20deg", math.pi / 9),
         ("1e-5/K", 1e-5),
+        ("−3 mm", -3.0),  # U+2212, as pictures have it
+        ("20°", math.pi / 9),
+        ("1′25.2″", 85.2 * math.pi / 648000),
+        ("-7°01′09.1″", -(7 * 3600 + 69.1) * math.pi / 648000),
+        ("7° 1' 9.1\"", (7 * 3600 + 69.1) * math.pi / 648000),
+        ("2°30'", math.pi / 72),
         ("4.134 in", 105.0036),  # an inch is 25.4 mm since 1959
     ],
 )
@@ -102,7 +108,11 @@ def test_writing_is_the_inverse_of_reading(quantity: Quantity) -> None:
     assert Quantity.parse(str(quantity)) == quantity
 
 
-@given(st.text(max_size=20) | quantities.map(str) | st.from_regex(r"[-+.0-9e]{1,6} ?[muµdegK/1]{1,4}", fullmatch=True))
+@given(
+    st.text(max_size=20)
+    | quantities.map(str)
+    | st.from_regex(r"[-+.0-9e]{1,6} ?[muµdegK/1]{1,4}|[-−+]?([0-9.]{1,3} ?[°′'\"″]{1,2} ?){1,3}", fullmatch=True)
+)
 def test_the_json_schema_pattern_accepts_exactly_what_is_read(text: str) -> None:
     pattern = TypeAdapter(Quantity).json_schema()["pattern"]
     try:

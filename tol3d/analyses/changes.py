@@ -7,6 +7,7 @@ from typing import Final
 
 from tol3d.analyses.response import Response
 from tol3d.distributions import Distribution
+from tol3d.distributions.drawn import limits_written
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
 from tol3d.system.contributor import Contributor
@@ -14,9 +15,8 @@ from tol3d.system.draw import Draw
 from tol3d.system.other_laws import Zoned
 from tol3d.units import UNITS, Quantity, expectation
 
-PLUS_MINUS: Final = re.compile(r"\s*(?:±|\+-|\+/-)\s*(?P<size>[^±+-].*)")
 RANGE: Final = re.compile(r"(?P<low>.*[^.\s])\s*\.\.\s*(?P<high>[^.].*|\.\d.*)")
-EXAMPLES: Final = "±10 um, -5 um..+10 um, or 5 um of a zone or a scale"
+EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, or 5 um of a zone or a scale"
 
 
 @dataclass(frozen=True)
@@ -37,16 +37,20 @@ class Change:
 
 
 def change_of(response: Response, text: str) -> Change:
-    """Change by `--set NAME=VALUE`: `±10um`, `+-10 um`, `-5 um..+10 um`, `5 um`.
+    """Change by `--set NAME=VALUE`: `±10um`, `+0.02/0 mm`, `-5 um..+10 um`, `5 um`.
 
     Raises:
         InputError: no such contributor, or no such value of it.
     """
     name, value = _split(response, "--set", text)
     contributor = next(own for own in response.contributors if own.name == name)
-    if found := PLUS_MINUS.fullmatch(value):
-        size = _length(contributor, text, found["size"])
-        return Change(name, limits=(-size, size))
+    try:
+        pair = limits_written(value)
+    except InputError as error:
+        raise InputError(f"--set {text!r}: {error}") from None
+    if pair is not None:
+        low, high = (_internal(contributor, text, own) for own in pair)
+        return Change(name, limits=(low, high))
     if found := RANGE.fullmatch(value):
         return Change(
             name, limits=(_length(contributor, text, found["low"]), _length(contributor, text, found["high"]))
@@ -130,6 +134,11 @@ def _length(contributor: Contributor, text: str, value: str) -> float:
     except ValueError as error:
         wanted = EXAMPLES if dimension is None else f"{expectation(dimension)}: {EXAMPLES}"
         raise InputError(f"--set {text!r}: expected {wanted}; {error}") from None
+    return _internal(contributor, text, quantity)
+
+
+def _internal(contributor: Contributor, text: str, quantity: Quantity) -> float:
+    dimension = UNITS.get(contributor.unit)
     if quantity.dimension != dimension:
         wanted = f"in {contributor.unit}" if dimension is None else expectation(dimension)
         raise InputError(f"--set {text!r}: expected {wanted}, got {quantity}")

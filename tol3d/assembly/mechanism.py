@@ -53,6 +53,15 @@ OTHER_KINDS: Final = (
     ("taper", "write cone, with its `diameters` at both ends"),
     ("countersink", "write cone, with its `diameters` at both ends and hole: true"),
     ("line", "write axis"),
+    *((word, "write three_two_one") for word in ("3-2-1", "3_2_1", "321", "three_two_one_locators", "locators")),
+    *((word, "write six_plane") for word in ("six_point", "6_point", "6-point", "6_plane")),
+    *((word, "write fix") for word in ("fixed", "ground", "grounded")),
+    *((word, "write mate, with such a relation in its relations") for word in ("coincident", "flush_mate", "tangent")),
+    *(
+        (word, "write pattern, with a bolt in its pairs, or weld")
+        for word in ("bolt", "bolts", "screw_joint", "fasten")
+    ),
+    *((word, "write pin_and_hole") for word in ("pin_hole", "pin_in_hole", "peg_in_hole", "insert")),
     ("statistical", "statistical tolerances (ST) are not supported: name the law of the process"),
 )
 OTHER_KEYS: Final = (

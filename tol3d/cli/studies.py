@@ -88,7 +88,7 @@ def run(
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report
     from tol3d.report.verdict import ACCEPTED_PPM, all_ok
-    from tol3d.runs.occupant import numbered
+    from tol3d.runs.occupant import BEING_WRITTEN, numbered
     from tol3d.simulate import Overrides, folder_for, load, run_simulation, simulation_of, workers_for
     from tol3d.system.faults import faults_of
 
@@ -109,7 +109,8 @@ def run(
     if out is None and not force:
         folder, taken = folder_for(loaded, simulation, execution, Path("runs"))
     if taken:
-        err_console.print(f"{taken}: this run goes to {folder} (--force would replace the other)")
+        way = "" if BEING_WRITTEN in taken else " (--force would replace the other)"
+        err_console.print(f"{taken}: this run goes to {folder}{way}")
     loading = seconds()
     with _watched(simulation, folder, draw) as watch:
         finished = run_simulation(loaded, simulation, folder, execution=execution, force=force, watch=watch)

@@ -11,6 +11,7 @@ from contextvars import ContextVar
 from typing import Annotated, Any, Final, Self
 
 from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
 from tol3d.distributions.base import DistributionSpec
 from tol3d.distributions.default_law import LimitLaw, StatedLimitLaw, UniformBetween
@@ -153,6 +154,26 @@ def drawn_law(value: Any) -> DistributionSpec:
         words = f'the key "{DEFAULT_LAW}" of the scene, such as "{DEFAULT_LAW}: {{kind: normal, sigmas: 3}}", by which '
         raise refused("", f"{words}limits without a law are read", "none; or write the law out, with kind:")
     return law.between(lower, upper).as_drawn(_as_text(value))
+
+
+def limits_written(text: str) -> tuple[Quantity, Quantity] | None:
+    """Lower and upper limit of text such as `±10 um`, `+0.02/0 mm` or `[-30 um, -19 um]`; None of any other text.
+
+    Raises:
+        InputError: a nominal size stands before them, a unit lacks, or they are alike.
+    """
+    if text.startswith("[") and text.endswith("]"):
+        value: Any = [own.strip() for own in text[1:-1].split(",")]
+    elif SYMMETRIC.fullmatch(text.translate(MINUS)) or TWO.fullmatch(text.translate(MINUS)):
+        value = text
+    else:
+        return None
+    if (nominal := nominal_size(value)) is not None:
+        raise InputError(f"expected limits alone, got {text!r} with a nominal size; leave {nominal} out")
+    try:
+        return _written(value, "")
+    except PydanticCustomError as error:
+        raise InputError(str(error)) from None
 
 
 def nominal_size(written: Any) -> Quantity | None:

@@ -48,8 +48,8 @@ def number(value: float) -> str:
 
 
 def length(value: float) -> str:
-    """A length [mm]."""
-    return f"{number(value)} mm"
+    """A length [mm], to a tenth of a nanometre: files have rounding of inches and of the CAD program behind that."""
+    return f"{number(round(value, 7))} mm"
 
 
 def place(at: Sequence[float] | Array) -> str:

@@ -37,6 +37,7 @@ RUN_OUT: Final = "write tooth_run_out: the run-out of teeth; run_out is of a sha
 COMPOSITE: Final = "write tooth_run_out of F_i'' - f_i'', and beside it tooth_to_tooth with limits: {size: f_i''}"
 DISTANCE: Final = "write centre_distance, with {fit: js7, of: …} for DIN 3964"
 SPAN, PINS = (f"write tooth_thickness with measured: {{{word}: …}}" for word in ("span", "pins"))
+BACKLASH: Final = "write normal_backlash, circumferential_backlash, angular_backlash or, of a train, lost_motion"
 ANY_GEAR: Final = "write spur_gear, bevel_gear or, of a ring, internal_gear"
 NO_HELIX: Final = "helical, spiral, hypoid and worm gears are not supported: docs/limits.md"
 
@@ -55,7 +56,12 @@ OTHER_KINDS: Final = (
     ("f_sigma_beta", "write axis_out_of_plane"),
     *((word, NO_HELIX) for word in ("helical_gear", "worm", "worm_gear", "hypoid_gear", "spiral_bevel_gear")),
     *((word, ANY_GEAR) for word in ("gear", "pinion", "cylindrical_gear")),
-    ("backlash", "write normal_backlash, circumferential_backlash or angular_backlash"),
+    *((word, BACKLASH) for word in ("backlash", "slop", "gear_play", "free_play")),
+    *((word, "write mesh, or bevel_mesh") for word in ("gear_pair", "gear_mesh", "gears", "meshing")),
+    *(
+        (word, "write the gears as parts, and moves of kinds mesh and train")
+        for word in ("gearbox", "gear_train", "transmission")
+    ),
     *((word, "write uniform") for word in ("rectangular", "rectangle", "flat", "equal")),
     *((word, "write normal") for word in ("gauss", "gaussian")),
 )

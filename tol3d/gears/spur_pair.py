@@ -85,9 +85,14 @@ class SpurPair(CylindricalPair):
             gear, other = pair.pinion, pair.wheel
             clearance = self.centre_distance - gear.root_radius - other.tip_radius
             if clearance <= 0.0:
+                addendum = other.addendum + clearance / other.module
+                shifts = gear.profile_shift + other.profile_shift
+                for_tip = f"give the {mate} gear an addendum below {addendum:.4f} (it has {other.addendum:g}), or "
                 raise GeometryError(
                     f"the teeth interfere at centre distance {self.centre_distance:g} mm: the tip of the {mate} "
-                    f"gear and the root of the {name} gear interfere by {-clearance:.4f} mm"
+                    f"gear and the root of the {name} gear interfere by {-clearance:.4f} mm; "
+                    f"{for_tip if addendum > 0.0 else ''}open the centre distance"
+                    + (f"; the profile shifts sum to {shifts:.4g}" if shifts else "")
                 )
             start = gear.base_radius * math.hypot(1.0, max(pair.start_roll, 0.0))
             where = f"at {2 * start:.4f} mm" if pair.start_roll > 0 else "below the base circle"

@@ -16,12 +16,15 @@ from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.machine.grammar.worst_error import WorstPositionErrorSpec
 from tol3d.system.mechanism import Mechanism
 
+SERIAL: Final = ("serial_robot", "robot", "robot_arm", "serial_chain", "kinematic_chain", "manipulator", "chain")
+
 MACHINE: Final = Mechanism(
     name="machine",
     moves=(CarrierPinsSpec, OpenChainSpec, ShaftInBoresSpec),
     measures=(WorstPositionErrorSpec,),
     checks=(laid_twice, read_over_paths, laid_too_early, joints_named_twice, unfit_worst_errors),
     warnings=(shafts_thicker_than_bores,),
+    other_kinds=tuple((word, "write open_chain, with its joints") for word in SERIAL),
     includes=("gearing", "assembly"),
     engines=("exact", "fcl"),
     system="tol3d.machine.from_scene:machine_system",

@@ -23,6 +23,7 @@ from tol3d.runs.summary.values import Method
 from tol3d.system.outcome import METHODS, outcome_of, status_column, value_column
 
 BARS = 40
+MOST_NAMED = 3  # contributors of a sentence
 POINTS_SHOWN = 4000  # dots in a picture; more hide each other
 TURN = 360.0  # deg
 SMALLEST_SPAN = 1e-6  # um or arc minutes; for methods that agree to the last bit
@@ -179,6 +180,7 @@ def comparison_report(runs: Sequence[Run]) -> Page:
         bounded = any(is_bounded(run.found.measures[measure.name]) for _, run in own)
         blocks += [note(ENDS_BEFORE)] if bounded else []
     blocks += joint_comparison([(label, run.found) for label, run in labelled(runs)])
+    blocks += [note(sentence) for sentence in _renamed(runs)]
     words = "low and high: mean ∓ 3 sigma; max and rms: of 3D simulation − analytic, trial by trial"
     words += (
         "; means and sigmas are of the assembled trials, the fraction out of limits is of all"
@@ -191,6 +193,22 @@ def comparison_report(runs: Sequence[Run]) -> Page:
 
 def _named_alike(name: str, runs: Sequence[Run]) -> int:
     return sum(name in run.found.measures for run in runs)
+
+
+def _renamed(runs: Sequence[Run]) -> Iterator[str]:
+    """Sentence on contributors that one of two runs of a seed lacks: by another name they are drawn anew."""
+    if len(runs) != 2 or runs[0].found.seed != runs[1].found.seed:
+        return
+    names = [
+        {share.name for measure in run.found.measures.values() for share in measure.contributors} for run in runs
+    ]
+    first, second = sorted(names[0] - names[1]), sorted(names[1] - names[0])
+    if first and second:
+        told = [", ".join(own[:MOST_NAMED]) + (", …" if len(own) > MOST_NAMED else "") for own in (first, second)]
+        yield (
+            f"contributors only in the first run: {told[0]}; only in the second: {told[1]}. Draws go by the name of a "
+            "contributor: what is called otherwise is drawn anew, also with the same seed"
+        )
 
 
 def _any_failed(runs: Sequence[Run]) -> bool:

@@ -17,6 +17,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from filelock import FileLock, Timeout
+
 from tol3d.errors import RunError
 from tol3d.runs.atomic_write import UNFINISHED
 from tol3d.runs.block_files import CHECKSUMS, BlockFiles
@@ -27,6 +29,7 @@ from tol3d.runs.summary.kinds import SummaryKinds
 
 SHOWN = 3  # foreign files in a message
 BEGINNING = {LOCK, f"{FINGERPRINT}.writing"}  # what there may be before the fingerprint
+BEING_WRITTEN = "is being written by another run"
 REPLACED = "replaced"
 REPLACED_NAME = re.compile(rf"\.{REPLACED}-[0-9]+-[0-9a-f]{{8}}")  # of a run until it is deleted, after the run's own
 
@@ -172,6 +175,8 @@ class Place:
             if there is None:
                 return "is taken by something else"
             if others := another_study(there, self.fingerprint) if there else []:
+                if self.is_being_written():
+                    return f"{BEING_WRITTEN} ({'; '.join(others)})"
                 return f"is that of an interrupted run of another study ({'; '.join(others)})"
         try:
             occupant = self.occupant()
@@ -181,6 +186,17 @@ class Place:
             return None if begun else ""
         reason = "; ".join(occupant.others) if resume else occupant.reason
         return reason or None
+
+    def is_being_written(self) -> bool:
+        """True while a run is written there by a process that lives."""
+        lock = FileLock(self.partial / LOCK)
+        try:
+            with lock.acquire(blocking=False):
+                return False
+        except Timeout:
+            return True
+        except OSError:  # a folder that may not be written in
+            return False
 
     def put_in_place(self, *, force: bool) -> None:
         """Rename the written folder; an existing one is deleted if it may be replaced, else moved aside."""

@@ -15,8 +15,8 @@ INVISIBLE = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # Unicode categories: control, forma
 COMPONENT_ENDINGS = (".x", ".y")  # columns of a result end so where a contributor has two components
 
 
-def checked_name(name: str) -> str:
-    """A name as it is kept, NFC-normalised.
+def checked_title(name: str) -> str:
+    """The name of a scene as it is kept, NFC-normalised: files and columns of results are not called by it.
 
     Raises:
         PydanticCustomError: no such text may be a name.
@@ -25,17 +25,30 @@ def checked_name(name: str) -> str:
         raise refused("", "a name without spaces around it", shown(name))
     if len(name) > LONGEST_NAME:
         raise refused("", f"a name of up to {LONGEST_NAME} characters", f"{len(name)} of them")
-    if any(c in FORBIDDEN or unicodedata.category(c) in INVISIBLE for c in name):
-        raise refused("", r"a name without / \ : and without line breaks or invisible characters", shown(name))
-    if name.endswith(COMPONENT_ENDINGS):
-        raise refused("", 'a name that does not end in ".x" or ".y" (columns of results do)', shown(name))
+    if any(unicodedata.category(c) in INVISIBLE for c in name):
+        raise refused("", "a name without line breaks or invisible characters", shown(name))
     return unicodedata.normalize("NFC", name)
 
 
-Name = Annotated[
-    str, AfterValidator(checked_name), Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})
-]
+def checked_name(name: str) -> str:
+    """The name of an entry as it is kept, NFC-normalised.
+
+    Raises:
+        PydanticCustomError: no such text may be a name.
+    """
+    name = checked_title(name)
+    if any(c in FORBIDDEN for c in name):
+        raise refused("", r"a name without / \ :", shown(name))
+    if name.endswith(COMPONENT_ENDINGS):
+        raise refused("", 'a name that does not end in ".x" or ".y" (columns of results do)', shown(name))
+    return name
+
+
+_LENGTH = Field(json_schema_extra={"minLength": 1, "maxLength": LONGEST_NAME})
+Name = Annotated[str, AfterValidator(checked_name), _LENGTH]
 """Any text of 1 to 80 characters without / \\ : or invisible characters, NFC-normalised."""
+Title = Annotated[str, AfterValidator(checked_title), _LENGTH]
+"""The name of a scene: any text of 1 to 80 visible characters, NFC-normalised."""
 
 
 def _one_line(text: str) -> str:

@@ -1,5 +1,6 @@
 """Errors that pydantic finds, in the user's words and with their place."""
 
+import difflib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
@@ -7,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from tol3d.scene.nearest import hint, nearest
+from tol3d.scene.nearest import LISTED_WORDS, LONGEST_WORD, hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import COMMA_SEPARATES, EXAMPLES, FACTORS, NUMBER_UNIT, Dimension, expectation, shown
@@ -21,8 +22,26 @@ SUCH_AS: Final[Mapping[object, str]] = {
     "distribution": ", such as {kind: normal, lower: -10 um, upper: 10 um}",
     "law": ", such as {kind: uniform}",
 }
+OF_SIZE: Final[Mapping[object, str]] = {
+    "distribution": 'limits, such as "±%s" by the default_law of the scene, or {kind: normal, lower: -%s, upper: %s}',
+    "zone": "{width: %s}, or {diameter: %s} of a round zone",
+}
+"""Spelling of a key's value where a plain length was written."""
 PLUS_MINUS: Final = re.compile(r"\s*(?:±|\+-|\+/-)")
-MOST_LISTED: Final = 28  # words of a message; tolerances are more
+KIND_OF: Final[Mapping[object, str]] = {
+    "parts": "kind of part",
+    "tolerances": "kind of tolerance",
+    "moves": "kind of move",
+    "measures": "kind of measure",
+    "features": "kind of feature",
+    "relations": "kind of relation",
+    "joints": "kind of joint",
+    "distribution": "kind of distribution",
+    "law": "kind of law",
+}
+"""Common name of the kinds under a key."""
+SOME_WORDS: Final = 3  # that are named where none is near
+SOMEWHAT_LIKE: Final = 0.55  # ratio of difflib from which a word is worth naming
 
 
 def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Grammar") -> list[str]:
@@ -110,6 +129,9 @@ def _got(expected: str) -> Callable[[ErrorDetails], str]:
 
 def _text_expected(details: ErrorDetails) -> str:
     value = details["input"]
+    if isinstance(value, list) and details["loc"][-1] == "of":
+        several = ", ".join(map(str, value[:SOME_WORDS])) + (", …" if len(value) > SOME_WORDS else "")
+        return f"expected one name, got a list ({several}); write an entry for each, or name a pattern of them"
     advice = "; put it into quotes" if isinstance(value, bool | int | float) else ""
     return f"expected text, got {shown(value)}{advice}"
 
@@ -155,19 +177,30 @@ def _tag(details: ErrorDetails) -> object:
 
 
 def _unknown_kind(details: ErrorDetails) -> str:
-    return word_expected(_tag(details), QUOTED_WORD.findall(details["ctx"]["expected_tags"]))
+    section = next((own for own in reversed(details["loc"]) if own in KIND_OF), None)
+    what = KIND_OF[section] if section else "word"
+    return word_expected(_tag(details), QUOTED_WORD.findall(details["ctx"]["expected_tags"]), what)
 
 
 def _literal(details: ErrorDetails) -> str:
     return word_expected(details["input"], QUOTED_WORD.findall(details["ctx"]["expected"]))
 
 
-def word_expected(value: object, known: Sequence[str]) -> str:
-    """The sentence of a word that is none of those known, with the nearest of them."""
-    listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known[:MOST_LISTED])}"
-    if len(known) > MOST_LISTED:
-        listed = f"{listed} or {len(known) - MOST_LISTED} others, which tol3d schema lists"
-    return f"expected {listed}, got {shown(value)}{nearest(value, known) if isinstance(value, str) else ''}"
+def word_expected(value: object, known: Sequence[str], what: str = "word") -> str:
+    """The sentence of a word that is none of those known, with the nearest of them; only a few are all listed.
+
+    Args:
+        value: the word that came.
+        known: those that there are.
+        what: their common name.
+    """
+    near = nearest(value, known) if isinstance(value, str) else ""
+    if len(known) <= LISTED_WORDS:
+        listed = " or ".join(known) if len(known) < 3 else f"one of {', '.join(known)}"
+        return f"expected {listed}, got {shown(value)}{near}"
+    like = difflib.get_close_matches(str(value)[:LONGEST_WORD].casefold(), known, n=SOME_WORDS, cutoff=SOMEWHAT_LIKE)
+    some = f"; nearest are {', '.join(like)}" if like else ""
+    return f"expected a {what}, got {shown(value)}{near or some + f'; tol3d schema lists all {len(known)}'}"
 
 
 def _quantity(details: ErrorDetails, of_law: tuple[Dimension, ...]) -> str:
@@ -209,7 +242,19 @@ def _unexpected(details: ErrorDetails) -> str:
     return f"expected another value here, got {shown(details['input'])}"
 
 
-_keys = _got('keys with values, such as "name: {…}"')
+def _keys(details: ErrorDetails) -> str:
+    """The keys that a value should have had, if possible with the number that came instead."""
+    came, key = details["input"], next((own for own in reversed(details["loc"]) if own in OF_SIZE), None)
+    size = NUMBER_UNIT.fullmatch(came) if isinstance(came, str) else None
+    if key is not None and size:
+        number = f"{size[1].lstrip('+-')} {size[2]}"
+        return f"expected {OF_SIZE[key].replace('%s', number)}, got {shown(came)}"
+    if names := details.get("ctx", {}).get("keys"):
+        return f"expected keys with values, such as {{{', '.join(f'{name}: …' for name in names)}}}, got {shown(came)}"
+    example = next((SUCH_AS[own] for own in reversed(details["loc"]) if own in SUCH_AS), ', such as "name: {…}"')
+    return f"expected keys with values{example}, got {shown(came)}"
+
+
 _number = _got("a number")
 _whole_number = _got("a whole number")
 
@@ -221,6 +266,7 @@ SENTENCES: Final[dict[str, Callable[[ErrorDetails], str]]] = {
     "literal_error": _literal,
     "union_tag_not_found": _missing_kind,
     "union_tag_invalid": _unknown_kind,
+    "keys_expected": _keys,
     "model_type": _keys,
     "model_attributes_type": _keys,
     "dict_type": _keys,

@@ -36,7 +36,7 @@ from tol3d.scene.including import with_include
 from tol3d.scene.listed import listed
 from tol3d.scene.measure import MeasureEntry
 from tol3d.scene.move import MoveSpec
-from tol3d.scene.name import Name
+from tol3d.scene.name import Name, Title
 from tol3d.scene.nearest import nearest
 from tol3d.scene.options import THEORY, Engines, StudyOptions
 from tol3d.scene.part import PartSpec
@@ -220,7 +220,7 @@ class Scene(Strict):
     grammar: ClassVar[Any]  # the Grammar of the subclass that validates: a grammar makes one that knows its kinds
     laws: ClassVar[Laws] = SHIPPED  # likewise
 
-    scene: Name = Field(description="the scene's name")
+    scene: Title = Field(description="the scene's name")
     description: str = Field(default="", description="the user's own words, shown in reports")
     default_law: StatedLimitLaw | None = Field(
         default=None, description="of deviations of which limits alone are stated, as a drawing writes them"

@@ -41,6 +41,7 @@ from tol3d.scene.place import KeyPath
 
 THICKNESS: Final = Implausible(0.1, "state the deviation of the thickness from nominal, and check the unit")
 
+WHOLE_SIZE: Final = 0.5  # share of a nominal size from which a "deviation" is the size itself
 SAME_NOMINAL: Final = 0.005  # mm; a drawing rounds a size over pins to one hundredth at the coarsest
 
 
@@ -62,6 +63,8 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
         arc = gear.thickness_radius / gear.section_arm if spec.is_normal else 1.0
         path: KeyPath = ("tolerances", name, "distribution")
         sign = spec.sign_in(ring=isinstance(gear, InternalGear))
+        if sentence := _whole_sizes(spec, scene, "tooth thickness", gear.section_thickness):
+            raise scene.refuse(path, sentence)
         thinnest, left = min(sign * own for own in law.extremes) * arc, gear.section_thickness
         if -thinnest >= gear.section_tip:
             words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
@@ -88,11 +91,25 @@ def refuse_other_measure(scene: Scene, name: str, spec: ToothThicknessSpec, gear
     try:
         measure = spec.measured.measure
         measure.require_reach(gear)
+        if sentence := _whole_sizes(spec, scene, measure.words, measure.size(gear)):
+            raise scene.refuse(("tolerances", name, "distribution"), sentence)
         for size in spec.distribution.resolve(scene.files).extremes:
             arc = measure.thickness(gear, measure.size(gear) + size) - gear.tooth_thickness
             measure.require_reach(replace(gear, tooth_thickness_deviation=gear.tooth_thickness_deviation + arc))
     except GeometryError as error:
         raise scene.refuse((*path, "span" if spec.measured.pins is None else "pins"), str(error)) from None
+
+
+def _whole_sizes(spec: ToothThicknessSpec, scene: Scene, words: str, nominal: float) -> str:
+    """Sentence for limits that are the size itself instead of its deviations from nominal [mm]; "" for deviations."""
+    low, high = sorted(spec.distribution.resolve(scene.files).extremes)
+    if low < WHOLE_SIZE * nominal:
+        return ""
+    deviations = f"{low - nominal:+.4g}/{high - nominal:+.4g} mm".replace("-0/", "0/").replace("+0/", "0/")
+    return (
+        f"expected deviations from the nominal {words} of {nominal:.4f} mm, "
+        f"got {low:.7g} to {high:.7g} mm, which are whole sizes; as deviations they are {deviations}"
+    )
 
 
 def _other_nominal(spec: ToothThicknessSpec, gear: Gear) -> str:
