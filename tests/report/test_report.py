@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from loose_summaries import typed_measure, typed_run
 from matplotlib.image import imread
 from of_kind import known, of_kind
-from places import SCENES
+from places import SCENES, SPUR_PAIR
 from printing import printed, row_of
 from rendering import renders
 from rich.console import RenderableType
@@ -785,3 +785,13 @@ def test_the_process_that_draws_pictures_loads_no_runs_and_no_models() -> None:
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     heavy = {"pyarrow", "tol3d.runs.run", "tol3d.gearing.model", "scipy", "cadquery"}
     assert sorted(heavy.intersection(loaded)) == []
+
+
+def test_runs_of_one_seed_say_which_contributors_are_called_otherwise(tmp_path: Path) -> None:
+    renamed = tmp_path / "renamed.yaml"
+    renamed.write_text(SPUR_PAIR.read_text("utf-8").replace("reducer run-out:", "run-out of the reducer:"), "utf-8")
+    few = Overrides(trials=200, engine="analytic", witness=0)
+    runs = [run_scene(scene, overrides=few, out=tmp_path / scene.stem) for scene in (SPUR_PAIR, renamed)]
+    said = " ".join(printed(comparison_report(runs), 200).split())
+    assert "only in the first run: reducer run-out; only in the second: run-out of the reducer. Draws go by" in said
+    assert "Draws go by" not in printed(comparison_report(runs[:1] * 2), 200)
