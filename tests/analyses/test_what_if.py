@@ -14,7 +14,7 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.changes import Change, change_of, changed, factor_of
+from tol3d.analyses.changes import Change, change_of, changed, factor_of, slips
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.what_if import WhatIf, first_order_ppm, what_if
@@ -174,6 +174,14 @@ def test_one_number_is_a_width_or_a_scale(spur: Response) -> None:
 def test_what_cannot_be_asked_is_refused(spur: Response, text: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         changed(spur, [change_of(spur, text)])
+
+
+def test_a_slip_in_the_unit_is_warned_of(spur: Response) -> None:
+    """Limits of ±20 um in the scene: a hundred times as wide is ±2 mm."""
+    for limits, count in (("±1.99 mm", 0), ("±2.01 mm", 1)):
+        said = list(slips(spur, changed(spur, [change_of(spur, f"{CENTRE}={limits}")])))
+        assert len(said) == count
+    assert said == [f"{CENTRE}: normal -2010 … 2010 µm is 100 times as wide as in the scene; check the unit"]
 
 
 def test_what_nobody_changes_is_refused(spur: Response) -> None:

@@ -262,6 +262,16 @@ def counted_rows(folder: Path) -> None:
     changed(folder, [f"{head},repeat", *(f"{row},{k}" for k, row in enumerate(others))])
 
 
+def half_a_pass(folder: Path) -> None:
+    head, *others = rows(folder)
+    changed(folder, [f"{head},repeat", *(f"{row},0.5" for row in others)])
+
+
+def torque_of_nothing(folder: Path) -> None:
+    head, *others = rows(folder)
+    changed(folder, [f"{head},torque [N m]", *(f"{row},1e300" for row in others)])
+
+
 Change = Callable[[Path], None]
 SideChange = Callable[[Path, str], None]
 
@@ -283,6 +293,8 @@ WRONG: Mapping[Change, str] = {
     device: "drive.csv: expected a file, got a pipe or a device",
     many_columns: "drive.csv: missing column 'phi1': expected `phi1 [deg]` in the header, got 'column 0', 'column 1', ",
     counted_rows: "drive.csv:2: column 'repeat': expected one number for all rows of a pass, got 1",
+    half_a_pass: "drive.csv:2: column 'repeat': expected whole numbers from 0, which count passes, got 0.5",
+    torque_of_nothing: "drive.csv:2: column 'torque': expected at most 1e9 N m, got 1e+300 N m; check its unit",
     long_line: "drive.csv: cannot be read as CSV: a line is longer than 2 MB",
 }
 

@@ -12,6 +12,7 @@ from places import SCENES
 from tol3d import SceneError
 from tol3d.kinds import load_scene
 from tol3d.scene import Scene
+from tol3d.simulate import simulation_of
 from tol3d.system.mechanism import mechanism_of
 
 Warned = Callable[..., Sequence[str]]
@@ -47,6 +48,99 @@ def warned(tmp_path: Path) -> Warned:
 def test_no_bundled_scene_warns(path: Path) -> None:
     scene = load_scene(path)
     assert (*scene.grammar.warnings(scene), *of_the_system(scene)) == ()
+
+
+# slips in units and signs -------------------------------------------------------------------------
+
+PAIR = "centre_distance: 172.5 mm"
+SLIPS = {
+    "a face of a tenth of the module": ("spur_pair", "face_width: 20 mm", "face_width: {}", ("0.2501 mm", "0.2499 mm")),
+    "a shaft of a hundred diameters": ("gearbox_in_housing", "start: -100 mm", "start: {}", ("-1500 mm", "-1501 mm")),
+    "a reducer's free turn": ("robot_shoulder", "backlash: 1 arcmin", "backlash: {}", ("5 deg", "5.001 deg")),
+    "a field at another distance": (
+        "spur_pair",
+        "distribution: {kind: normal, lower: -20 um, upper: 20 um}",
+        "distribution: {{fit: js7, of: {}, law: {{kind: uniform}}}}",
+        ("171 mm", "170 mm"),
+    ),
+    "teeth thicker in every build": (
+        "spur_pair",
+        "distribution: {kind: normal, lower: -30 um, upper: -19 um}",
+        "measured: {{span: 4}}\n    distribution: {{kind: normal, lower: {}, upper: 9 um}}",
+        ("0 um", "1 um"),
+    ),
+    "the spring of a carrier": ("reducer_3k_flexible", "force: 60 N", "force: {}", ("1000 kN", "1001 kN")),
+}
+
+
+@pytest.mark.parametrize("words", SLIPS)
+def test_a_slip_is_warned_of_just_beyond_what_may_be(words: str, warned: Warned) -> None:
+    name, old, new, values = SLIPS[words]
+    assert [len(warned(name, (old, new.format(own)))) for own in values] == [0, 1]
+
+
+def test_whole_sizes_are_refused_where_deviations_belong(warned: Warned) -> None:
+    """W of the pinion over 4 teeth: m cos(alpha) (3.5 pi + 28 inv alpha) = 26.8115 mm."""
+    nominal = 2.5 * COS * (3.5 * math.pi + 28 * (TAN - math.radians(20)))
+    old = "distribution: {kind: normal, lower: -30 um, upper: -19 um}"
+    law = f"{{kind: normal, lower: {nominal - 0.038:.4f} mm, upper: {nominal - 0.001:.4f} mm}}"
+    words = rf"expected deviations from the nominal span over 4 teeth of {nominal:.4f} mm, .*deviations they are -0.03"
+    with pytest.raises(SceneError, match=words):
+        warned("spur_pair", (old, f"measured: {{span: 4}}\n    distribution: {law}"))
+    with pytest.raises(SceneError, match=r"nominal tooth thickness of 3\.9270 mm"):
+        warned("spur_pair", (old, "distribution: {kind: uniform, lower: 3.85 mm, upper: 3.91 mm}"))
+
+
+def test_what_is_less_than_physical_is_warned_of(tmp_path: Path) -> None:
+    text = (
+        (SCENES / "spur_pair.yaml")
+        .read_text("utf-8")
+        .replace("lower: 2 um, upper: 30 um", "lower: -3 um, upper: 30 um")
+    )
+    (tmp_path / "scene.yaml").write_text(text, "utf-8")
+    (line,) = simulation_of(load_scene(tmp_path / "scene.yaml")).warnings
+    assert line == ("tolerances.bearing clearance: expected at least 0 um, for less is not physical, got down to -3 um")
+
+
+TWO = """
+scene: two points
+parts:
+  base:
+    kind: solid
+    features:
+      face: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [30 mm, 20 mm]}
+      pin: {kind: cylinder, at: [5 mm, 2 mm, 7 mm], axis: [0, 0, 1], length: 14 mm, diameter: 9 mm}
+      far: {kind: point, at: [3 mm, FAR, 1 mm], normal: [0, 0, 1]}
+tolerances:
+  lean: {kind: perpendicularity, of: base.pin, zone: {diameter: WIDE}, law: {kind: uniform}, datums: [face]}
+  size: {kind: size, of: base.pin, distribution: {fit: g6, of: CLASS, law: {kind: uniform}}}
+moves: {table: {kind: fix, part: base}}
+measures: {d: {kind: distance, from: base.face, to: base.far}}
+"""
+LEAN = 14 * math.tan(math.radians(10))
+
+
+@pytest.mark.parametrize(
+    ("word", "values", "said"),
+    [
+        ("FAR", ("10.0 m", "10.1 m"), "parts.base.features.far: expected a place within 10 m of another feature"),
+        (
+            "WIDE",
+            (f"{LEAN - 1e-3:.4f} mm", f"{LEAN + 1e-3:.4f} mm"),
+            "tolerances.lean.zone: expected a lean of at most",
+        ),
+        ("CLASS", ("9.08 mm", "9.1 mm"), "tolerances.size.distribution.of: expected the size of 'base.pin', 9 mm"),
+    ],
+)
+def test_a_slip_in_a_drawing_is_warned_of(word: str, values: tuple[str, str], said: str, tmp_path: Path) -> None:
+    lines = []
+    for value in values:
+        text = TWO.replace(word, value).replace("FAR", "1 m").replace("WIDE", "1 mm").replace("CLASS", "9 mm")
+        (tmp_path / "scene.yaml").write_text(text, "utf-8")
+        scene = load_scene(tmp_path / "scene.yaml")
+        lines.append(list(scene.grammar.warnings(scene)))
+    assert lines[0] == []
+    assert [line.startswith(said) for line in lines[1]] == [True]
 
 
 # teeth ----------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 """Other tolerances as a user states them: limits, a scale or a width by contributor, or a factor."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,7 +11,7 @@ from tol3d.distributions.drawn import limits_written
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Draw
+from tol3d.system.draw import Draw, component_sigmas
 from tol3d.system.other_laws import Zoned
 from tol3d.units import UNITS, Quantity, expectation
 
@@ -94,6 +94,19 @@ def changed(response: Response, changes: Sequence[Change]) -> Response:
         elif own.factor is None:
             laws[own.name] = _law(draw, own)
     return response.scaled(factors).sized(widths).with_laws(laws)
+
+
+MANY_TIMES: Final = 100.0
+"""Factor on a sigma from which a change is most likely a slip in the unit."""
+
+
+def slips(before: Response, after: Response) -> Iterator[str]:
+    """Warnings of tolerances that become so much wider that a unit is most likely wrong."""
+    for own in before.contributors:
+        sigmas = [max(component_sigmas(one.draws[own.name])) for one in (before, after)]
+        if sigmas[1] > MANY_TIMES * sigmas[0] > 0.0:
+            times = f"{sigmas[1] / sigmas[0]:.3g} times as wide as in the scene"
+            yield f"{own.name}: {told(own, after.draws[own.name])} is {times}; check the unit"
 
 
 def _law(draw: Draw, change: Change) -> Distribution:

@@ -14,7 +14,10 @@ from tol3d.assembly.grammar.contact_checks import (
 )
 from tol3d.assembly.grammar.drawing_checks import (
     contradicting_tolerances,
+    features_far_off,
+    fits_of_other_sizes,
     forms_beyond_orientations,
+    implausible_leans,
     implausible_sizes,
 )
 from tol3d.assembly.grammar.general import general_sizes
@@ -103,7 +106,13 @@ ASSEMBLY: Final = Mechanism(
         unfit_pairs,
         round_contacts,
     ),
-    warnings=(implausible_sizes, forms_beyond_orientations),
+    warnings=(
+        implausible_sizes,
+        implausible_leans,
+        fits_of_other_sizes,
+        features_far_off,
+        forms_beyond_orientations,
+    ),
     general=(general_sizes,),
     other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,

@@ -15,7 +15,7 @@ from tol3d.cli.analysed import (
     write_numbers,
 )
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-from tol3d.cli.console import tell
+from tol3d.cli.console import tell, warn
 
 
 def what_if(
@@ -42,7 +42,8 @@ def what_if(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what other tolerances would do: sigma and ppm before and after, by first order and by the same trials."""
-    from tol3d.analyses.changes import change_of, factor_of
+    from tol3d.analyses.changes import change_of, factor_of, slips
+    from tol3d.analyses.changes import changed as changed_response
     from tol3d.analyses.subject import subject_of
     from tol3d.analyses.what_if import what_if as asked
     from tol3d.analyses.what_if_table import what_if_report
@@ -52,6 +53,8 @@ def what_if(
         response = own.response
         changes = [change_of(response, text) for text in changed or ()]
         changes += [factor_of(response, text) for text in factor or ()]
+        for slip in slips(response, changed_response(response, changes)):
+            warn(slip)
         trials, draws = (0, 0) if quick else (trials, draws)
         found = asked(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=status.update)
     report = what_if_report(own.name, found)

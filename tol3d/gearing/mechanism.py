@@ -8,10 +8,13 @@ from tol3d.gearing.grammar import tolerances
 from tol3d.gearing.grammar.checks import (
     bearings_off_shafts,
     carried_again,
+    fits_of_other_distances,
     forms_of_two_shapes,
     general_distances,
+    implausible_angles,
     implausible_displacements,
     implausible_faces,
+    implausible_shafts,
     shafts_thicker_than_hubs,
 )
 from tol3d.gearing.grammar.measures import GearStudyOptions
@@ -74,7 +77,15 @@ GEARING: Final = Mechanism(
     moves=_kinds(MoveSpec),
     measures=_kinds(MeasureEntry),
     checks=(carried_again, forms_of_two_shapes),
-    warnings=(implausible_displacements, implausible_faces, bearings_off_shafts, shafts_thicker_than_hubs),
+    warnings=(
+        implausible_displacements,
+        implausible_faces,
+        implausible_shafts,
+        implausible_angles,
+        fits_of_other_distances,
+        bearings_off_shafts,
+        shafts_thicker_than_hubs,
+    ),
     general=(general_distances,),
     other_kinds=OTHER_KINDS,
     other_keys=OTHER_KEYS,

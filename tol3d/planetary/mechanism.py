@@ -13,6 +13,7 @@ PLANETARY: Final = Mechanism(
     tolerances=specs_in(tolerances),
     moves=specs_in(moves),
     measures=specs_in(measures),
+    warnings=(parts.implausible_springs,),
     published=PublishedPlanetarySets,
     includes=("gearing",),
     extends=("gearing",),

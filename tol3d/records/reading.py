@@ -21,6 +21,7 @@ MOST_REVERSED: Final = math.radians(1.0)  # of the driver; noise and a rig's own
 SETTLED: Final = math.radians(1.0)  # travel of the driver from which its direction is known
 LEAST_TRAVEL: Final = math.radians(0.01)  # of a file; far over an encoder's noise
 LONGEST_STEP: Final = 0.4 * TURN  # between rows; from half a turn on the way round cannot be known
+LARGEST_TORQUE: Final = 1e9  # N m; no machine has a thousandth of it
 LEAST_ROWS: Final = 4  # of a pass on average: a column that changes more often numbers rows
 TRACE_STEP: Final = math.radians(0.5)  # of both gears together between rows kept to tell degrees from radians, as read
 TRACED: Final = 3 * 360.0  # rad of the driver, as read, over which they are kept: three turns if they are degrees
@@ -141,13 +142,20 @@ def passes_of(pair: RigPair, path: Path, blocks: Iterable[Block], senses: Senses
 
 
 def _refuse_counter(path: Path, block: Block) -> None:
-    """Raise where `repeat` numbers rows, not passes."""
+    """Raise where `repeat` numbers rows, not passes, or is no count; also where a torque is beyond any machine's."""
+    where = f"{path}:{line_of(path, block.first)}"
+    if block.torque is not None and (largest := float(np.abs(block.torque).max(initial=0.0))) > LARGEST_TORQUE:
+        raise InputError(f"{where}: column 'torque': expected at most 1e9 N m, got {largest:g} N m; check its unit")
     if block.repeat is None:
         return
+    if len(wrong := block.repeat[(block.repeat < 0) | (block.repeat != np.rint(block.repeat))]):
+        raise InputError(
+            f"{where}: column 'repeat': expected whole numbers from 0, which count passes, got {wrong[0]:g}"
+        )
     stretches = 1 + int(np.count_nonzero(np.diff(block.repeat)))
     if stretches > 1 and len(block.repeat) < LEAST_ROWS * stretches:
         raise InputError(
-            f"{path}:{line_of(path, block.first)}: column 'repeat': expected one number for all rows of a pass, got "
+            f"{where}: column 'repeat': expected one number for all rows of a pass, got "
             f"{stretches} numbers in the {len(block.repeat)} rows from here; leave out a column that counts rows"
         )
 

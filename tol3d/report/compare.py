@@ -199,9 +199,7 @@ def _renamed(runs: Sequence[Run]) -> Iterator[str]:
     """Sentence on contributors that one of two runs of a seed lacks: by another name they are drawn anew."""
     if len(runs) != 2 or runs[0].found.seed != runs[1].found.seed:
         return
-    names = [
-        {share.name for measure in run.found.measures.values() for share in measure.contributors} for run in runs
-    ]
+    names = [{share.name for measure in run.found.measures.values() for share in measure.contributors} for run in runs]
     first, second = sorted(names[0] - names[1]), sorted(names[1] - names[0])
     if first and second:
         told = [", ".join(own[:MOST_NAMED]) + (", …" if len(own) > MOST_NAMED else "") for own in (first, second)]

@@ -1,9 +1,13 @@
 """Numbers that could be built and are most likely a slip: deviations that are a large part of a nominal size."""
 
 from dataclasses import dataclass
+from typing import Final
 
 from tol3d.distributions import Distribution
 from tol3d.scene.place import KeyPath, path_text, printable
+from tol3d.units import Quantity
+
+ROUNDED_SIZE: Final = 0.01  # share of a size by which a drawing may round it
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,23 @@ class Implausible:
             return ""
         came = f"got {deviation:.4g} mm ({abs(deviation) / nominal * 100:.4g} %)"
         return f"expected at most {self.share * 100:g} % of {of} ({nominal:.4g} mm), {came}; {self.advice}"
+
+
+def another_size(drawn: object, nominal: float, of: str) -> str:
+    """Sentence on a tolerance class such as `{fit: js7, of: 80 mm}` that is taken at another size; "" for none.
+
+    Args:
+        drawn: limits as the scene writes them.
+        nominal: size of what they limit [mm].
+        of: that size in words.
+
+    >>> another_size({"fit": "js7", "of": "80 mm"}, 172.5, "centre distance of 'pair'")
+    "expected the centre distance of 'pair', 172.5 mm, got 80 mm, at which the class has limits of its own"
+    """
+    stated = drawn.get("of") if isinstance(drawn, dict) else None
+    if stated is None or abs(Quantity.parse(stated).internal / nominal - 1.0) <= ROUNDED_SIZE:
+        return ""
+    return f"expected the {of}, {nominal:g} mm, got {stated}, at which the class has limits of its own"
 
 
 def larger_end(law: Distribution) -> float:

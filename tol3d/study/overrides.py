@@ -1,6 +1,6 @@
 """Order for a run: a scene, and the values that override it."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from tol3d.errors import InputError
 from tol3d.scene import Scene
+from tol3d.scene.implausible import warned
 from tol3d.scene.options import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.correlated import copula_of
@@ -16,6 +17,8 @@ from tol3d.study.study import Study
 from tol3d.system.dependent import in_draw_order
 from tol3d.system.faults import faults_of, require_whole
 from tol3d.system.mechanism import mechanism_of, origin_of, requires_of
+from tol3d.system.other_laws import LEAST_OFF
+from tol3d.system.system import System
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         raise InputError(f"{_said_by('witness')}: {sentence}")
     with faults_of(mechanism.origin):
         problem = next(iter(system.problems()), None)
-        implausible = tuple(scene.grammar.warnings(scene))
+        implausible = (*scene.grammar.warnings(scene), *_unphysical(system))
     if problem:
         raise scene.refuse(*problem)
     return Simulation(
@@ -68,6 +71,14 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         implausible=implausible,
         copula=copula_of(asked, system),
     )
+
+
+def _unphysical(system: System) -> Iterator[str]:
+    """Warnings of laws that reach below the least physical deviation, such as a negative clearance or play."""
+    for own in system.contributors:
+        if own.least is not None and (low := own.distribution.low) < own.least - LEAST_OFF:
+            words = f"expected at least {own.least / own.per_unit:g} {own.unit}, for less is not physical"
+            yield warned(("tolerances", own.name), f"{words}, got down to {low / own.per_unit:.4g} {own.unit}")
 
 
 def asked_study(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Study:

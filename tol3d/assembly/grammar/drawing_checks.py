@@ -1,8 +1,11 @@
 """Checks across the tolerances of each feature."""
 
+import math
 from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import Final
+
+import numpy as np
 
 from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
@@ -31,8 +34,9 @@ from tol3d.assembly.model import RoundPlane
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.files import Files
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, larger_end
+from tol3d.scene.implausible import Implausible, another_size, larger_end
 from tol3d.scene.place import KeyPath
+from tol3d.units import angle_text
 
 Problem = tuple[KeyPath, str]
 
@@ -350,6 +354,45 @@ def forms_beyond_orientations(scene: Scene) -> Iterator[Problem]:
             limit, got = (f"{zone.size * 1e3:g} um" for zone in (around.zone, form.zone))
             words = f"expected at most the {limit} of {other.entry!r}, whose zone holds the form of {feature!r} too"
             yield ("tolerances", own.entry, "zone"), f"{words}, got {got}; state the form that is left"
+
+
+def implausible_leans(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Orientation zones in which a feature may lean by more than ten degrees."""
+    drawing = Drawing(scene)
+    for name, spec in scene.of(OrientationSpec).items():
+        reach = float(np.ptp(drawing.kind(spec.of).shape.ends, axis=0).max())
+        if spec.zone.projected is not None:
+            reach = spec.zone.projected.internal
+        if reach > 0.0 and (lean := math.atan(spec.zone.size / reach)) > MOST_LEAN:
+            words = f"expected a lean of at most 10° of {spec.of!r} over its {reach:.4g} mm, got {angle_text(lean)}"
+            yield ("tolerances", name, "zone"), f"{words}; check the unit"
+
+
+def features_far_off(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Features that lie more than ten metres from all others of their part."""
+    drawing = Drawing(scene)
+    for part, features in drawing.features.items():
+        places = np.array([own.frame[:3, 3] for own in features.values()])
+        for name, place in zip(features, places, strict=True):
+            others = np.sort(np.linalg.norm(places - place, axis=1))[1:]
+            if others.size and others[0] > FARTHEST and np.linalg.norm(place) >= np.linalg.norm(places, axis=1).max():
+                words = (
+                    f"expected a place within 10 m of another feature of {part!r}, got one {others[0] / 1e3:.4g} m off"
+                )
+                yield ("parts", part, "features", name), f"{words}; check the unit"
+
+
+def fits_of_other_sizes(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Tolerance classes of sizes that are taken at another nominal size than the feature has."""
+    drawing = Drawing(scene)
+    for name, spec in scene.of(SizeSpec).items():
+        nominal = nominal_size(drawing.kind(spec.of).shape)
+        if nominal and (sentence := another_size(spec.distribution.drawn, nominal, f"size of {spec.of!r}")):
+            yield ("tolerances", name, "distribution", "of"), sentence
+
+
+MOST_LEAN: Final = math.radians(10.0)  # rad; more is another nominal direction
+FARTHEST: Final = 10_000.0  # mm; the largest machine tools have such beds
 
 
 def _deviations(spec: FeatureTolerance, files: Files) -> Iterator[tuple[KeyPath, float]]:

@@ -1,17 +1,26 @@
 """Checks across the entries of a scene of gears, and warnings of likely slips."""
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
+from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import BearingSpec, BoredGearSpec, GearSpec, ShaftSpec, carried, gears_on
-from tol3d.gearing.grammar.tolerances.axes import AxesOffsetSpec, CentreDistanceSpec
+from tol3d.gearing.grammar.tolerances.axes import (
+    AxesOffsetSpec,
+    AxisInPlaneSpec,
+    AxisOutOfPlaneSpec,
+    CentreDistanceSpec,
+    ShaftAngleSpec,
+)
 from tol3d.gearing.grammar.tolerances.bearing_clearance import BearingClearanceSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import ProfileFormSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSpec
 from tol3d.gearing.grammar.tolerances.gears import AxialShiftSpec, EccentricitySpec, RunOutSpec
 from tol3d.scene import Scene
-from tol3d.scene.implausible import Implausible, larger_end
+from tol3d.scene.implausible import Implausible, another_size, larger_end
 from tol3d.scene.place import KeyPath
+from tol3d.units import angle_text
 
 
 def general_distances(scene: Scene) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -60,15 +69,62 @@ def implausible_displacements(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 
 
 def implausible_faces(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
-    """Faces of gears wider than a metre, and gears that a shift along their axis takes beyond their own face."""
+    """Faces of gears as thin as foil or wider than a metre; gears that a shift takes beyond their own face."""
     for name, gear in scene.of(GearSpec).items():
         if gear.face_width.internal > WIDEST_FACE + ROUNDING:
             yield ("parts", name, "face_width"), f"expected at most 1 m, got {gear.face_width}; check the unit"
+        if gear.face_width.internal < (least := NARROWEST_FACE * gear.module.internal) - ROUNDING:
+            words = f"expected at least {least:.4g} mm, a tenth of the module, got {gear.face_width}"
+            yield ("parts", name, "face_width"), f"{words}; check the unit"
     for name, spec in scene.of(AxialShiftSpec).items():
         far, of = larger_end(spec.distribution.resolve(scene.files)), scene.parts[spec.of]
         assert isinstance(of, GearSpec)
         if sentence := WHOLE.sentence(f"the face width of {spec.of!r}", of.face_width.internal, far):
             yield ("tolerances", name, "distribution"), sentence
+
+
+def implausible_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Shafts whose ends lie more than a hundred diameters from their origin."""
+    for name, shaft in scene.of(ShaftSpec).items():
+        for field, end in (("start", shaft.start), ("end", shaft.end)):
+            if end is None or shaft.diameter is None:
+                continue
+            far = SLENDEREST * shaft.diameter.internal
+            if abs(end.internal) > far + ROUNDING:
+                words = f"expected within {far:.6g} mm of the shaft's origin, a hundred diameters, got {end}"
+                yield ("parts", name, field), f"{words}; check the unit"
+
+
+def implausible_angles(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Axes that lean, and reducers that turn freely, by more than some degrees."""
+    for name, spec in scene.distributed.items():
+        is_play = isinstance(spec, ReducerBacklashSpec)
+        if not is_play and not isinstance(spec, AxisInPlaneSpec | AxisOutOfPlaneSpec | ShaftAngleSpec):
+            continue
+        far = larger_end(spec.distribution.resolve(scene.files))
+        if spec.unit == "um" or abs(far) <= WIDEST_ANGLE + ROUNDING:
+            continue
+        of = "free turn" if is_play else "lean of an axis"
+        yield (
+            ("tolerances", name, "distribution"),
+            f"expected a {of} of at most 5°, got {angle_text(far)}; check the unit",
+        )
+    for name, move in scene.of(ReducerSpec).items():
+        if move.backlash is not None and move.backlash.internal > WIDEST_ANGLE + ROUNDING:
+            words = f"expected a free turn of at most 5°, got {move.backlash}; check the unit"
+            yield ("moves", name, "backlash"), words
+
+
+def fits_of_other_distances(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Tolerance fields of centre distances that are taken at another nominal size than the mesh has."""
+    for name, spec in scene.of(CentreDistanceSpec).items():
+        mesh = scene.moves.get(spec.of)
+        nominal = mesh.centre_distance if isinstance(mesh, MeshSpec) else None
+        sentence = nominal and another_size(
+            spec.distribution.drawn, nominal.internal, f"centre distance of {spec.of!r}"
+        )
+        if sentence:
+            yield ("tolerances", name, "distribution", "of"), sentence
 
 
 def _displaced(scene: Scene, of: str) -> tuple[str, ...]:
@@ -116,4 +172,7 @@ def too_thick(shaft: ShaftSpec, bore: float | None, words: str) -> str:
 HALF: Final = Implausible(0.5)
 WHOLE: Final = Implausible(1.0)
 WIDEST_FACE: Final = 1000.0  # mm; that of the widest mill gears
+NARROWEST_FACE: Final = 0.1  # modules; watch gears have 2
+SLENDEREST: Final = 100.0  # diameters from a shaft's origin to its end
+WIDEST_ANGLE: Final = math.radians(5.0)  # rad; free turns are minutes, and axes that cross are another mesh
 ROUNDING: Final = 1e-9  # mm; the same number in two units

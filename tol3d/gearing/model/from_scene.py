@@ -70,6 +70,11 @@ def implausible_teeth(scene: Scene, gears: Mapping[str, Gear]) -> Iterator[str]:
             words = f"expected teeth of {spec.of!r} ({left:.4g} mm thick) that are thinner by less than "
             words += f"{gear.section_tip:.4g} mm, where their flanks meet at the tip, got {thinnest:.4g} mm"
             raise scene.refuse(path, f"{words}; {THICKNESS.advice}")
+        if min(sign * own for own in law.extremes) > 0.0:
+            words = "expected teeth that are thinner than nominal, got thicker ones in every build"
+            yield warned(
+                path, f"{words}; allowances of a drawing are {'positive' if sign < 0.0 else 'negative'}: check the sign"
+            )
         if sentence := _other_nominal(spec, gear):
             yield warned(path, sentence)
         if sentence := THICKNESS.sentence(f"the tooth thickness of {spec.of!r}", left, larger_end(law) * arc):

@@ -1,13 +1,16 @@
 """Kinds of part of planetary sets."""
 
-from typing import Annotated, ClassVar, Literal, Self
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from tol3d.gearing.grammar.parts import GearSpec, TurningSpec
+from tol3d.scene import Scene
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
+from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
 from tol3d.units import Of, Positive, Quantity
@@ -110,3 +113,13 @@ class PlanetCarrierSpec(CarrierSpec):
     """A rigid carrier."""
 
     kind: Literal["planet_carrier"]
+
+
+STRONGEST: Final = 1e6  # N; a spring between planets holds hundreds
+
+
+def implausible_springs(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+    """Springs of flexible carriers as strong as a press."""
+    for name, carrier in scene.of(FlexibleCarrierSpec).items():
+        if carrier.force is not None and carrier.force.internal > STRONGEST:
+            yield ("parts", name, "force"), f"expected at most 1000 kN, got {carrier.force}; check the unit"
