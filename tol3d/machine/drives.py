@@ -1,12 +1,13 @@
 """Joints of parts as trains turn them: which lost motion decides, and which end of it a joint lies at, pose by pose."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from tol3d.assembly.grammar.checks import pose_names
-from tol3d.gearing.model import LostMotion, Measure, Model
-from tol3d.gearing.model.mesh_measures import reader_like
+from tol3d.gearing.model import Measure, Model
+from tol3d.gearing.model.from_scene import jumping
+from tol3d.gearing.model.mesh_measures import default_reading
 from tol3d.gearing.model.train_measures import lost_motion
 from tol3d.machine.grammar.open_chain import OpenChainSpec, flank_name, turn_name
 from tol3d.machine.open_chains import loaded_sides
@@ -63,12 +64,8 @@ def drives_of(scene: Scene, model: Model) -> Iterator[JointDrive]:
 
 
 def reading_at(model: Model, train: str, joint: str, angle: float) -> Measure:
-    """The lost motion of a train's output where that stands at an angle [rad]; read as the scene's own."""
+    """The lost motion of all teeth of a train, at its output where that stands at an angle [rad]."""
     own = model.train(train)
-    kinds = (each.kind for each in model.measures)
-    like = next((kind for kind in kinds if isinstance(kind, LostMotion) and kind.train == train), None)
-    kind = lost_motion(model, own, own.output, "lost_motion", reader_like(like))
+    kind = lost_motion(model, own, own.output, "lost_motion", default_reading)
     rate = float(model.layout.shaft_turn[own.output].rate)
-    measure = Measure(f".{joint} at {angle:.12g}", kind, Positions("at", 1, 1, angle / rate), "value")
-    jumps = any(each.positions.jumps for each in model.measures if getattr(each.kind, "train", "") == train)
-    return replace(measure, positions=replace(measure.positions, jumps=True)) if jumps else measure
+    return jumping(model, Measure(f".{joint} at {angle:.12g}", kind, Positions("at", 1, 1, angle / rate), "value"))

@@ -40,6 +40,11 @@ FLAT: Final = 1e-6
 TURN: Final = 1e-2
 """rad; a measure that it does not change depends on no joint that turns by it."""
 
+OTHERS: Final = (0.0, 1.0, 2.0, 3.0)
+"""Builds in which that is tried: with the other joints in the middle of their plays, then each turned by its own angle.
+
+Rotations add up to second order in an order: two joints about y and z turn a part about x, neither of them alone."""
+
 STEP: Final = 1e-4
 """mm; over which the analytic method's slopes by displacements of bores are taken, to both sides."""
 
@@ -98,7 +103,7 @@ class Joined:
         return tuple(drive for drive in self.drives if drive.joint in self.reaches_of(name))
 
     def reaches_of(self, name: str) -> Mapping[str, float]:
-        """Movement of a measure per turn of each joint that it depends on, per rad, in a build like others."""
+        """Movement of a measure per turn of each joint on which it depends, alone or with others, in some build."""
         if name not in self._known_reaches:
             self._known_reaches[name] = dict(self._reaches(name)) if self.drives else {}
         return self._known_reaches[name]
@@ -115,15 +120,22 @@ class Joined:
         if own.assembly.measures[name].kind == "clearance":  # whose solids are not read here
             yield from ((drive.joint, 0.0) for drive in self.drives)
             return
-        rows = np.repeat(widely(own.contributors)[:1], 1 + len(turns), axis=0)
-        rows[np.arange(1, len(rows)), turns] += TURN
-        values, codes = placing.values(own.assembly, rows, [name])[name]
-        for drive, value, code in zip(self.drives, values[1:], codes[1:], strict=True):
-            moved = abs(float(value - values[0]))
-            if code != OK or codes[0] != OK:
+        builds = widely(own.contributors)[: len(OTHERS)].copy()
+        others = np.sin(
+            np.outer(OTHERS, np.arange(1.0, 1 + len(turns)))
+        )  # no two alike, none of them 0 but in the first
+        builds[:, turns] += TURN * others
+        rows = np.repeat(builds[:, None], 1 + len(turns), axis=1)
+        rows[:, np.arange(1, 1 + len(turns)), turns] += TURN
+        read, status = placing.values(own.assembly, rows.reshape(-1, rows.shape[2]), [name])[name]
+        values, is_ok = read.reshape(rows.shape[:2]), (status == OK).reshape(rows.shape[:2])
+        moved = np.where(is_ok[:, 1:] & is_ok[:, :1], np.abs(values[:, 1:] - values[:, :1]), np.nan)
+        for drive, its in zip(self.drives, moved.T, strict=True):
+            known = its[np.isfinite(its)]
+            if not len(known):
                 yield drive.joint, 0.0
-            elif moved >= NOTHING:
-                yield drive.joint, moved / TURN
+            elif known.max() >= NOTHING:
+                yield drive.joint, float(known[known >= NOTHING][0]) / TURN
 
     def lever_of(self, name: str, drive: JointDrive) -> float:
         """Nominal change of a measure of the assembly per turn of a joint, to first order [mm/rad]."""

@@ -175,10 +175,10 @@ def model_from_scene(scene: Scene) -> Model:
         arms=arms,
         trains=trains,
     )
-    return replace(model, measures=tuple(_jumping(model, measure_of(scene, name, model)) for name in scene.measures))
+    return replace(model, measures=tuple(jumping(model, measure_of(scene, name, model)) for name in scene.measures))
 
 
-def _jumping(model: Model, measure: Measure) -> Measure:
+def jumping(model: Model, measure: Measure) -> Measure:
     """The measure; if single teeth deviate it jumps from position to position, as they come into contact."""
     meshes = [model.mesh(backlash.mesh) for _, backlash in measure.kind.backlashes]
     gears = {gear for mesh in meshes for gear in (mesh.driver, mesh.driven)}
