@@ -105,6 +105,7 @@ def test_lengths_alone_are_converted_and_all_of_them(run: Run) -> None:
         *("below_limit_ppm", "above_limit_ppm", "failed_ppm", "out_ppm", "trial_of_the_largest", "standard_errors"),
         *("below_limit_ppm_95", "above_limit_ppm_95", "out_ppm_95", "percent", "largest_percent"),
         *("analytic_percent", "geometric_percent", "geometric_percent_se", "high_low_mean_percent"),
+        "explained_percent",
     }
     named = {name for kind in (AssemblyMeasureSummary, Witnessed) for name in numbers(kind)}
     assert named - none == LENGTHS

@@ -24,6 +24,7 @@ STATED: Final = {
     "measures.*.lower_limit": "the scene states it",
     "measures.*.upper_limit": "the scene states it",
     "measures.*.load_changes_deg": "the scene states it",
+    "measures.*.shares_by.*": "what our own regression explains",
     "measures.*.order": "the scene states it",
     "measures.*.deflection_um": "the scene states it",
     "planetary_sets.*.spring.*": "what follows of the scene's own spring",

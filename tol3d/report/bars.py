@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, legend_below, plain_axes
-from tol3d.report.column import Column, ranked_contributors, shares_of
+from tol3d.report.column import Column, ranked_contributors, shares_of, unexplained_words
 from tol3d.report.label import wrapped
 from tol3d.report.number import percent_text
 from tol3d.runs.summary.measure import MeasureSummary
@@ -157,6 +157,7 @@ def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str,
     axes.set_xlim(left=0)
     axes.set_xlabel("share of the variance [%]", fontsize=10)
     axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
+    axes.set_title(unexplained_words(measure), loc="right", fontsize=NAME_SIZE)
     legend_below(axes)
 
 

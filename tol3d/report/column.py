@@ -1,10 +1,10 @@
 """The columns in which a measure is shown: our methods, and what others published."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.measure import MeasureSummary, SharesBy, Unexplained
 from tol3d.runs.summary.values import Section
 
 Method = Literal["closed form", "analytic", "geometric", "high-low-mean", "published"]
@@ -13,6 +13,12 @@ HEADINGS: Mapping[Method, str] = {
     "closed form": "analytic (closed form)",
     "analytic": "analytic (same trials)",
     "geometric": "3D simulation",
+}
+NOT_ATTRIBUTED = "not attributed"
+SHARES_BY: Mapping[SharesBy, str] = {"total effects": "total effects", "high-low-mean": "high–low–mean"}
+SHARES_BY_MEANS: Mapping[SharesBy, str] = {
+    "total effects": "total effects, mean squared change of the measure when one contributor is drawn again",
+    "high-low-mean": "high–low–mean, squared range over one contributor's limits",
 }
 SHARES: Mapping[Method, str] = {"analytic": "analytic_percent", "geometric": "geometric_percent"}
 
@@ -70,6 +76,40 @@ def shares_of(measure: MeasureSummary) -> list[Column]:
     return [column for column in columns_of(measure) if any(p is not None for p in column.percents.values())]
 
 
+def leading_shares(measure: MeasureSummary) -> Column | None:
+    """The column whose shares are named first: the 3D simulation's, or the analytic one's."""
+    columns = shares_of(measure)
+    return next((own for own in columns if own.method == "geometric"), columns[0] if columns else None)
+
+
+def unexplained_of(measure: MeasureSummary, column: Column) -> Unexplained | None:
+    """What a column's shares are by, where a regression explains too little of the variance; else None."""
+    by_method = measure.shares_by or {}
+    return by_method.get(column.method) if column.method in ("analytic", "geometric") else None
+
+
+def unexplained_words(measure: MeasureSummary) -> str:
+    """What is not attributed, and by what the leading shares are instead; "" where a regression explains enough."""
+    leading = leading_shares(measure)
+    unexplained = unexplained_of(measure, leading) if leading else None
+    if unexplained is None:
+        return ""
+    explained = unexplained.explained_percent
+    left = "" if explained is None else f"{NOT_ATTRIBUTED} {100 - explained:.0f} %; "
+    return f"{left}by {SHARES_BY[unexplained.by]}"
+
+
+def shares_by_words(measures: Iterable[MeasureSummary]) -> Iterator[str]:
+    """A sentence where some shares are not those of the regression; nothing if all are."""
+    used = {own.by for measure in measures for own in (measure.shares_by or {}).values()}
+    meanings = [SHARES_BY_MEANS[by] for by in SHARES_BY_MEANS if by in used]
+    if meanings:
+        yield (
+            f"{NOT_ATTRIBUTED} first: a regression on the contributors explains less than 90 % of the variance, or has "
+            f"too few trials; the shares are then parts of the sum of all contributors, by {'; by '.join(meanings)}"
+        )
+
+
 def contributor_columns(measure: MeasureSummary) -> list[Column]:
     """The columns that know shares, of the variance and of high-low-mean: ours first."""
     alone = Column("high–low–mean", "high-low-mean", None, _percents(measure, "high_low_mean_percent"))
@@ -86,9 +126,8 @@ def contributor_columns(measure: MeasureSummary) -> list[Column]:
 
 def ranked_contributors(measure: MeasureSummary) -> list[str]:
     """Contributors by falling share: the 3D simulation's, or the analytic one."""
-    columns = shares_of(measure)
     names = [contributor.name for contributor in measure.contributors]
-    leading = next((c for c in columns if c.method == "geometric"), columns[0] if columns else None)
+    leading = leading_shares(measure)
     if leading is None:
         return names
     return sorted(names, key=lambda name: -(leading.percents.get(name) or 0.0))

@@ -4,7 +4,17 @@ import math
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
-from tol3d.report.column import Column, Method, columns_of, contributor_columns, ranked_contributors, seated_text
+from tol3d.report.column import (
+    NOT_ATTRIBUTED,
+    SHARES_BY,
+    Column,
+    Method,
+    columns_of,
+    contributor_columns,
+    ranked_contributors,
+    seated_text,
+    unexplained_of,
+)
 from tol3d.report.heading import MOST_CONTRIBUTORS
 from tol3d.report.number import (
     NOTHING,
@@ -40,7 +50,6 @@ UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]", "pi
 SIDES = ("below", "above")
 INDICES = {"pp": "Pp", "ppk": "Ppk"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
-NOT_ATTRIBUTED = "not attributed"
 ATTRIBUTING: Set[Method] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
 SHARE_HEADINGS: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D simulation"}
@@ -150,11 +159,11 @@ def _further_rows(further: Sequence[FurtherRow], columns: Sequence[Column], unit
 
 
 def contributors_table(measure: MeasureSummary) -> Table:
-    """Shares of the variance, the largest first, of many the sum of the rest; of the 3D simulation with their error."""
-    shares = [
-        replace(column, heading=SHARE_HEADINGS.get(column.method, column.heading))
-        for column in contributor_columns(measure)
-    ]
+    """Shares of the variance, the largest first, of many the sum of the rest; of the 3D simulation with their error.
+
+    What is not attributed stands last, but first where it is so much that the shares are not those of the regression.
+    """
+    shares = contributor_columns(measure)
     errors = {share.name: share.geometric_percent_se for share in measure.contributors}
     ranked = ranked_contributors(measure)
     shown, rest = ranked[:MOST_CONTRIBUTORS], ranked[MOST_CONTRIBUTORS:]
@@ -162,10 +171,16 @@ def contributors_table(measure: MeasureSummary) -> Table:
     if rest:
         sums = [_sum_of(measure, column, rest) for column in shares]
         rows.append(Row(f"and {len(rest)} more", list(map(percent_cell, sums)), "dim", unit="%"))
-    left = not_attributed(measure)
-    if left:
-        rows.append(Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%"))
-    return Table("share [%]", _headings(shares), rows)
+    if left := not_attributed(measure):
+        row = Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%")
+        rows = [row, *rows] if measure.shares_by else [*rows, row]
+    return Table("share [%]", _headings([_headed(measure, column) for column in shares]), rows)
+
+
+def _headed(measure: MeasureSummary, column: Column) -> Column:
+    """A column of shares with its heading, which says by what they are if not by regression."""
+    heading, unexplained = SHARE_HEADINGS.get(column.method, column.heading), unexplained_of(measure, column)
+    return replace(column, heading=f"{heading}, {SHARES_BY[unexplained.by]}" if unexplained else heading)
 
 
 def _share(measure: MeasureSummary, column: Column, name: str, error: float | None) -> Shown:
@@ -192,12 +207,16 @@ def _varies(measure: MeasureSummary, column: Column) -> bool:
 def not_attributed(measure: MeasureSummary) -> list[float | None]:
     """Percentage that each method attributes to no contributor, None for other columns; [] if it prints as zero."""
     left = [
-        100 - sum(share or 0.0 for share in column.percents.values())
-        if column.method in ATTRIBUTING and _varies(measure, column)
-        else None
+        _not_attributed(measure, column) if column.method in ATTRIBUTING and _varies(measure, column) else None
         for column in contributor_columns(measure)
     ]
     return left if any(abs(rest or 0.0) > UNEXPLAINED_SHOWN for rest in left) else []
+
+
+def _not_attributed(measure: MeasureSummary, column: Column) -> float | None:
+    if unexplained := unexplained_of(measure, column):
+        return None if unexplained.explained_percent is None else 100 - unexplained.explained_percent
+    return 100 - sum(share or 0.0 for share in column.percents.values())
 
 
 def curve_table(measure: MeasureSummary, curve: CurveMethods) -> Table:

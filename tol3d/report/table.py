@@ -4,12 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum
 from typing import NamedTuple
 
-from tol3d.report.column import seated_text
+from tol3d.report.column import NOT_ATTRIBUTED, seated_text, shares_by_words
 from tol3d.report.ends import is_bounded
 from tol3d.report.heading import MOST_CONTRIBUTORS, limits_text, shown_measures
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.measure_table import (
-    NOT_ATTRIBUTED,
     SIDES,
     contributors_table,
     curve_table,
@@ -204,6 +203,7 @@ def meanings(run: RunSummary) -> Iterator[str]:
         yield f"{MORE_CONTRIBUTORS}; all in summary.json"
     if any(map(not_attributed, scalars)):
         yield NOT_ATTRIBUTED_MEANS
+    yield from shares_by_words(scalars)
     limited = [measure for measure in scalars if limit_rows(measure)]
     if any(map(seated_text, limited)):
         yield _failures_count(run)

@@ -5,7 +5,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
-from tol3d.report.column import columns_of, ranked_contributors, seated_text, shares_of
+from tol3d.report.column import (
+    columns_of,
+    leading_shares,
+    ranked_contributors,
+    seated_text,
+    shares_by_words,
+    unexplained_words,
+)
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
@@ -138,7 +145,8 @@ def _largest_contributors(run: RunSummary) -> list[PageItem]:
     told = {name: _largest(run.measures[name], most) for name in names}
     rows = [Row(name, [text]) for name, text in told.items() if text != NOTHING]
     head = Heading("share of the variance", words=True)
-    return [BLANK, Table("largest contributors", [head], rows)] if rows else []
+    notes = map(note, shares_by_words(run.measures[name] for name in names))
+    return [BLANK, Table("largest contributors", [head], rows), *notes] if rows else []
 
 
 def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
@@ -230,13 +238,14 @@ def _ppk_by(measure: MeasureSummary) -> str:
 
 
 def _largest(measure: MeasureSummary, most: int) -> str:
-    """The contributors with the largest shares of the variance."""
-    columns = shares_of(measure) if measure.take != "curve" else []
-    leading = next((column for column in columns if column.method == measure.best_method), None)
+    """The contributors with the largest shares of the variance; first what is not attributed, if it is much."""
+    leading = leading_shares(measure) if measure.take != "curve" else None
     if leading is None:
         return NOTHING
     shares = {name: leading.percents.get(name) or 0.0 for name in ranked_contributors(measure)[:most]}
-    return ", ".join(f"{name} {share:.0f} %" for name, share in shares.items() if share >= LEAST_NAMED) or NOTHING
+    named = ", ".join(f"{name} {share:.0f} %" for name, share in shares.items() if share >= LEAST_NAMED)
+    words = unexplained_words(measure)
+    return f"{words}: {named or NOTHING}" if words else named or NOTHING
 
 
 def _notes(run: RunSummary) -> Iterator[str]:

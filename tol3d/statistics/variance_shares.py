@@ -17,6 +17,8 @@ Places = NDArray[np.intp]
 
 CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only
 RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns closer than that say the same
+MOST_SHARE = 1.0005  # a share of more prints as over 100 %
+BY_CHANCE = 5.0  # over the number of trials; -z²/4n is the least share of an independent group that is z sigma off
 
 
 Products = Callable[[Array], Array]
@@ -152,11 +154,13 @@ class Shares:
         share: the fraction that each group explains.
         standard_error: of each share.
         unexplained: the fraction that no group explains.
+        determined: the fraction that the groups explain, less what as many columns of mere noise would (Ezekiel).
     """
 
     share: Mapping[str, float]
     standard_error: Mapping[str, float]
     unexplained: float
+    determined: float
 
 
 def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[Sequence[str]] = ()) -> Shares:
@@ -164,9 +168,12 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
 
     One least-squares fit on all features; the share of a group is cov(its part of the fit, y) /
     var(y). With independent groups this tends to the group's fraction of the variance; it may come
-    out slightly negative by chance. What no feature follows (interactions, higher powers, noise of
-    the engine) is unexplained. Constant columns have no share; of columns that say the same each
-    takes its part. q columns of mere noise explain about q / n of the unexplained part.
+    out slightly negative by chance. Where some are more negative, or larger than 1, the groups are
+    correlated in these trials, as those of builds that could be assembled are: they have relative
+    weights instead, which are never negative and explain as much. What no feature follows
+    (interactions, higher powers, noise of the engine) is unexplained. Constant columns have no share;
+    of columns that say the same each takes its part. q columns of mere noise explain about q / n of
+    the unexplained part.
 
     A constant target has nothing to share: all zeros. With no more rows than the fit has unknowns
     it says nothing: all NaN.
@@ -178,17 +185,22 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
     """
     features = [column for group in groups.values() for column in range(len(sums.means) - 1)[group]]
     if sums.count <= len(features) + 1:
-        return Shares(dict.fromkeys(groups, math.nan), dict.fromkeys(groups, math.nan), math.nan)
+        return Shares(dict.fromkeys(groups, math.nan), dict.fromkeys(groups, math.nan), math.nan, math.nan)
     sigma = column_sigmas(sums)
     if sigma[-1] == 0:
-        return Shares(dict.fromkeys(groups, 0.0), dict.fromkeys(groups, 0.0), 0.0)
-    explained = _explained(sums, sigma, [column for column in features if sigma[column] > 0])
+        return Shares(dict.fromkeys(groups, 0.0), dict.fromkeys(groups, 0.0), 0.0, 1.0)
+    used = [column for column in features if sigma[column] > 0]
+    explained = _explained(sums, sigma, used)
     share = {name: float(np.sum(explained[group])) for name, group in groups.items()}
     for names in together:
         share |= _divided(sums, sigma, {name: groups[name] for name in names if name in groups}, share)
+    if max(share.values(), default=0.0) > MOST_SHARE or min(share.values(), default=0.0) < -BY_CHANCE / sums.count:
+        weights = _relative_weights(sums, sigma, used)
+        share = {name: float(np.sum(weights[group])) for name, group in groups.items()}
     unexplained = max(1 - sum(share.values()), 0.0)
     errors = {name: _standard_error(value, unexplained, sums.count) for name, value in share.items()}
-    return Shares(share, errors, unexplained)
+    determined = 1.0 - unexplained * (sums.count - 1) / (sums.count - 1 - len(used))
+    return Shares(share, errors, unexplained, determined)
 
 
 def column_sigmas(sums: RegressorSums) -> Array:
@@ -207,14 +219,37 @@ def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
     explained = np.zeros(len(sigma) - 1)
     if not used:
         return explained
-    columns = [*used, -1]
-    scale = sigma[columns]
-    correlation = sums.comoments[np.ix_(columns, columns)] / sums.count / scale / scale[:, None]
+    correlation = _correlations(sums, sigma, [*used, -1])
     r = correlation[:-1, -1]
     modes = factorised(correlation[:-1, :-1])
     along = np.sum(modes.vectors * r[:, None], axis=0) / modes.values
     explained[used] = np.sum(modes.vectors * along, axis=1) * r
     return explained
+
+
+def _relative_weights(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
+    """The fraction of the target's variance that each feature explains (features,), by relative weights.
+
+    The target is regressed on uncorrelated columns that are closest to the features; what each of these explains
+    goes to the features by the squares of their correlations with it. Never negative, and r squared in all.
+
+    Source: Genizi, Decomposition of R² in multiple regression with correlated regressors, Statistica Sinica 3 (1993);
+    Johnson, A heuristic method for estimating the relative weight of predictor variables in multiple regression,
+    Multivariate Behavioral Research 35 (2000).
+    """
+    weights = np.zeros(len(sigma) - 1)
+    correlation = _correlations(sums, sigma, [*used, -1])
+    modes = factorised(correlation[:-1, :-1])
+    roots = np.sqrt(modes.values)
+    uncorrelated = modes.vectors @ ((modes.vectors.T @ correlation[:-1, -1]) / roots)
+    weights[used] = ((modes.vectors * roots) @ modes.vectors.T) ** 2 @ uncorrelated**2
+    return weights
+
+
+def _correlations(sums: RegressorSums, sigma: Array, columns: list[int]) -> Array:
+    """Correlations of columns that vary, of all features and the target, among each other."""
+    scale = sigma[columns]
+    return np.asarray(sums.comoments[np.ix_(columns, columns)] / sums.count / scale / scale[:, None])
 
 
 def _divided(
@@ -225,9 +260,7 @@ def _divided(
     if len(groups) < 2 or not columns:
         return {}
     whole = [column for column in range(len(sums.means) - 1) if sigma[column] > 0]
-    scale = sigma[[*whole, -1]]
-    picked = [*whole, -1]
-    correlation = sums.comoments[np.ix_(picked, picked)] / sums.count / scale / scale[:, None]
+    correlation = _correlations(sums, sigma, [*whole, -1])
     slopes = factorised(correlation[:-1, :-1]).inverse @ correlation[:-1, -1]
     places = [whole.index(column) for column in columns]
     ends = np.cumsum([0, *(sum(sigma[range(len(sigma) - 1)[own]] > 0) for own in groups.values())]).tolist()

@@ -6,7 +6,8 @@ that read others are drawn after them, from streams of their own. Uniforms of co
 trial's by themselves.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -53,6 +54,21 @@ def drawn_ones(simulation: Simulation, trials: Sequence[int]) -> Trials:
     """Some trials as the study draws them, wherever they are."""
     numbers = np.array(trials, dtype=np.int64)
     return _trials(simulation, lambda sampler, stream: sampler.uniforms_of(stream, numbers), len(numbers))
+
+
+def redrawn(simulation: Simulation, count: int, names: Collection[str]) -> Trials:
+    """Trials 0 ... count - 1 by Monte Carlo, whatever the study's sampler, with other draws of some contributors.
+
+    Args:
+        simulation: whose seed they have.
+        count: of trials.
+        names: of contributors whose draws are those of trials count ... 2 count - 1.
+    """
+    return _trials(
+        replace(simulation, study=replace(simulation.study, sampler="monte_carlo", replicates=1)),
+        lambda sampler, stream: sampler.uniforms(stream, count if stream.name in names else 0, count),
+        count,
+    )
 
 
 def deviations(simulation: Simulation, first: int, count: int) -> Array:

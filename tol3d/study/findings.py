@@ -80,17 +80,28 @@ def run_tables(simulation: Simulation, tally: Tally, found: Mapping[str, Any]) -
 def contributor_rows(measures: Mapping[str, Mapping[str, Any]]) -> Iterator[list[Any]]:
     """Shares of the variance [%]: a row a contributor, a column a measure, one matrix below the other for each kind.
 
-    Nothing stands where a contributor does not act on a measure, or its share is not known.
+    Nothing stands where a contributor does not act on a measure, or its share is not known. Where shares are not those
+    of a regression, what it does not attribute stands first, and below all matrices what the shares are by.
     """
     shares = {name: own["contributors"] for name, own in measures.items() if own.get("contributors")}
     names = dict.fromkeys(share["name"] for own in shares.values() for share in own)
     if not names:
         return
     yield ["share of the variance [%]", "contributor", *shares]
+    others = {
+        key: [measures[name].get("shares_by", {}).get(key.removesuffix("_percent")) for name in shares]
+        for key in SHARES
+    }
     for key, words in SHARES.items():
         by_measure = [{share["name"]: share.get(key) for share in own} for own in shares.values()]
+        if any(others[key]):
+            explained = [own and own["explained_percent"] for own in others[key]]
+            yield [words, "not attributed", *(None if own is None else 100 - own for own in explained)]
         if any(value is not None for own in by_measure for value in own.values()):
             yield from ([words, name, *(own.get(name) for own in by_measure)] for name in names)
+    for key, words in SHARES.items():
+        if any(others[key]):
+            yield ["shares by", words, *("regression" if own is None else own["by"] for own in others[key])]
 
 
 def _csv(rows: Iterable[Sequence[Any]]) -> str:

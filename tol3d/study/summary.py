@@ -7,30 +7,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.runs.summary.agreement import Agreement
-from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn
+from tol3d.runs.summary.measure import ContributorShare, MeasureSummary, Published, PublishedColumn, Unexplained
 from tol3d.runs.summary.published import PER_INTERNAL, converted
 from tol3d.runs.summary.run import Findings, MechanismSummary, StudySummary
 from tol3d.runs.summary.sample import CurveMethods, CurveSample, Methods, Normal
+from tol3d.runs.summary.values import Method as MethodName
 from tol3d.runs.summary.values import Unit, made
 from tol3d.statistics import Agreement as Comparison
-from tol3d.statistics import IndependentSums, LimitCounts, Moments, independent_shares, shares
+from tol3d.statistics import LimitCounts, Moments
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
+from tol3d.study.attribution import Attributed, Attribution
 from tol3d.study.correlated import closed_form_of, correlation_warnings
 from tol3d.study.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percents, to_first_order
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
-from tol3d.study.regression import Sums
-from tol3d.study.regressors import MOST_REGRESSED, regressor_groups
+from tol3d.study.regressors import MOST_REGRESSED
 from tol3d.study.sample import finite, in_unit, listed, sample_summary
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
 from tol3d.study.tally import MeasureTally, Tally
 from tol3d.system.closed_form import ClosedForm
-from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import DependentlyJudged
 from tol3d.system.draw import JudgedDraw
 from tol3d.system.faults import Origin
@@ -38,27 +38,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.method import Method
 from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 from tol3d.system.stated import mean_deviations, stated
-from tol3d.system.system import System
 from tol3d.units import FACTORS
-
-Percent = tuple[float | None, float | None]
-"""A share of the variance [%] and its standard error; None where unknown."""
-
-
-def share_percents(
-    system: System, measure: Measure, sums: Sums | None, copula: Copula = INDEPENDENT
-) -> dict[str, Percent]:
-    """Share of the variance of each acting contributor by regression."""
-    groups = regressor_groups(system, measure)
-    if sums is None:
-        return dict.fromkeys(groups, (None, None))
-    if isinstance(sums, IndependentSums):
-        share, error, _ = independent_shares(sums)
-        found = zip(groups, share.tolist(), error.tolist(), strict=True)
-        return {name: (finite(100 * own), finite(100 * its)) for name, own, its in found}
-    known = shares(sums, groups, [own.names for own in copula.blocks])
-    return {name: (finite(100 * known.share[name]), finite(100 * known.standard_error[name])) for name in groups}
-
 
 FAILURES_NAMED = 1e-3  # of the trials; a third of the 0.27 % that ±3 sigma leave out, in the table all the same
 NAMED_AT_ONCE = 6  # measures in one warning
@@ -71,6 +51,7 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
     builds = _single_builds(simulation, method)
     alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, method).values)
+    attributed = _attributed(simulation, method, tally, alone)
     return made(
         Findings,
         scene=simulation.system.name,
@@ -90,6 +71,7 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
                 tally,
                 explained.get(measure.name),
                 alone.get(measure.name, {}),
+                attributed.get(measure.name, {}),
                 builds[measure.name],
             )
             for measure in simulation.system.measures
@@ -213,6 +195,7 @@ def _measure(
     tally: Tally,
     explanation: Explanation | None,
     alone: Percents,
+    attributed: Mapping[str, Attribution],
     builds: tuple[Methods, Methods],
 ) -> MeasureSummary:
     """A measure: statistics of both methods, contributors, published columns; its kind and no more of its system's."""
@@ -239,7 +222,8 @@ def _measure(
         agreement=_agreement(found.agreement, explanation) if found and found.agreement else None,
         position_deg=np.degrees(measure.positions.shown or measure.positions.fixed or ()).tolist() if curve else None,
         curve=_curve(simulation, measure, tally.curves[measure.name]) if curve else None,
-        contributors=_shares(simulation, measure, own, alone) if own else [],
+        contributors=_shares(simulation, measure, own, alone, attributed) if own else [],
+        shares_by=_shares_by(attributed) or None,
         published=_published(simulation, measure),
     )
 
@@ -287,22 +271,55 @@ def _agreement(compared: Comparison, explanation: Explanation | None) -> Agreeme
     )
 
 
-def _shares(simulation: Simulation, measure: Measure, own: MeasureTally, alone: Percents) -> list[ContributorShare]:
-    independent = own.analytic.replicated is None  # what the error of a share by regression is worked out for
+def _attributed(
+    simulation: Simulation, method: Method | None, tally: Tally, alone: Mapping[str, Percents]
+) -> Mapping[str, Mapping[str, Attribution]]:
+    """Shares of the variance by measure and method, but of closed forms, which know their own."""
+    scalars = [measure for measure in simulation.system.measures if measure.name in tally.measures]
+    own = tally.measures
+    regressed = {
+        ANALYTIC: {m.name: own[m.name].analytic_regressors for m in scalars if closed_form_of(simulation, m) is None},
+        GEOMETRIC: {m.name: sums for m in scalars if (sums := own[m.name].geometric_regressors) is not None},
+    }
+    leading = GEOMETRIC if method is not None else ANALYTIC
+    by_method = {
+        name: Attributed(simulation, each, tally.trials, alone if name == leading else None).of(regressed[name])
+        for name, each in evaluations(simulation.system, method).items()
+    }
+    return {m.name: {name: found[m.name] for name, found in by_method.items() if m.name in found} for m in scalars}
+
+
+def _shares(
+    simulation: Simulation, measure: Measure, own: MeasureTally, alone: Percents, found: Mapping[str, Attribution]
+) -> list[ContributorShare]:
     form = closed_form_of(simulation, measure)
-    by_sample = share_percents(simulation.system, measure, own.analytic_regressors, simulation.copula)
-    geometric = share_percents(simulation.system, measure, own.geometric_regressors, simulation.copula)
+    percents = {method: each.percents for method, each in found.items()}
+    known = percents.get(GEOMETRIC, {})
+    # the error of a share by regression is worked out for independent trials
+    with_errors = own.analytic.replicated is None or found[GEOMETRIC].by != "regression" if known else False
     return [
         made(
             ContributorShare,
-            name=contributor.name,
-            analytic_percent=form.percent(contributor.name) if form else by_sample[contributor.name][0],
-            geometric_percent=geometric[contributor.name][0],
-            geometric_percent_se=geometric[contributor.name][1] if independent else None,
-            high_low_mean_percent=alone[contributor.name],
+            name=name,
+            analytic_percent=form.percent(name) if form else percents[ANALYTIC][name][0],
+            geometric_percent=known[name][0] if known else None,
+            geometric_percent_se=known[name][1] if with_errors else None,
+            high_low_mean_percent=alone[name],
         )
-        for contributor in simulation.system.acting(measure)
+        for name in (contributor.name for contributor in simulation.system.acting(measure))
     ]
+
+
+def _shares_by(found: Mapping[str, Attribution]) -> dict[MethodName, Unexplained]:
+    """Means by which shares were found, of the methods whose regression explains too little."""
+    methods: dict[MethodName, str] = {"analytic": ANALYTIC, "geometric": GEOMETRIC}
+    return {
+        method: made(
+            Unexplained, by=own.by, explained_percent=None if own.explained is None else max(100 * own.explained, 0.0)
+        )
+        for method, name in methods.items()
+        if (own := found.get(name)) is not None and own.by != "regression"
+    }
 
 
 def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveMethods:

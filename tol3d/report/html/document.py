@@ -12,6 +12,7 @@ import numpy as np
 
 from tol3d.errors import InputError, RunError, SceneError
 from tol3d.report.bars import Bars
+from tol3d.report.column import unexplained_words
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.convergence import convergence_of
 from tol3d.report.distribution import samples_of
@@ -199,7 +200,8 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
         yield page_blocks(blocks[first:], 4)
         if pareto := pareto_chart(measure) if measure.take != "curve" else None:
-            yield tag("figure", pareto, tag("figcaption", *_legend(_methods(measure))))
+            words = [tag("span", text)] if (text := unexplained_words(measure)) else []
+            yield tag("figure", pareto, tag("figcaption", *words, *_legend(_methods(measure))))
         if (
             run.keeps_trials
             and (difference := difference_of(run, name))

@@ -29,6 +29,10 @@ from tol3d.system.outcome import SEATED
 Worse = Literal["low", "high"]
 
 
+SharesBy = Literal["regression", "total effects", "high-low-mean"]
+"""Means by which shares of the variance are found."""
+
+
 class ContributorShare(Section):
     """Shares of the variance of a measure [%]."""
 
@@ -37,6 +41,13 @@ class ContributorShare(Section):
     geometric_percent: Known
     geometric_percent_se: Known = Field(description="one standard error")
     high_low_mean_percent: Known
+
+
+class Unexplained(Section):
+    """Shares of a measure that a regression on its contributors does not explain."""
+
+    by: SharesBy = Field(description="where the shares are from instead, as parts of the sum of all contributors'")
+    explained_percent: Known = Field(description="of the variance, by the regression, less what chance explains")
 
 
 class Published(Section):
@@ -116,6 +127,9 @@ class MeasureSummary(Section):
     position_deg: Maybe[Numbers] = LEFT_OUT
     curve: Maybe[CurveMethods] = LEFT_OUT
     contributors: list[ContributorShare]
+    shares_by: Maybe[Mapping[Method, Unexplained]] = Field(
+        default=LEFT_OUT, description="methods whose regression explains less than 90 % of the variance"
+    )
     published: Mapping[Label, PublishedColumn]
 
     # how it describes itself; a mechanism's class does so in its own words --------------------------------

@@ -1,0 +1,211 @@
+"""Shares of the variance of each contributor: one decision for the screen, reports, charts and tables.
+
+They are those of a regression where it explains EXPLAINED of the variance. Of the size of a vector, the worst of
+several poses or a product it explains little, and names what little it explains. Then total effects take its place, as
+shares of their sum, where they need less than MOST_OF_RUN of the run's builds: builds in which one contributor is drawn
+again and all else stays. Otherwise it is high–low–mean, two builds a contributor.
+
+Source of total effects: Jansen, Analysis of variance designs for model output, Comput. Phys. Commun. 117 (1999).
+"""
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.measure import SharesBy
+from tol3d.statistics import IndependentSums, independent_shares, shares
+from tol3d.study.draws import redrawn
+from tol3d.study.evaluation import Evaluation, batches
+from tol3d.study.high_low_mean import Percents, high_low_mean_percents
+from tol3d.study.regression import Sums
+from tol3d.study.regressors import regressor_groups
+from tol3d.study.sample import finite
+from tol3d.study.simulation import Simulation
+from tol3d.system.copula import INDEPENDENT, Copula
+from tol3d.system.dependent import reads_of
+from tol3d.system.measure import Measure
+from tol3d.system.stated import component_slices
+from tol3d.system.system import System
+from tol3d.system.trials import Trials, joined
+from tol3d.units import RESOLVED
+
+Percent = tuple[float | None, float | None]
+"""A share of the variance [%] and its standard error; None where unknown."""
+
+EXPLAINED: Final = 0.9
+"""Fraction of the variance from which on shares are those of the regression."""
+MOST_OF_RUN: Final = 0.1
+"""Builds for total effects, as a fraction of the trials."""
+MOST_PAIRS: Final = 512
+"""Pairs of builds of each contributor; so many give an effect to 6 %."""
+LEAST_PAIRS: Final = 32
+"""Pairs from which on total effects are taken before high–low–mean: they are known to a quarter."""
+FEWEST_PAIRS: Final = 8
+"""Pairs from which on total effects say more than nothing, where high–low–mean sees no effect at all: to half."""
+
+
+@dataclass(frozen=True)
+class Attribution:
+    """Shares of the variance of one measure, by one method.
+
+    Args:
+        percents: of each acting contributor, with their standard errors.
+        by: means by which they were found.
+        explained: fraction of the variance that the regression explains, less what chance does; None where unknown.
+    """
+
+    percents: Mapping[str, Percent]
+    by: SharesBy
+    explained: float | None
+
+
+def by_regression(system: System, measure: Measure, sums: Sums | None, copula: Copula = INDEPENDENT) -> Attribution:
+    """Shares of the variance of each acting contributor by regression."""
+    groups = regressor_groups(system, measure)
+    if sums is None:
+        return Attribution(dict.fromkeys(groups, (None, None)), "regression", None)
+    if isinstance(sums, IndependentSums):
+        share, error, unexplained = independent_shares(sums)
+        percents = {
+            name: (finite(100 * own), finite(100 * its))
+            for name, own, its in zip(groups, share.tolist(), error.tolist(), strict=True)
+        }
+        return Attribution(percents, "regression", finite(1.0 - unexplained))
+    found = shares(sums, groups, [own.names for own in copula.blocks])
+    percents = {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
+    return Attribution(percents, "regression", finite(found.determined))
+
+
+@dataclass(frozen=True)
+class Attributed:
+    """Attributions of a run's scalar measures by one method.
+
+    Args:
+        simulation: that was run.
+        evaluation: of the system by the method.
+        trials: of the run.
+        alone: high–low–mean shares by measure, where the method's are known.
+    """
+
+    simulation: Simulation
+    evaluation: Evaluation
+    trials: int
+    alone: Mapping[str, Percents] | None = None
+
+    def of(self, regressed: Mapping[str, Sums]) -> Mapping[str, Attribution]:
+        """Attributions by measure.
+
+        Args:
+            regressed: sums of each scalar measure with its regressors.
+        """
+        system, copula = self.simulation.system, self.simulation.copula
+        measures = [own for own in system.measures if own.name in regressed]
+        found = {own.name: by_regression(system, own, regressed[own.name], copula) for own in measures}
+        lacking = [own for own in measures if _lacks(regressed[own.name], own, found[own.name])]
+        if not lacking:
+            return found
+        ends = self.alone
+        if ends is None:
+            ends = high_low_mean_percents(system, lacking, self.evaluation.values)
+        effects = self._total_effects(lacking)
+        for measure in lacking:
+            own, names = found[measure.name], found[measure.name].percents
+            pairs, known = effects.get(measure.name, (0, {}))
+            high_low = {name: share for name in names if (share := ends.get(measure.name, {}).get(name)) is not None}
+            seen = len(high_low) == len(names) and any(high_low.values())
+            if known and (pairs >= LEAST_PAIRS or (not seen and pairs >= FEWEST_PAIRS)):
+                found[measure.name] = replace(own, percents=known, by="total effects")
+            elif seen:
+                whole = sum(high_low.values())
+                percents = {name: (100 * share / whole, None) for name, share in high_low.items()}
+                found[measure.name] = replace(own, percents=percents, by="high-low-mean")
+        return found
+
+    def _total_effects(self, measures: Sequence[Measure]) -> Mapping[str, tuple[int, Mapping[str, Percent]]]:
+        """By measure the least number of pairs of builds of a contributor that could be assembled, and the shares.
+
+        Nothing where contributors are correlated: they have no total effects of their own.
+        """
+        system = self.simulation.system
+        acting = {own.name: [each.name for each in system.acting(own)] for own in measures}
+        names = [own.name for own in system.contributors if any(own.name in each for each in acting.values())]
+        count = min(int(MOST_OF_RUN * self.trials) // (len(names) + 1), MOST_PAIRS)
+        if self.simulation.copula.blocks or count < FEWEST_PAIRS:
+            return {}
+        pairs = _Pairs(self.simulation, count, names)
+        plain = self.evaluation.of(pairs.plain, measures)
+        steps: dict[str, dict[str, Array]] = {own.name: {} for own in measures}
+        for batch in batches(names, [count] * len(names), pairs.plain.deviations.shape[1]):
+            found = self.evaluation.of(joined([pairs.exchanged(name) for name in batch]), measures)
+            for measure in measures:
+                each = found[measure.name].reshape(len(batch), count) - plain[measure.name]
+                steps[measure.name] |= dict(zip(batch, each, strict=True))
+        return {
+            name: _shares_of_effects(
+                {own: step[np.isfinite(step)] for own, step in found.items() if own in acting[name]}
+            )
+            for name, found in steps.items()
+        }
+
+
+@dataclass(frozen=True)
+class _Pairs:
+    """Pairs of builds that have all in common but the draws of one contributor."""
+
+    simulation: Simulation
+    count: int
+    names: Sequence[str]
+
+    @cached_property
+    def plain(self) -> Trials:
+        return redrawn(self.simulation, self.count, ())
+
+    @cached_property
+    def _others(self) -> Trials:
+        return redrawn(self.simulation, self.count, self.names)
+
+    @cached_property
+    def _read(self) -> Collection[str]:
+        """Contributors whose draws others read."""
+        return {name for own in self.simulation.system.contributors for name in reads_of(own)}
+
+    @cached_property
+    def _columns(self) -> Mapping[str, slice]:
+        return component_slices(self.simulation.system)
+
+    def exchanged(self, name: str) -> Trials:
+        """The plain builds with other draws of a contributor, and what follows from them."""
+        own = next(each for each in self.simulation.system.contributors if each.name == name)
+        if name in self._read or reads_of(own):
+            return redrawn(self.simulation, self.count, (name,))
+        rows = self.plain.deviations.copy()
+        rows[:, self._columns[name]] = self._others.deviations[:, self._columns[name]]
+        return replace(self.plain, deviations=rows)
+
+
+def _lacks(sums: Sums, measure: Measure, found: Attribution) -> bool:
+    """True if a regression explains too little of what a measure varies by, or has too few trials to tell."""
+    varies = sums.count > 1 and sums.target_sigma > RESOLVED * measure.per_internal
+    return varies and (found.explained is None or found.explained < EXPLAINED)
+
+
+def _shares_of_effects(steps: Mapping[str, Array]) -> tuple[int, Mapping[str, Percent]]:
+    """The least number of pairs of a contributor, and each one's mean square step [% of their sum] with its error."""
+    fewest = min(map(len, steps.values()), default=0)
+    if fewest < FEWEST_PAIRS:
+        return fewest, {}
+    means = np.array([float(np.mean(own**2)) for own in steps.values()])
+    errors = np.array([float(np.std(own**2)) / math.sqrt(len(own)) for own in steps.values()])
+    whole = float(means.sum())
+    if not whole > 0.0:
+        return fewest, {}
+    parts = means / whole
+    others = np.sqrt(np.maximum((errors**2).sum() - errors**2, 0.0))
+    off = np.hypot((1.0 - parts) * errors, parts * others) / whole
+    percents = zip((100 * parts).tolist(), (100 * off).tolist(), strict=True)
+    return fewest, dict(zip(steps, percents, strict=True))
