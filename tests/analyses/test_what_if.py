@@ -87,6 +87,22 @@ def test_the_answer_is_printed_first() -> None:
     )
 
 
+def test_a_limit_beyond_nine_sigma_is_told_by_its_bound_and_its_distance() -> None:
+    """At 11.5 sigma before and at 23 after: of 300 draws none, which leaves 1 - 0.05^(1/300) = 9936 ppm."""
+    own = stack([1.0], [2.0], low=-23.0, high=4.0)
+    found = what_if(own, [Change("x0", factor=0.5)], trials=4000, draws=300)
+    low = found.measures["gap"].before.limits["low"]
+    assert (low.ppm, low.beta, low.below) == (0.0, None, pytest.approx(1e6 * (1 - 0.05 ** (1 / 300))))
+    assert found.measures["gap"].before.limits["high"].below is None
+    told = as_text(what_if_report("stack", found), 200)
+    assert "< 9936" in told
+    assert sum(line.strip().startswith("95 %") for line in told.splitlines()) == 1  # of the other limit
+    mean = found.measures["gap"].before.mean
+    assert mean is not None
+    assert f"by slopes it lies sigmas away: before {(mean + 23) / 2:.3g}, after " in told
+    assert "(+ < 0.9936 %)" in told.splitlines()[2]
+
+
 def test_both_sides_see_the_same_draws() -> None:
     """With ten times the spread of what does not act on the tail the difference of the means is not noise."""
     own = stack([1.0, 1.0], [0.1, 0.001])

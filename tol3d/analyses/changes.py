@@ -21,11 +21,11 @@ EXAMPLES: Final = "±10 um, +0.02/0 mm, -5 um..+10 um, or 5 um of a zone or a sc
 
 @dataclass(frozen=True)
 class Change:
-    """Change of one contributor.
+    """Change of a tolerance.
 
     Args:
-        name: its name.
-        limits: new limits of its draw [mm, rad or K].
+        name: of the line that states it, see study/lines.py; all its contributors change.
+        limits: new limits of their draw [mm, rad or K].
         size: new size of its zone, or of a law stated by one number.
         factor: on its width.
     """
@@ -43,7 +43,7 @@ def change_of(response: Response, text: str) -> Change:
         InputError: no such contributor, or no such value of it.
     """
     name, value = _split(response, "--set", text)
-    contributor = next(own for own in response.contributors if own.name == name)
+    contributor = next(own for own in response.contributors if own.name == response.lines[name][0])
     try:
         pair = limits_written(value)
     except InputError as error:
@@ -78,21 +78,24 @@ def changed(response: Response, changes: Sequence[Change]) -> Response:
     """The same system with other tolerances.
 
     Raises:
-        InputError: one that cannot be, by the name of its contributor; two of one contributor.
+        InputError: one that cannot be, by the name of its line; two of one line.
     """
     names = [own.name for own in changes]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"{name}: expected one change of it, got {names.count(name)}")
-    factors = {own.name: own.factor for own in changes if own.factor is not None}
+    factors: dict[str, float] = {}
     laws: dict[str, Distribution] = {}
     widths: dict[str, float] = {}
     for own in changes:
-        draw = response.drawn_by(own.name)
-        if own.size is not None and isinstance(draw, Zoned):
-            widths[own.name] = own.size
-        elif own.factor is None:
-            laws[own.name] = _law(draw, own)
+        for name in response.lines[known(response, own.name, own.name)]:
+            draw = response.drawn_by(name)
+            if own.factor is not None:
+                factors[name] = own.factor
+            elif own.size is not None and isinstance(draw, Zoned):
+                widths[name] = own.size
+            else:
+                laws[name] = _law(draw, own)
     return response.scaled(factors).sized(widths).with_laws(laws)
 
 
@@ -129,15 +132,26 @@ def _split(response: Response, option: str, text: str) -> tuple[str, str]:
 
 
 def known(response: Response, option: str, name: str) -> str:
-    """The name of a contributor.
+    """The name of a line that states a tolerance; of one in an included file its name there is enough.
 
     Raises:
-        InputError: there is none of that name.
+        InputError: there is none of that name, or it is one of several contributors of a line.
     """
-    names = {own.name: own for own in response.contributors}
-    if name not in names:
-        raise InputError(f"{option}: expected a contributor, got {name!r}{hint(name, names)}")
-    return name
+    if name in response.lines:
+        return name
+    for line, contributors in response.lines.items():
+        if name in contributors:
+            raise InputError(f"{option}: {shared(name, line, contributors)}")
+    in_files = [own.name for own in response.simulation.lines if own.in_file == name]
+    if len(in_files) == 1:
+        return in_files[0]
+    raise InputError(f"{option}: expected a contributor, got {name!r}{hint(name, response.lines)}")
+
+
+def shared(name: str, line: str, contributors: Sequence[str]) -> str:
+    """Sentence that refuses a change of one of the contributors that a line makes."""
+    every = ", ".join(map(repr, contributors))
+    return f"expected {line!r}, one line of the scene that states all of {every}, got {name!r} alone"
 
 
 def _length(contributor: Contributor, text: str, value: str) -> float:

@@ -112,6 +112,13 @@ class Response:
         """All of the system's."""
         return self.simulation.system.contributors
 
+    @cached_property
+    def lines(self) -> Mapping[str, tuple[str, ...]]:
+        """Contributors by the line of the scene that states their tolerance, and is changed for all of them at once."""
+        found = {own.name: own.contributors for own in self.simulation.lines}
+        stated = {name for own in found.values() for name in own}
+        return found | {own.name: (own.name,) for own in self.contributors if own.name not in stated}
+
     def source(self, measure: Measure) -> Measure:
         """The system's own measure: of an end of a curve the curve."""
         return self.curves.get(measure.name, measure)

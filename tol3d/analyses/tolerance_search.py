@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.analyses.changes import shared
 from tol3d.analyses.costs import Costs, Discrete
 from tol3d.analyses.form import STEP, Points, points_of
 from tol3d.analyses.limit_state import Side, concerned
@@ -49,7 +50,7 @@ class Question:
         own_bounds: of some contributors' factors.
         frozen: contributors that stay as they are.
         stays: of some contributors, which limit does.
-        groups: contributors with a common factor, by the name of their tolerance; by default each has its own.
+        groups: contributors with a common factor, by the name of their tolerance; by default each line of the scene.
         beyond_least: True to allow draws below the physical minimum, as normal laws do anyway.
     """
 
@@ -184,12 +185,13 @@ def begun(
         InputError: a contributor that does not exist, or none whose tolerance can be scaled.
     """
     asked = {name for own in targets for name in concerned(response, response.of(own.measure).measures[0])}
-    grouped = {own: name for name, each in question.groups.items() for own in each}
+    known = question.groups or response.lines
+    grouped = {own: name for name, each in known.items() for own in each}
     groups: dict[str, tuple[str, ...]] = {}
     for own in response.contributors:
         if own.name in asked:
             name = grouped.get(own.name, own.name)
-            groups[name] = question.groups.get(name, (own.name,))
+            groups[name] = known.get(name, (own.name,))
     for names, words in ((question.frozen, "--freeze"), (question.own_bounds, "--bound"), (question.stays, "--stays")):
         _refuse_strangers(names, response, question, words)
     free: dict[str, tuple[str, ...]] = {}
@@ -231,8 +233,12 @@ def begun(
 def _refuse_strangers(
     names: Mapping[str, object] | frozenset[str], response: Response, question: Question, option: str
 ) -> None:
-    known = {own.name for own in response.contributors} | set(question.groups)
+    groups = question.groups or response.lines
+    known = {own.name for own in response.contributors} | set(groups)
     for name in names:
+        for line, each in groups.items():
+            if name in each and name not in groups and line not in names:
+                raise InputError(f"{option}: {shared(name, line, each)}")
         if name not in known:
             raise InputError(f"{option}: expected a contributor, got {name!r}{hint(name, sorted(known))}")
 

@@ -6,6 +6,7 @@ probabilities are found by importance sampling about the design points, from the
 reweighted: in the tails that would be off by a factor.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Final
 
@@ -13,7 +14,7 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr
 
-from tol3d.analyses.changes import Change, changed, told
+from tol3d.analyses.changes import Change, changed, known, told
 from tol3d.analyses.design_points import design_points
 from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.rare import DRAWS, rare_event
@@ -22,7 +23,7 @@ from tol3d.analyses.response import Response
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Numbers, Ppm, PpmRange, Section, made
-from tol3d.statistics.limits import Proportion
+from tol3d.statistics.limits import CONFIDENCE, Proportion
 from tol3d.system.dependent import reads_of
 from tol3d.system.measure import Measure
 
@@ -47,13 +48,14 @@ class LimitNumbers(Section):
     """Probability of leaving a limit [ppm]: by the first order, and by importance sampling.
 
     Trials that leave it are counted where draws have no map from normals; None of a simulation that was not asked for.
-    The first order is None where the measure jumps at the mean build.
+    The first order is None where the measure jumps at the mean build, and where no build beyond the limit is found.
     """
 
     first_order: Ppm | None
     ppm: Ppm | None
     interval: PpmRange | None
     beta: Known
+    below: Ppm | None = Field(default=None, description="95 % upper bound by counting alone, where none was beyond")
 
 
 class StateNumbers(Section):
@@ -139,7 +141,7 @@ def what_if(
 
     Args:
         response: with the tolerances of the scene.
-        changes: one per contributor.
+        changes: one per line of the scene.
         measure: its name; default all that depend on them.
         trials: of the simulation; default the study's, 100 000 at most; 0 for none.
         draws: of importance sampling, for each limit before and after; 0 for none.
@@ -179,15 +181,13 @@ def what_if(
             after=both["after"],
         )
     by_name = {own.name: own for own in asked.contributors}
-    rows = [
-        made(
-            ChangeMade,
-            contributor=own.name,
-            before=told(by_name[own.name], states["before"].drawn_by(own.name)),
-            after=told(by_name[own.name], states["after"].drawn_by(own.name)),
-        )
-        for own in changes
-    ]
+    rows = []
+    for own in changes:
+        line = known(asked, own.name, own.name)
+        first, *others = asked.lines[line]
+        each = f", each of {1 + len(others)}" if others else ""
+        before_, after = (told(by_name[first], states[word].drawn_by(first)) + each for word in ("before", "after"))
+        rows.append(made(ChangeMade, contributor=line, before=before_, after=after))
     return made(
         WhatIf,
         changes=rows,
@@ -201,7 +201,7 @@ def what_if(
 
 def _concerned(response: Response, changes: Sequence[Change], measure: str | None) -> list[str]:
     """Measures that depend on changed contributors, or on what reads these."""
-    names = {own.name for own in changes}
+    names = {name for own in changes for name in response.lines[known(response, own.name, own.name)]}
     system = response.simulation.system
     names |= {own.name for own in system.contributors if names & set(reads_of(own))}
     asked = response.measures if measure is None else response.of(measure).measures
@@ -240,7 +240,8 @@ def _limit(
             within = values >= limit if side == "low" else values <= limit
         counted = Proportion(int((~within).sum()), len(values))
         interval = list(counted.interval_ppm()) if len(values) else None
-        return made(LimitNumbers, first_order=None, ppm=counted.ppm, interval=interval, beta=None)
+        below = _below(len(values)) if len(values) and within.all() else None
+        return made(LimitNumbers, first_order=None, ppm=counted.ppm, interval=interval, beta=None, below=below)
     if not draws:
         first, beta = first_order_ppm(response, side, limit, seed=seed) if smooth else (None, None)
         return made(LimitNumbers, first_order=first, ppm=None, interval=None, beta=beta)
@@ -251,7 +252,17 @@ def _limit(
         ppm=min(1e6 * event.probability, 1e6),
         interval=[1e6 * own for own in event.interval],
         beta=event.points[0].beta if event.points else None,
+        below=None if event.points or event.probability > 0.0 else _below(event.estimate.draws),
     )
+
+
+def _below(count: int) -> float:
+    """Upper bound of a fraction [ppm], one-sided with 95 % confidence, of which none of so many builds is: near 3/n.
+
+    >>> round(_below(4800), 1)
+    623.9
+    """
+    return 1e6 * -math.expm1(math.log(1.0 - CONFIDENCE) / count)
 
 
 def _edges(values: dict[str, Array]) -> Array:

@@ -6,9 +6,10 @@ from typing import Final
 import numpy as np
 
 from tol3d.analyses.what_if import WhatIf
+from tol3d.analyses.what_if_table import bounded_text
 from tol3d.report.canvas import BLACK, BLUE, ORANGE, OUTSIDE, label_angles, new_figure, plain_axes, save_figure
 from tol3d.report.label import legible
-from tol3d.report.number import UNIT_SIGNS, limit_text, share_text
+from tol3d.report.number import UNIT_SIGNS, limit_text
 
 WIDTH: Final = 9.0  # inch
 ROW: Final = 3.0
@@ -36,7 +37,7 @@ def draw_what_if(name: str, found: WhatIf, path: Path) -> None:
         plain_axes(axes)
         edges = np.array(own.edges, dtype=np.float64)
         for word, state, colour in (("before", own.before, BLUE), ("after", own.after, ORANGE)):
-            ppm = ", ".join(f"{share_text(limit.ppm)} {side}" for side, limit in state.limits.items())
+            ppm = ", ".join(f"{bounded_text(limit)} {side}" for side, limit in state.limits.items())
             percent = 100.0 * np.array(state.counts) / max(found.trials, 1)
             axes.stairs(percent, edges, color=colour, linewidth=1.8, label=f"{word}{': ' if ppm else ''}{ppm}")
         for limit in (own.lower_limit, own.upper_limit):

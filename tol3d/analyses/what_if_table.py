@@ -1,6 +1,6 @@
 """Tables of other tolerances' effect: a measure before, after, and the change."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.analyses.what_if import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
@@ -17,7 +17,8 @@ ROWS: Final = (
 )
 WORDS: Final = (
     "sigma by rates: from the slopes at the mean build; first order: Φ(−β), with β the distance to the most likely "
-    "build beyond the limit; by sampling: importance sampling around that build, with its 95 % interval; builds that "
+    "build beyond the limit; by sampling: importance sampling around that build, with its 95 % interval, or where none "
+    "is found the 95 % upper bound by draws alone; builds that "
     "cannot be assembled count as out of limits; before and after use the same random numbers"
 )
 JUMPS: Final = (
@@ -40,6 +41,8 @@ def what_if_report(name: str, found: WhatIf) -> Page:
     blocks: list[PageItem] = [head, BLANK, *answers, BLANK, *titled("tolerances", changes)]
     for measure, own in found.measures.items():
         blocks += [BLANK, *titled(f"{measure} [{UNIT_SIGNS.get(own.unit, own.unit)}]", what_if_table(own))]
+    if not found.rough:
+        blocks += [note(text) for measure, own in found.measures.items() for text in _unseen(measure, own)]
     counted = f"{found.trials} trials, {found.draws} draws a limit, {found.evaluations} builds evaluated"
     blocks += [BLANK, note(WORDS)]
     if any(own.before.sigma_by_rates is None for own in found.measures.values()):
@@ -74,10 +77,35 @@ def _percent(before: float, after: float) -> str:
 
 
 def _out(own: StateNumbers) -> str:
-    """Fraction beyond all limits."""
+    """Fraction beyond all limits; with those beyond which none was found at the bound that this leaves."""
     ppm = [_first(each.ppm, each.first_order) for each in own.limits.values()]
     known = [each for each in ppm if each is not None]
-    return share_text(sum(known)) if len(known) == len(ppm) else NOTHING
+    if len(known) < len(ppm):
+        return NOTHING
+    below = sum(each.below for each in own.limits.values() if each.below is not None)
+    total = share_text(sum(known))
+    if not below:
+        return total
+    return f"{total} (+ < {share_text(below)})" if sum(known) else f"none found, < {share_text(below)}"
+
+
+def _unseen(name: str, own: MeasureWhatIf) -> Iterator[str]:
+    """Sentences on limits beyond which no build was found, with their distances by slopes."""
+    for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):
+        states = {word: state for word, state in (("before", own.before), ("after", own.after)) if limit is not None}
+        unseen = {word: state for word, state in states.items() if state.limits[side].below is not None}
+        if not unseen or limit is None:
+            continue
+        away = [
+            f"{word} {abs(limit - state.mean) / state.sigma_by_rates:.3g}"
+            for word, state in unseen.items()
+            if state.mean is not None and state.sigma_by_rates
+        ]
+        slopes = f"; by slopes it lies sigmas away: {', '.join(away)}" if away else ""
+        yield (
+            f"{name}, {side} limit {' and '.join(unseen)}: no build beyond it was found within 9 sigma{slopes}; the "
+            "bound is that of draws, none of which is beyond it; tol3d rare --method subset looks farther"
+        )
 
 
 def what_if_table(own: MeasureWhatIf) -> Table:
@@ -104,9 +132,25 @@ def _limit(label: str, before: LimitNumbers, after: LimitNumbers) -> Iterator[Ro
     yield Row(f"{label}, first order [ppm]", (*map(_ppm, first), _times(*first)))
     if before.ppm is None or after.ppm is None or before.interval is None or after.interval is None:
         return
-    yield Row(f"{label}, by sampling [ppm]", (_ppm(before.ppm), _ppm(after.ppm), _times(before.ppm, after.ppm)))
-    spans = (f"{ppm_text(low)} … {ppm_text(high)}" for low, high in (before.interval, after.interval))
-    yield Row("    95 %", (*spans, ""))
+    sampled = (_bounded(before), _bounded(after), _times(before.ppm, after.ppm))
+    yield Row(f"{label}, by sampling [ppm]", sampled)
+    if before.below is None or after.below is None:
+        spans = ("" if own.below is not None else _span(own.interval) for own in (before, after))
+        yield Row("    95 %", (*spans, ""))
+
+
+def _span(interval: Sequence[float] | None) -> str:
+    return NOTHING if interval is None else f"{ppm_text(interval[0])} … {ppm_text(interval[1])}"
+
+
+def _bounded(own: LimitNumbers) -> Shown:
+    """Fraction by sampling; the bound where nothing beyond the limit was found."""
+    return _ppm(own.ppm) if own.below is None else Shown(f"< {ppm_text(own.below)}", None)
+
+
+def bounded_text(own: LimitNumbers) -> str:
+    """The same with its unit."""
+    return share_text(own.ppm) if own.below is None else f"< {share_text(own.below)}"
 
 
 def _ppm(value: float | None) -> Shown:

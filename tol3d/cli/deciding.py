@@ -108,7 +108,7 @@ def allocate(
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     with asked_of(own, "tolerances") as status:
-        response, groups = own.response, groups_of(own.scene, own.response)
+        response, groups = own.response, groups_of(own.response)
         question = Question(
             costs=Costs() if cost is None else costs_from(cost, groups),
             bounds=bounds_of("--bounds", bounds),

@@ -12,6 +12,7 @@ from tol3d.scene.implausible import warned
 from tol3d.scene.options import THEORY, Engines
 from tol3d.scene.problems import problem_sentence, word_expected
 from tol3d.study.correlated import copula_of
+from tol3d.study.lines import lines_of
 from tol3d.study.simulation import Simulation, study_of
 from tol3d.study.study import Study
 from tol3d.system.dependent import in_draw_order
@@ -70,6 +71,7 @@ def simulation_of(scene: Scene, overrides: Overrides = AS_WRITTEN) -> Simulation
         mechanism=origin_of(asked),
         implausible=implausible,
         copula=copula_of(asked, system),
+        lines=lines_of(asked, system.contributors),
     )
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from tol3d.scene import Scene
+from tol3d.study.lines import Line
 from tol3d.study.study import Study, Until
 from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.faults import Origin
@@ -24,6 +25,7 @@ class Simulation:
         mechanism: the one that understood the scene; None of a system made without.
         implausible: warnings of its vocabularies on the scene.
         copula: which contributors are correlated.
+        lines: of the scene, which state the tolerances; none of a system made without.
     """
 
     system: System
@@ -34,6 +36,7 @@ class Simulation:
     mechanism: Origin | None = None
     implausible: tuple[str, ...] = ()
     copula: Copula = INDEPENDENT
+    lines: tuple[Line, ...] = ()
 
     @property
     def method(self) -> MethodKind:

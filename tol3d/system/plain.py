@@ -60,6 +60,7 @@ class PlainContributor:
         per_unit: one of that unit in mm, rad or K.
         least: smallest physical deviation [mm, rad or K].
         held: other holder of its tolerance, such as the gauge that inspects; "" for none.
+        line: name of the scene's line that makes it among others, see study/lines.py; "" for its own name.
     """
 
     name: str
@@ -70,6 +71,7 @@ class PlainContributor:
     description: str = ""
     least: float | None = None
     held: str = ""
+    line: str = ""
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -1,0 +1,164 @@
+"""Tolerances that several contributors share: a question about one is asked of its line, which changes all of them."""
+
+import math
+from pathlib import Path
+
+import pytest
+from assembly_trials import scene_of
+from fixtures import Command
+
+from tol3d import InputError
+from tol3d.analyses.allocate import allocation
+from tol3d.analyses.allocated_scene import allocated_scene, groups_of
+from tol3d.analyses.changes import Change, change_of, changed, factor_of
+from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.tolerance_search import Question, Target
+from tol3d.analyses.what_if import what_if
+from tol3d.scene.edit import write_scene
+from tol3d.simulate import load, simulation_of
+
+FLOOR, RING = 8.0, 10.0  # um, sigmas of 3 sigma limits
+BASE = """  base:
+    kind: solid
+    features:
+      floor: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1], extent: [100 mm, 100 mm]}
+      left: {kind: plane, at: [-50 mm, 0 mm, 50 mm], normal: [1, 0, 0], extent: [100 mm, 100 mm]}
+      back: {kind: plane, at: [0 mm, -50 mm, 50 mm], normal: [0, 1, 0], extent: [100 mm, 100 mm]}
+      o: {kind: point, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, 1]}
+"""
+RINGS = """  ring:
+    kind: solid
+    features:
+      under: {kind: plane, at: [0 mm, 0 mm, 0 mm], normal: [0, 0, -1], extent: [100 mm, 100 mm]}
+      left: {kind: plane, at: [-50 mm, 0 mm, 5 mm], normal: [-1, 0, 0], extent: [100 mm, 10 mm]}
+      back: {kind: plane, at: [0 mm, -50 mm, 5 mm], normal: [0, -1, 0], extent: [100 mm, 10 mm]}
+      top: {kind: plane, at: [0 mm, 0 mm, 10 mm], normal: [0, 0, 1], extent: [100 mm, 100 mm]}
+"""
+THICKNESS = "  thickness: {kind: plus_minus, of: ring.top, distribution: {kind: normal, lower: -25 um, upper: 35 um}}\n"
+FLATNESS = "  floor: {kind: plus_minus, of: base.floor, distribution: {kind: normal, lower: -24 um, upper: 24 um}}\n"
+
+
+def pile(rings: list[str]) -> str:
+    """Moves and a measure of rings on each other."""
+    found, under = "moves:\n  table: {kind: fix, part: base}\n", "base.floor"
+    for k, ring in enumerate(rings):
+        pairs = [(f"{ring}.under", under), (f"{ring}.left", "base.left"), (f"{ring}.back", "base.back")]
+        relations = ", ".join(f"{{kind: coincident, from: {one}, to: {other}}}" for one, other in pairs)
+        found += f"  on {k}: {{kind: mate, part: {ring}, relations: [{relations}]}}\n"
+        under = f"{ring}.top"
+    limits = f"lower_limit: {10 * len(rings) - 0.04} mm, upper_limit: {10 * len(rings) + 0.05} mm"
+    return (
+        f"{found}measures:\n  gap: {{kind: gap, from: base.o, to: {under}, along: [0, 0, 1], {limits}}}\n"
+        "study: {trials: 200, seed: 1}\n"
+    )
+
+
+LIKE = (
+    f"scene: like\nparts:\n{BASE}{RINGS}"
+    "  ring 2: {kind: solid, like: ring, placed: {at: [0 mm, 0 mm, 10 mm]}}\n"
+    "  ring 3: {kind: solid, like: ring 2, placed: {at: [0 mm, 0 mm, 20 mm]}}\n"
+    f"tolerances:\n{THICKNESS}{FLATNESS}OWN{pile(['ring', 'ring 2', 'ring 3'])}"
+)
+OWN = "  thicker: {kind: plus_minus, of: ring 2.top, distribution: {kind: normal, lower: -12 um, upper: 12 um}}\n"
+
+
+def like(folder: Path, own: str = "") -> Response:
+    return response_of(simulation_of(scene_of(LIKE.replace("OWN", own), folder)), analytic=True)
+
+
+def included(folder: Path, without: str = "", own: str = "") -> Path:
+    """A file with one ring, included by another with two names, and that by the scene; the scene itself has it too."""
+    folder.mkdir(exist_ok=True)
+    (folder / "parts").mkdir(exist_ok=True)
+    (folder / "parts" / "ring.yaml").write_text(f"parts:\n{RINGS}tolerances:\n{THICKNESS}", "utf-8")
+    pair = "include: {low: ring.yaml, high: {file: ring.yaml, at: [0 mm, 0 mm, 10 mm]}}\n"
+    (folder / "parts" / "pair.yaml").write_text(pair, "utf-8")
+    third = f"  top: {{file: parts/ring.yaml, at: [0 mm, 0 mm, 20 mm]{without}}}\n"
+    text = f"scene: included\ninclude:\n  both: parts/pair.yaml\n{third}parts:\n{BASE}tolerances:\n{FLATNESS}{own}"
+    path = folder / "scene.yaml"
+    path.write_text(text + pile(["both low ring", "both high ring", "top ring"]), "utf-8")
+    return path
+
+
+def halved(response: Response, line: str) -> float:
+    """Sigma of the gap [um] with a tolerance half as wide, by slopes, which are 1."""
+    found = what_if(response, [Change(line, factor=0.5)], trials=0, draws=0).measures["gap"].after.sigma_by_rates
+    assert found is not None
+    return found
+
+
+def test_a_tolerance_of_parts_alike_is_changed_of_all_of_them(tmp_path: Path) -> None:
+    """A chain of copies: three rings, one line."""
+    response = like(tmp_path)
+    assert response.lines["thickness"] == ("thickness", "thickness of ring 2", "thickness of ring 3")
+    assert halved(response, "thickness") == pytest.approx(math.sqrt(FLOOR**2 + 3 * (RING / 2) ** 2), rel=1e-6)
+    narrower = changed(response, [change_of(response, "thickness=-5 um..15 um")])
+    laws = [narrower.drawn_by(name).distribution for name in response.lines["thickness"]]
+    assert [(law.low, law.high) for law in laws] == [pytest.approx((-0.005, 0.015))] * 3
+
+
+def test_a_part_that_states_its_own_tolerance_has_a_line_of_its_own(tmp_path: Path) -> None:
+    """Ring 3 is like ring 2, and takes that of the nearest."""
+    response = like(tmp_path, OWN)
+    assert response.lines["thickness"] == ("thickness",)
+    assert response.lines["thicker"] == ("thicker", "thicker of ring 3")
+    assert halved(response, "thickness") == pytest.approx(math.sqrt(FLOOR**2 + (RING / 2) ** 2 + 2 * 16), rel=1e-6)
+
+
+def test_a_tolerance_of_a_file_that_is_included_several_times_is_one(tmp_path: Path) -> None:
+    """By way of another file too."""
+    response = response_of(simulation_of(load(included(tmp_path))), analytic=True)
+    names = ("both low thickness", "both high thickness", "top thickness")
+    assert response.lines["thickness of parts/ring.yaml"] == names
+    expected = math.sqrt(FLOOR**2 + 3 * (RING / 2) ** 2)
+    for line in ("thickness of parts/ring.yaml", "thickness"):  # its name in the file is enough
+        assert halved(response, line) == pytest.approx(expected, rel=1e-6)
+    with pytest.raises(InputError, match=r"expected 'thickness of parts/ring.yaml', .* got 'top thickness' alone"):
+        factor_of(response, "top thickness=0.5")
+
+
+def test_an_include_that_states_the_tolerance_itself_is_none_of_them(tmp_path: Path) -> None:
+    own = OWN.replace("ring 2.top", "top ring.top")
+    response = response_of(simulation_of(load(included(tmp_path, ", without: [thickness]", own))), analytic=True)
+    assert response.lines["thickness of parts/ring.yaml"] == ("both low thickness", "both high thickness")
+    assert response.lines["thicker"] == ("thicker",)
+    assert halved(response, "thicker") == pytest.approx(math.sqrt(FLOOR**2 + 2 * RING**2 + 2**2), rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["like", "include"])
+def test_an_allocation_has_one_value_and_a_scene_with_it_is_the_same(kind: str, tmp_path: Path) -> None:
+    path = included(tmp_path) if kind == "include" else tmp_path / "assembly.yaml"
+    scene = load(path) if kind == "include" else scene_of(LIKE.replace("OWN", ""), tmp_path)
+    line = "thickness of parts/ring.yaml" if kind == "include" else "thickness"
+    response = response_of(simulation_of(scene), analytic=True)
+    question = Question(groups=groups_of(response), frozen=frozenset({"floor"}))
+    found = allocation(response, [Target("gap", (), 20_000.0)], question, draws=400)
+    factor = found.tolerances[line].factor
+    assert found.tolerances.keys() == {line, "floor"}
+    out = path.with_name("allocated.yaml")
+    write_scene(allocated_scene(scene, response, found, {}), out)
+    again = response_of(simulation_of(load(out)), analytic=True)
+    sigma = what_if(again, [Change("floor", factor=1.0)], trials=0, draws=0).measures["gap"].before.sigma_by_rates
+    assert sigma == pytest.approx(math.sqrt(FLOOR**2 + 3 * (factor * RING) ** 2), rel=1e-4)  # as its text has digits
+    copy = response.lines[line][1]
+    with pytest.raises(InputError, match=f"--freeze: expected '{line}', .* got '{copy}' alone"):
+        allocation(response, [Target("gap", (), 20_000.0)], Question(frozen=frozenset({copy})), draws=400)
+
+
+def test_features_of_a_pattern_share_their_line() -> None:
+    holes = response_of(simulation_of(load("bracket_in_box")), analytic=True).lines
+    assert holes["dowel hole position"] == tuple(f"dowel hole position {k}" for k in range(1, 5))
+
+
+@pytest.mark.slow
+def test_legs_of_a_machine_share_their_lines_and_its_floats_have_none() -> None:
+    legs = response_of(simulation_of(load("stewart")), analytic=True).lines
+    assert legs["foot x"] == ("foot x", *(f"foot x of foot {k}" for k in range(2, 7)))
+    assert legs["float of lower 1"] == ("float of lower 1",)
+
+
+def test_one_copy_alone_is_refused_with_the_name_of_the_line(tmp_path: Path, tol3d: Command) -> None:
+    scene_of(LIKE.replace("OWN", ""), tmp_path)
+    code, _, told = tol3d("what-if", str(tmp_path / "assembly.yaml"), "--factor", "thickness of ring 3=0.5")
+    assert code == 2
+    assert "expected 'thickness', one line of the scene" in told
