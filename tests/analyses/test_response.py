@@ -69,7 +69,7 @@ DRAWS: dict[str, Draw] = {
     "planar": Planar(Normal(2.0, 0.5), None),
     "planar fixed": Planar(Normal(2.0, 0.5), 0.3),
     "ball": Ball(Uniform(0.0, 2.0)),
-    "float": FloatDraw(("disc", "interval", "fraction"), ("x", "y", "along", "fraction")),
+    "float": FloatDraw(("disc", "interval", "room"), ("x", "y", "along", *(f"d{k}" for k in range(6)), "start")),
 }
 
 

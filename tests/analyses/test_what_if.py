@@ -55,24 +55,24 @@ def test_correlated_contributors_add_up_by_their_correlation() -> None:
     assert found.after.sigma_by_rates == pytest.approx(math.sqrt(36 + 4 + 2 * 0.6 * 12), rel=1e-9)
 
 
-def test_a_float_in_a_random_direction_has_no_rates() -> None:
-    """Its measure jumps at the mean build, where a central difference is the jump over its step; trials know sigma.
+def test_a_float_in_a_room_has_no_rates() -> None:
+    """Its measure jumps with its start, where a central difference is the jump over its step; trials know sigma.
 
-    The offset along one of three freedoms is f d / |d|, f the cube root of a uniform number: its variance is 1/5.
+    Where it starts decides its offset, of -1 to 1 alike: the variance is 1/3.
     """
-    laws = FloatDraw(("direction", "fraction"), (*(f"d{k}" for k in range(6)), "fraction"))
+    laws = FloatDraw(("room",), (*(f"d{k}" for k in range(6)), "start"))
 
     def offset(x: Array) -> Array:
-        size = np.linalg.norm(x[:, :3], axis=1)
-        return np.asarray(x[:, 0] / np.where(size > 0, size, 1.0) * np.cbrt(x[:, 6]) + x[:, 7])
+        elsewhere = 2.0 * (math.e * 1e7 * x[:, 6] % 1.0) - 1.0
+        return np.asarray(np.where(x[:, 6] == 0.0, x[:, 0], elsewhere) + x[:, 7])
 
     own = formula(offset, [laws, Scalar(Normal(0.0, 0.5))], high=1.0)
     found = what_if(own, [Change("x1", factor=0.5)], trials=4000, draws=400)
     state = found.measures["value"].before
     assert state.sigma_by_rates is None
     assert state.limits["high"].first_order is None
-    assert state.sigma == pytest.approx(math.sqrt(0.2 + 0.25), rel=4 / math.sqrt(2 * 4000))
-    assert "floats in a random direction" in as_text(what_if_report("play", found), 80).replace("\n ", " ")
+    assert state.sigma == pytest.approx(math.sqrt(1 / 3 + 0.25), rel=4 / math.sqrt(2 * 4000))
+    assert "floats anywhere in its room" in as_text(what_if_report("play", found), 80).replace("\n ", " ")
     quick = what_if(own, [Change("x1", factor=0.5)], trials=0, draws=0)
     assert "value: known only by simulation" in as_text(what_if_report("play", quick), 80)
 

@@ -240,15 +240,17 @@ def test_a_run_with_a_screw_has_two_thirds_of_its_variance_by_the_screw(tmp_path
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_random_cover_lies_on_a_ray_to_where_a_bolt_has_no_place(method: str, tmp_path: Path) -> None:
-    """At fraction 1 one |hole - hole| = c + c'; at 1/8, of three freedoms, half of the way (80 mm turn by 0.01)."""
+    """Stated shares of a shift and a turn: at 1 one |hole - hole| = c + c'; at 1/2 half of the way (80 mm by 0.01)."""
     more = "  y: {kind: gap, from: base.hole 0, to: cover.hole 0, along: [0, 1, 0]}\n"
     more += "  turn: {kind: gap, from: base.hole 1, to: cover.hole 1, along: [0, 1, 0]}\n"
     more += "  far: {kind: gap, from: base.hole 1, to: cover.hole 1, along: [1, 0, 0]}\n"
     made = joint(TWO, tmp_path, "{kind: random}", more=more)
     rows = drawn(made.simulation, 0, 20).deviations
     poses = []
-    for fraction in (0.0, 0.125, 1.0):
-        rows[:, -1] = fraction
+    ways = rows[:, -7:-1] * [1, 1, 0, 0, 0, 1]
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    for share in (0.0, 0.5, 1.0):
+        rows[:, -7:] = np.column_stack([share * ways, np.zeros(len(rows))])
         poses.append(np.stack([read(made, rows, method, name) for name in ("x", "y", "far", "turn")]))
     holes = rows[:, :12].reshape(-1, 2, 2, 3)
     clearances = ((8.4 + holes[..., 2] - 8 - rows[:, 12:14, None]) / 2).sum(axis=2)  # (trials, bolts)
@@ -258,6 +260,30 @@ def test_a_random_cover_lies_on_a_ray_to_where_a_bolt_has_no_place(method: str, 
     np.testing.assert_allclose(
         2 * (poses[1] - poses[0]), poses[2] - poses[0], atol=1e-9 if method == "analytic" else 2e-3
     )
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_cover_on_one_bolt_is_uniform_in_the_sum_of_both_clearances(method: str, tmp_path: Path) -> None:
+    """Straight holes: the cover's hole anywhere in the disc of radius 0.4 mm about the base's, off by means of both.
+
+    It turns about the bolt alone, so it has two freedoms: sigma 0.2 mm, the squared distance uniform.
+    """
+    count = 300
+    more = "  y: {kind: gap, from: base.hole 0, to: cover.hole 0, along: [0, 1, 0]}\n"
+    made = joint(((35.0, -20.0),), tmp_path, "{kind: random}", more=more)
+    rows = drawn(made.simulation, 0, count).deviations
+    rows[:, :-7] = [0.03, -0.05, 0.0, 0.02, 0.04, 0.0, 0.0]  # shifts of both holes, which it follows
+    if method == "analytic":
+        found = torsors.values(made.system.assembly, rows, ["x", "y"])
+    else:
+        found = {name: own for name, (own, _) in placing.values(made.system.assembly, rows, ["x", "y"]).items()}
+    x, y = found["x"], found["y"]
+    square = (x**2 + y**2) / 0.4**2
+    assert square.max() < 1.0 + 1e-6
+    assert np.sort(square) == pytest.approx((np.arange(count) + 0.5) / count, abs=1.95 / math.sqrt(count))  # 99.9 %
+    for own in (x, y):
+        assert own.mean() == pytest.approx(0.0, abs=4 * 0.2 / math.sqrt(count))
+        assert own.std() == pytest.approx(0.2, rel=4 / math.sqrt(2 * count))
 
 
 @pytest.mark.parametrize(

@@ -202,7 +202,7 @@ def test_both_methods_differ_by_second_order(kept: list[str], at: list[str], kin
     _, bare = gauged(kept, at, None)
     drawn_of, off = slice(bare.width, bare.width + 7), np.random.default_rng(5).normal(0.0, 0.01, (12, bare.width))
     rng = np.random.default_rng(6)
-    rays = np.hstack([rng.normal(size=(12, 6)), rng.uniform(size=(12, 1))])
+    rays = rng.uniform(-1.0, 1.0, (12, 7))
     left = []
     for factor in (1.0, 0.1):
         floating = Floating("random", drawn_of) if kind == "random" else Floating("centred")
@@ -218,3 +218,36 @@ def test_both_methods_differ_by_second_order(kept: list[str], at: list[str], kin
         left.append(largest)
     assert left[0] < 5e-3  # a turn of 0.2 / 10 on 0.2 mm
     assert left[1] < 1.5e-2 * left[0] + 1e-9
+
+
+@pytest.mark.parametrize("method", ["exact", "analytic"])
+def test_gauges_are_uniform_in_their_room(method: str) -> None:
+    """Two gauges of unequal clearance, one feature off: mean, sigma and correlation of the tip against rejection."""
+    count = 2000
+    _, bare = gauged(["floor"], ["bore", "pin"], None)
+    floating = Floating("random", slice(bare.width, bare.width + 7))
+    draft, assembly = gauged(["floor"], ["bore", "pin"], floating)
+    assembly = replace(assembly, width=bare.width + 7)
+    off = {"p.bore size": 0.04, "p.pin size": 0.02, "p.bore start x": 0.03, "p.bore end x": 0.03}
+    rows = np.tile([off.get(name, 0.0) for name in draft.columns] + 7 * [0.0], (count, 1))
+    rng = np.random.default_rng(11)
+    rows[:, -7:] = rng.uniform(-1.0, 1.0, (count, 7))
+    names = ["tip x", "tip y"]
+    if method == "exact":
+        found = [placing.values(assembly, rows, [name])[name][0] for name in names]
+    else:
+        found = [torsors.values(assembly, rows, names)[name] for name in names]
+    half = np.array([0.25, 0.25, 0.006])
+    x, y, turn = rng.uniform(-half, half, (2_000_000, 3)).T  # of the part about the corner of its floor
+    bore = np.hypot(x - 25 * turn + 0.03, y + 20 * turn) <= ROOM + 0.02
+    room = bore & (np.hypot(x - 60 * turn, y + 95 * turn) <= ROOM - 0.01)
+    x, y, turn = x[room], y[room], turn[room]
+    assert np.abs(turn).max() < 0.9 * half[2]
+    expected = -(x - 70 * turn), -(y + 110 * turn)  # the tip stays with the gauges
+    found = [own - nominal for own, nominal in zip(found, (110.0, 70.0), strict=True)]
+    for own, its in zip(found, expected, strict=True):
+        error = its.std() * 4 * np.sqrt(1 / count + 1 / len(its))
+        assert own.mean() == pytest.approx(its.mean(), abs=error + 2e-4)  # turns of 2e-3 on 0.1 mm
+        assert own.std() == pytest.approx(its.std(), abs=error / np.sqrt(2))
+    correlation = np.corrcoef(*expected)[0, 1]
+    assert np.corrcoef(*found)[0, 1] == pytest.approx(correlation, abs=4 * (1 - correlation**2) / np.sqrt(count) + 0.01)

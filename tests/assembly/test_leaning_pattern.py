@@ -205,8 +205,6 @@ def case(seed: int, folder: Path, floating: str = "{kind: centred}", largest: fl
             rows[:, own] = rng.normal(0.0, 0.03, rows[:, own].shape)
         elif name.endswith("size"):
             rows[:, own] = rng.uniform(-0.05, 0.05, rows[:, own].shape)
-        else:
-            rows[:, own.stop - 1] = rng.uniform(0, 1, len(rows))  # the share of the way
     middle = at.mean(axis=0)
     places = np.column_stack([at - middle, np.zeros(count)])
     ends = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, LENGTH]])
@@ -270,12 +268,12 @@ def test_the_slack_is_the_largest_of_all_poses(tmp_path: Path, seed: int) -> Non
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_random_float_stays_in_its_room(tmp_path: Path, seed: int) -> None:
     own = case(seed, tmp_path, "{kind: random}")
-    (slack,) = own.read("slack")
-    shares = own.rows[:, -1].copy()
-    own.rows[:, -1] = 1.0
-    touching = Case(own.made, own.rows, own.trials, own.middle)
+    (slack,), rows = own.read("slack"), own.rows.copy()
+    rows[:, -1] = 0.0  # no start: along a shift and a turn of length 1 to the end of the way
+    rows[:, -7:-1] *= [[1, 1, 0, 0, 0, 1]]
+    rows[:, -7:-1] /= np.linalg.norm(rows[:, -7:-1], axis=1, keepdims=True)
+    touching = Case(own.made, rows, own.trials, own.middle)
     at_the_end = np.array([trial.slacks(pose).min() for trial, pose in zip(own.trials, touching.poses, strict=True)])
-    own.rows[:, -1] = shares
     inside = np.array([trial.slacks(pose).min() for trial, pose in zip(own.trials, own.poses, strict=True)])
     built = slack > 1e-4
     np.testing.assert_allclose(at_the_end[built], 0.0, atol=1e-9)

@@ -82,7 +82,7 @@ def rates_of(response: Response) -> Rates:
 def _without_jumps(response: Response, slopes: Array) -> Array:
     """Slopes with NaN for those by a share of a play that are jumps.
 
-    A part that floats in a random direction changes sides of its play as a component of the direction changes sign.
+    A part that floats anywhere in the room of a pattern lies elsewhere as soon as the start of its draw changes.
     """
     columns = [k for own in response.contributors if own.unit == "1" for k in _columns(response.slices[own.name])]
     if not columns:

@@ -22,7 +22,7 @@ WORDS: Final = (
     "cannot be assembled count as out of limits; before and after use the same random numbers"
 )
 JUMPS: Final = (
-    "no sigma by rates and no first order where a part floats in a random direction: the measure has no slope at the "
+    "no sigma by rates and no first order where a part floats anywhere in its room: the measure has no slope at the "
     "mean build"
 )
 

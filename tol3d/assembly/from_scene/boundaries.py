@@ -80,7 +80,7 @@ def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) 
             [each for each in datums[first:] if each.gauge is None],
         )
     )
-    draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
+    draw = FloatDraw(("room",), (*SHIFT_AND_TURN, "start"))
     name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "") + (f", then {then}" if then else "")
     words = f"of the gauges at the {_boundary(datums)} material boundary of datums"
     return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))

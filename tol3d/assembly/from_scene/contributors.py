@@ -104,7 +104,7 @@ class Effects:
         if not isinstance(spec.floating, RandomSpec):
             return
         if is_pattern(spec, self.drawing):
-            draw = FloatDraw(("direction", "fraction"), (*SHIFT_AND_TURN, "fraction"))
+            draw = FloatDraw(("room",), (*SHIFT_AND_TURN, "start"))
         else:
             ends = ("",) if spec.relations else ("start ", "end ")
             names = [f"{end}{axis}" for end in ends for axis in "xy"] + ["across"] * (len(spec.engaged) - 1)

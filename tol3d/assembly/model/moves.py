@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Final, Literal
+
+import numpy as np
 
 from tol3d.assembly.model.feature import Axis, Contribution, Plane, Point, RoundPlane, Shape
 from tol3d.assembly.model.stated_move import StatedMove
@@ -282,6 +284,12 @@ class Engagement:
         return f"{self.outer} in {self.inner}" if self.bolt is None else f"bolt in {self.inner} and {self.outer}"
 
 
+SWEEPS: Final = 12
+"""Sweeps of a random float before the last: each leaves half of what sigmas are off or less, in up to five freedoms."""
+SWEEPS_OF_BOLTS: Final = 4
+"""The same of a part with bolts, where a chord takes a hundred times as long: sigmas are right to 1 %."""
+
+
 @dataclass(frozen=True, eq=False)
 class Floating:
     """Position of a part with play within its clearance.
@@ -290,15 +298,17 @@ class Floating:
       of the others is, and so on.
     - random, by_pairs: the first engagement anywhere in its disc (in the lens of both ends' discs), the second one
       anywhere in what is left of its slot; each as often by area.
-    - random: from the centred pose in any direction of its m freedoms, shift at the middle of all places and turn times
-      their largest distance from it; to fraction^(1/m) of the way to where the room ends; of bolts, to where one has no
-      place left.
+    - random: anywhere in the room of its freedoms, each pose as often: shift at the middle of all places and turn times
+      their largest distance from it; of bolts, where each of them has a place. By Gibbs sampling: from the centred
+      pose, freedom by freedom, the part is drawn anew along the chord of the room, SWEEPS times over; the last sweep is
+      drawn as deviations, those before it follow from the last deviation.
     - toward: where a point of the part goes farthest along a direction; what that leaves open is as centred as may be.
 
     Args:
         kind: its kind.
-        columns: of the draws: components of a unit disc (and of an interval -1 to 1), or a shift and a turn (6) whose
-            directions are alike, and a fraction.
+        columns: of the draws: components of a unit disc (and of an interval -1 to 1), or a shift and a turn (6) of the
+            last sweep, each from -1 to 1, and the start of the sweeps before it; 0 for none: then a shift and a turn
+            are shares of the way from the centred pose to where the room ends.
         by_pairs: see random.
         at: the name of the feature, for `toward`.
         along: (3,), of unit length, in the frame of its part, for `toward`.
@@ -309,6 +319,26 @@ class Floating:
     by_pairs: bool = False
     at: str = ""
     along: Array | None = None
+
+    def sweeps(self, drawn: Array, freedoms: Sequence[int], bolts: int) -> Array:
+        """Uniforms of a random float (sweeps * freedoms, n), sweep by sweep; all but the last sweep NaN for no start.
+
+        Those before the last sweep are SplitMix64's (Steele et al., OOPSLA 2014), seeded by the bits of the start.
+
+        Args:
+            drawn: a shift and a turn, and the start (7, n).
+            freedoms: which of the shift and the turn, in the order of the sweep.
+            bolts: number of them.
+        """
+        count = (SWEEPS_OF_BOLTS if bolts else SWEEPS) * len(freedoms)
+        start = np.ascontiguousarray(drawn[6])
+        places = np.arange(1, count + 1, dtype=np.uint64)[:, None]
+        mixed = start.view(np.uint64)[None] + places * np.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        before = ((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(11)).astype(np.float64) * 2.0**-53
+        last = np.clip((1.0 + drawn[list(freedoms)]) / 2.0, 0.0, 1.0)  # slopes ask beyond its ends
+        return np.concatenate([np.where(start == 0.0, np.nan, before), last])
 
 
 @dataclass(frozen=True, eq=False)

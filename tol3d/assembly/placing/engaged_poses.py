@@ -155,7 +155,7 @@ def goal_at(pose: Any, goal: Any, i: int, reach: float, tangents: Any, nominal: 
     Where motions are nominal, so is the arm of a point: by that of the pose a turn that leaves the point where it is
     would count as a way on.
     """
-    _, given, point, along, _, _ = goal
+    _, given, point, along = goal[:4]
     arm, pull, square, largest = np.empty(3), np.empty(6), 0.0, 0.0
     p = min(i, point.shape[1] - 1)
     as_given = nominal or (along[0] == 0.0 and along[1] == 0.0 and along[2] == 0.0)
@@ -216,6 +216,91 @@ def way_along(place: Any, drawn: Any, i: int, engaged: Any, rooms: Any) -> Any:
 
 
 @nested
+def conjugate(place: Any, axes: Any, stiffness: Any, found: Any) -> None:
+    """Directions of the freedoms (freedoms, freedoms), a row each, that a room rounded about its middle has as axes.
+
+    Each axis less its part along those before it, by the curvature of -log(c_k^2 - |o_k + B_k q|^2), summed.
+
+    Args:
+        place: offsets (cones, 2), clearances (cones,), rows (cones, 2, freedoms or more).
+        axes: of the room.
+        stiffness, found: (freedoms, freedoms); changed.
+    """
+    offsets, clearances, rows = place
+    size = axes.shape[0]
+    fill_matrix(stiffness, 0.0)
+    for k in range(rows.shape[0]):
+        room = clearances[k] * clearances[k] - offsets[k, 0] * offsets[k, 0] - offsets[k, 1] * offsets[k, 1]
+        for f in range(size):
+            out = offsets[k, 0] * rows[k, 0, f] + offsets[k, 1] * rows[k, 1, f]
+            for g in range(size):
+                its = offsets[k, 0] * rows[k, 0, g] + offsets[k, 1] * rows[k, 1, g]
+                both = rows[k, 0, f] * rows[k, 0, g] + rows[k, 1, f] * rows[k, 1, g]
+                stiffness[f, g] += 2.0 * both / room + 4.0 * out * its / (room * room)
+    for s in range(size):
+        for f in range(size):
+            found[s, f] = axes[s, f]
+        for t in range(s + 1):  # the last time, to length 1
+            product = 0.0
+            for f in range(size):
+                for g in range(size):
+                    product += found[t, f] * stiffness[f, g] * found[s, g]
+            for f in range(size):
+                found[s, f] = found[s, f] - product * found[t, f] if t < s else found[s, f] / np.sqrt(product)
+
+
+@nested
+def drawn_ray(place: Any, drawn: Any, i: int, axes: Any, engaged: Any, ray: Any, rooms: Any) -> None:
+    """Find the direction of the freedoms in which a part lies from its centred pose, and its share of the way.
+
+    Args:
+        place: of the centred pose; offsets are changed.
+        drawn: see `engaged_poses_found`.
+        i: trial.
+        axes: of the room (freedoms, freedoms).
+        engaged: see `engaged_poses_found`.
+        ray: direction, of length 1, then the share (freedoms + 1, 1); changed.
+        rooms: work arrays.
+    """
+    offsets, _, rows = place
+    (start, gone, stiffness, directions), bolting = rooms
+    size = axes.shape[0]
+    sweeps = drawn.shape[0] // size
+    fill(gone, 0.0)
+    stated = np.isnan(drawn[0, i])
+    if stated:
+        for s in range(size):
+            for f in range(size):
+                gone[f] += (2.0 * drawn[(sweeps - 1) * size + s, i] - 1.0) * axes[s, f]
+    else:
+        copy_matrix(start, offsets)
+        conjugate(place, axes, stiffness, directions)
+        for n in range(sweeps * size):
+            s = n % size
+            for f in range(size):
+                ray[f, 0] = -directions[s, f]
+            back = way_along(place, ray, 0, engaged, bolting)
+            for f in range(size):
+                ray[f, 0] = directions[s, f]
+            step = (back + way_along(place, ray, 0, engaged, bolting)) * drawn[n, i] - back
+            for f in range(size):
+                gone[f] += step * directions[s, f]
+            for k in range(rows.shape[0]):
+                for r in range(2):
+                    for f in range(size):
+                        offsets[k, r] += step * rows[k, r, f] * directions[s, f]
+        copy_matrix(offsets, start)
+    length = 0.0
+    for f in range(size):
+        length += gone[f] * gone[f]
+    length = np.sqrt(length)
+    for f in range(size):
+        ray[f, 0] = gone[f] / length if length > 0.0 else 0.0
+    way = 1.0 if stated else way_along(place, ray, 0, engaged, bolting) if length > 0.0 else 0.0
+    ray[size, 0] = min(length / way, 1.0) if way > 0.0 else 0.0
+
+
+@nested
 def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     """Find a stationary pose; True if found, with the slack of the centred one and a cone that has it.
 
@@ -231,14 +316,14 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
         goal: target of the motion.
         rooms: work arrays.
     """
-    place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting = rooms
-    i, drawn, freedoms, state = trial[1], goal[4], tangents.shape[1], place[4]
+    place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting, _ = rooms
+    i, ray, freedoms, state = trial[1], goal[4], tangents.shape[1], place[4]
     previous, gone, slack, which, left, nominal = NONE, 0.0, 0.0, 0, 0, mode != STRAYED
     for n in range(ROUNDS):
         turned = n == 0 or (mode != STRAYED and (n == 1 or previous > TURNED * reach))
         rows_here(pose, trial, reach, place, all_rows, tangents, nominal, turned)
         if mode == STRAYED:
-            more = way_along(place[:3], drawn, i, trial[0], bolting)
+            more = way_along(place[:3], ray, 0, trial[0], bolting)
             gone += more
             size = abs(more)
         else:
@@ -257,7 +342,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
         ends = size * min(1.0, size / previous) <= MET and (n > 0 or state.shape[0] == 0)
         if mode == STRAYED:
             for f in range(freedoms):
-                q[f] = gone * drawn[f, i] * (drawn[freedoms, i] if ends else 1.0)
+                q[f] = gone * ray[f, 0] * (ray[freedoms, 0] if ends else 1.0)
             copy_matrix(pose, start)
         moved_on(pose, trial, reach, q, tangents, step)
         if ends:
@@ -270,7 +355,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
 def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
     """Find a pose; True if found, with the least slack of the centred one and a cone that has it."""
     mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
-    pushes, drawn = goal[0], goal[4]
+    pushes, ray, drawn, axes = goal[0], goal[4], goal[6], goal[7]
     while mode != DONE:
         copy_matrix(start, pose)
         found, least, decides = stays(pose, start, mode, trial, reach, goal, rooms)
@@ -281,6 +366,8 @@ def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
         strays = not pushes and drawn.shape[1] > 0
         goes = mode == CENTRED and slack > 0.0 and (pushes or strays)
         mode = DONE if not goes else STRAYED if strays else PUSHED
+        if mode == STRAYED:
+            drawn_ray(rooms[0][:3], drawn, trial[1], axes, trial[0], ray, (rooms[12], rooms[11]))
     return True, slack, which
 
 
@@ -303,6 +390,7 @@ def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
         new_rooms(cones, every),
         np.empty((3, 4)),
         bolt_rooms(),
+        (np.empty((cones, 2)), np.empty(freedoms), np.empty((freedoms, freedoms)), np.empty((freedoms, freedoms))),
     )
 
 
@@ -311,6 +399,7 @@ def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
     "int64[::1], int64[::1], float64[:,:,::1], float64[:,:,::1], float64[:,:,::1], float64[::1], float64[:,::1], "
     "float64[:,::1], float64[:,:,::1], "
     "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], float64[:,::1], "
+    "float64[:,::1], "
     "float64[:,:,::1], float64[:,::1], "
     "float64[::1], int64[::1], boolean[::1]"
 )
@@ -318,7 +407,7 @@ def engaged_poses_found(
     moving: Any, fixed: Any, axes: Any, others: Any, halves: Any, inner_moves: Any, kinds: Any,
     bolt_of: Any, bolts: Any,
     kept_vectors: Any, kept_normals: Any, kept_shifts: Any, kept_steps: Any, steps: Any, rows: Any, start: Any,
-    reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any, turn: Any,
+    reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any, room_axes: Any, turn: Any,
     turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
 ) -> None:  # fmt: skip
     """Poses of parts within their clearances.
@@ -342,7 +431,8 @@ def engaged_poses_found(
         reach: of all places about their middle [mm].
         pushes: whether it goes as far as it can: along `push` (freedoms,), or its point (3, n) along a direction (3,),
             if that is not 0; `push` is then the nominal way.
-        drawn: directions of the freedoms, and shares of the way to go along them (freedoms + 1, n); (0, 0) if not.
+        drawn: uniforms of a random float, sweep by sweep (sweeps * freedoms, n); (0, 0) if it is none.
+        room_axes: the freedoms in the order of a sweep (freedoms, freedoms); (0, 0) if it is none.
         turn: of the part as it lies nominally (3, 3).
         turns, shifts: found (3, 3, n), (3, n) [mm].
         slacks: the least slack of the centred pose (n,) [mm].
@@ -354,7 +444,7 @@ def engaged_poses_found(
     pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
     rooms = work_rooms(cones, freedoms, bolts.shape[0], len(first))
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
-    goal = (pushes, push, point, along, drawn, turn)
+    goal = (pushes, push, point, along, np.empty((freedoms + 1, 1)), turn, drawn, room_axes)
     for i in range(found.shape[0]):
         begin(pose, first, start, i, kept)
         fill(rooms[6][1], 0)

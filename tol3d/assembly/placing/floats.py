@@ -15,6 +15,8 @@ from tol3d.numerics.arrays import Array
 
 NEWTONS: Final = 12
 """Steps to the angle of a segment, from the cube root's: 5 reach rounding, more if it is small."""
+SEES: Final = 1e-4
+"""Share of a shift or turn of length 1 that freedoms let it have, and counts as some."""
 PART: Final = 1e-6
 """Change of an offset per unit freedom that counts as none."""
 
@@ -44,8 +46,8 @@ class Floats:
         """The float pushed to the limit along a direction of the freedoms (freedoms,); centred along 0."""
         return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push), self.turn)
 
-    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array, Array]:
-        """Inputs of `engaged_poses_found`: flag, direction and point of the push, the draws, the part's nominal turn.
+    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array, Array, Array]:
+        """Inputs of `engaged_poses_found`: flag, direction and point of the push, draws and axes, the nominal turn.
 
         Args:
             world: before the move.
@@ -55,21 +57,29 @@ class Floats:
         if self.push is not None:
             if self.along.any():
                 point = np.ascontiguousarray(_pushed_point(self.move, world).origin - column(origin))
-            return bool(self.push.any()), self.push, point, self.along, drawn, self.turn
-        if self.move.floating.kind == "random" and self.by_pairs is None:
-            drawn = self._rays(world.columns[self.move.floating.columns])
-        return False, np.zeros(self.freedoms.shape[1]), point, self.along, drawn, self.turn
+            return bool(self.push.any()), self.push, point, self.along, drawn, drawn, self.turn
+        axes, floating = drawn, self.move.floating
+        if floating.kind == "random" and self.by_pairs is None:
+            order, axes = axes_of(self.freedoms)
+            bolts = sum(own.bolt is not None for own in self.move.engagements)
+            drawn = floating.sweeps(world.columns[floating.columns], order, bolts)
+        return False, np.zeros(self.freedoms.shape[1]), point, self.along, drawn, axes, self.turn
 
-    def _rays(self, drawn: Array) -> Array:
-        """Directions of the freedoms, of unit length, and shares of the way along them (freedoms + 1, n)."""
-        found = np.empty((self.freedoms.shape[1] + 1, drawn.shape[1]))
-        along = found[:-1]
-        for f, own in enumerate(self.freedoms.T):
-            along[f] = sum(own[r] * drawn[r] for r in range(6))
-        size = np.sqrt(sum(own * own for own in along))
-        along /= np.where(size > 0.0, size, 1.0)
-        found[-1] = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(along))  # slopes evaluate beyond its ends
-        return found
+
+def axes_of(freedoms: Array) -> tuple[Sequence[int], Array]:
+    """Axes of a room (freedoms, freedoms) by shift and turn, and which of these (6) each stands for.
+
+    The same whatever basis (6, freedoms) the freedoms have: projections of x, y, z, of turns about them, each less its
+    part along those before it.
+    """
+    order, found = [], np.zeros((freedoms.shape[1], 0))
+    for k, own in enumerate(freedoms):
+        left = own - found @ (found.T @ own)
+        size = float(np.linalg.norm(left))
+        if size > SEES and found.shape[1] < len(found):
+            order.append(k)
+            found = np.column_stack([found, left / size])
+    return order, np.ascontiguousarray(found.T)
 
 
 def _pushed_point(move: Engage, world: World) -> ActualFeature:

@@ -16,6 +16,7 @@ from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
+from tol3d.assembly.placing.floats import axes_of
 from tol3d.assembly.placing.growth import Mask, centred
 from tol3d.assembly.placing.later_datums import LaterDatums, later_datums, times
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
@@ -59,13 +60,30 @@ class GaugeFloats:
         floating = self.move.floating
         if floating.kind != "random":
             return centred
-        drawn = columns[floating.columns]
-        along = np.stack([sum(self.freedoms[r, f] * drawn[r] for r in range(6)) for f in range(len(centred))])
-        size = np.sqrt(sum(own * own for own in along))
-        along = along / np.where(size > 0.0, size, 1.0)
+        order, axes = axes_of(self.freedoms)
+        uniforms = floating.sweeps(columns[floating.columns], order, 0)
+        stated = np.isnan(uniforms[0])
+        gone = self._swept(offsets, clearances, rows, centred, axes, uniforms)
+        last = 2.0 * uniforms[-len(axes) :] - 1.0
+        gone = np.where(stated, np.einsum("sf,sn->fn", axes, last, optimize=False), gone)
+        length = np.sqrt(sum(own * own for own in gone))
+        along = gone / np.where(length > 0.0, length, 1.0)
         way = self._way(offsets, clearances, rows, centred, along)
-        share = np.clip(drawn[6], 0.0, 1.0) ** (1.0 / len(centred)) * way  # slopes ask beyond its ends
-        return np.asarray(centred + np.where((slacks > 0.0) & (size > 0.0), share, 0.0) * along)
+        share = np.minimum(np.where(stated, length * way, length), way)
+        return np.asarray(centred + np.where((slacks > 0.0) & (length > 0.0), share * along, 0.0))
+
+    def _swept(
+        self, offsets: Array, clearances: Array, rows: Array, centred: Array, axes: Array, uniforms: Array
+    ) -> Array:
+        """Steps (freedoms, n) from the centred pose after all sweeps; see `engaged_poses.drawn_ray`."""
+        at, gone, count = offsets + times(rows, centred), np.zeros(centred.shape), len(axes)
+        directions = _conjugate(at, clearances, rows, axes)
+        for k, drawn in enumerate(uniforms):
+            along, still = directions[k % count], np.zeros(centred.shape)
+            back, ahead = (self._way(at, clearances, rows, still, sign * along) for sign in (-1.0, 1.0))
+            step = ((back + ahead) * drawn - back) * along
+            gone, at = gone + step, at + times(rows, step)
+        return gone
 
     def _way(self, offsets: Array, clearances: Array, rows: Array, centred: Array, along: Array) -> Array:
         """Distance from the centred pose to the limit of the clearance (n,) [mm]."""
@@ -84,6 +102,23 @@ class GaugeFloats:
             )
             way = np.where(square > 0.0, np.minimum(way, np.maximum(ahead, 0.0)), way)
         return np.where(np.isfinite(way), way, 0.0)
+
+
+def _conjugate(offsets: Array, clearances: Array, rows: Array, axes: Array) -> list[Array]:
+    """Directions of the freedoms (freedoms, n); see `engaged_poses.conjugate`."""
+    with np.errstate(divide="ignore", invalid="ignore"):  # without room, which is not asked for
+        room = clearances**2 - offsets[:, 0] ** 2 - offsets[:, 1] ** 2
+        out = np.einsum("krn,krf->kfn", offsets, rows, optimize=False)
+        both = np.einsum("krf,krg->kfg", rows, rows, optimize=False)[..., None]
+        room = room[:, None, None]
+        stiffness = (2.0 * both / room + 4.0 * out[:, :, None] * out[:, None] / room**2).sum(axis=0)
+        found = list[Array]()
+        for own in axes:
+            along = own[:, None] * np.ones(offsets.shape[2])
+            for other in found:
+                along = along - other * np.einsum("fn,fgn,gn->n", other, stiffness, along, optimize=False)
+            found.append(along / np.sqrt(np.einsum("fn,fgn,gn->n", along, stiffness, along, optimize=False)))
+    return found
 
 
 @dataclass(frozen=True, eq=False)

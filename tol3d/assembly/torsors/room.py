@@ -20,6 +20,8 @@ NEWTONS: Final = 30
 """Steps to the limit of a bolt's fit, 3 to 6 in practice."""
 BEYOND: Final = 1e-13
 """Slack [mm] of a bolt that is none."""
+SOME: Final = 1e-4
+"""Share of a shift or turn of length 1 that freedoms let it have, and counts as some."""
 NONE: Final = 1e-9
 """Change of an offset per unit freedom that counts as none."""
 
@@ -43,28 +45,96 @@ def support_point(cones: Cones, q: Array, push: Array) -> Array:
     return refined(cones, q + step, narrowed(everything, rows, decides), decides)
 
 
-def along_rays(cones: Cones, q: Array, directions: Array, share: Array) -> Array:
-    """From centred poses along directions (freedoms, trials), share^(1 / freedoms) of the distance to the limit."""
-    length = np.sqrt(ordered_sum(directions**2))
+def anywhere(cones: Cones, q: Array, floating: Floating, directions: Array, drawn: Array) -> Array:
+    """Anywhere in the room, from centred poses, by the sweeps of a random float.
+
+    Args:
+        cones: the limits.
+        q: centred (freedoms, trials).
+        floating: the float.
+        directions: of the part's freedoms as a shift and a turn (freedoms, 6).
+        drawn: (7, trials).
+    """
+    parts, at = cones.parts, cones.at(q)
+    order = [k for k in range(6) if _rank(directions[:, : k + 1]) > _rank(directions[:, :k])]
+    basis, corner = np.linalg.qr(directions[:, order])
+    axes = basis * np.sign(np.diagonal(corner))
+    uniforms = floating.sweeps(drawn, order, (cones.freedoms - parts) // 4)
+    stated = np.isnan(uniforms[0])
+    gone = ordered_product(axes, 2.0 * uniforms[-parts:] - 1.0)
+    if not stated.all():
+        gone[:, ~stated] = _swept(cones.of(~stated), at[:, :, ~stated], axes, uniforms[:, ~stated])
+    length = np.sqrt(ordered_sum(gone**2))
     moves = length > 0.0
-    ray = directions / np.where(moves, length, 1.0)
-    at, parts = cones.at(q), cones.parts
-    gone = np.stack([ordered_product(cones.rows[:, r, :parts], ray) for r in (0, 1)], axis=1)
+    ray = gone / np.where(moves, length, 1.0)
+    way = _way(cones, at, ray)
+    moved = q.copy()
+    moved[:parts] = q[:parts] + np.where(moves, np.minimum(np.where(stated, length * way, length), way), 0.0) * ray
+    return moved
+
+
+def _rank(directions: Array) -> int:
+    return int(np.linalg.matrix_rank(directions, SOME)) if directions.size else 0
+
+
+def _swept(cones: Cones, at: Array, axes: Array, uniforms: Array) -> Array:
+    """Steps (freedoms, trials) from offsets of centred poses after all sweeps.
+
+    A sweep goes along directions conjugate in the curvature of -log(c^2 - |o|^2), summed over all places, which rounds
+    the room.
+    """
+    parts = cones.parts
+    rows = cones.rows[:, :, :parts]
+    room = cones.clearances**2 - ordered_sum(at[:, r] ** 2 for r in (0, 1))
+    out = ordered_sum(rows[:, r, :, None] * at[:, r, None] for r in (0, 1))
+    curvature = [
+        [
+            ordered_sum(
+                2.0 * float(rows[k, :, i] @ rows[k, :, j]) / room[k] + 4.0 * out[k, i] * out[k, j] / room[k] ** 2
+                for k in range(len(rows))
+            )
+            for j in range(parts)
+        ]
+        for i in range(parts)
+    ]
+
+    def product(one: Array, other: Array) -> Array:
+        return ordered_sum(one[i] * curvature[i][j] * other[j] for i in range(parts) for j in range(parts))
+
+    ways = list[Array]()
+    for axis in axes.T:
+        own = axis[:, None] * np.ones(at.shape[2])
+        for before in ways:
+            own = own - product(before, own) * before
+        ways.append(own / np.sqrt(product(own, own)))
+    gone = np.zeros((parts, at.shape[2]))
+    for k, share in enumerate(uniforms):
+        along = ways[k % parts]
+        back, ahead = _way(cones, at, -along), _way(cones, at, along)
+        step = (share * (back + ahead) - back) * along
+        gone, at = gone + step, at + _change(cones, step)
+    return gone
+
+
+def _change(cones: Cones, steps: Array) -> Array:
+    """Change of offsets (places, 2, trials) by steps of the part (freedoms, trials)."""
+    return np.stack([ordered_product(cones.rows[:, r, : cones.parts], steps) for r in (0, 1)], axis=1)
+
+
+def _way(cones: Cones, at: Array, along: Array) -> Array:
+    """Distance from offsets along directions (freedoms, trials) up to where the room ends (trials,)."""
+    gone = _change(cones, along)
     held = np.array(cones.bolt_of or (-1,) * len(at)) < 0
     # the larger root of |at + t gone|^2 = clearance^2
     a, half_b, c = (
         ordered_sum(one[:, r] * other[:, r] for r in (0, 1)) for one, other in ((gone, gone), (at, gone), (at, at))
     )
-    bent = a > NONE**2
+    bent = a > (NONE * ordered_sum(along**2) ** 0.5) ** 2
     root = np.sqrt(np.maximum(half_b**2 - a * (c - cones.clearances**2), 0.0))
     way = np.where(bent, (root - half_b) / np.where(bent, a, 1.0), np.inf)[held].min(axis=0, initial=np.inf)
-    for bolt in range((cones.freedoms - parts) // 4):
+    for bolt in range((cones.freedoms - cones.parts) // 4):
         way = np.minimum(way, _bolt_way(cones, bolt, at, gone))
-    way = np.where(moves & np.isfinite(way), np.maximum(way, 0.0), 0.0)
-    inside = np.clip(share, 0.0, 1.0)  # slopes evaluate beyond its ends
-    moved = q.copy()
-    moved[:parts] = q[:parts] + inside ** (1.0 / parts) * way * ray
-    return moved
+    return np.where(np.isfinite(way), np.maximum(way, 0.0), 0.0)
 
 
 def _bolt_way(cones: Cones, bolt: int, at: Array, gone: Array) -> Array:
@@ -206,6 +276,5 @@ class Room:
             elif self.floating.by_pairs:
                 q[:, inside] = by_pairs(own, q[:, inside], read[3 * places :, inside])
             else:
-                drawn = read[3 * places :, inside]
-                q[:, inside] = along_rays(own, q[:, inside], ordered_product(self.directions, drawn[:6]), drawn[6])
+                q[:, inside] = anywhere(own, q[:, inside], self.floating, self.directions, read[3 * places :, inside])
         return np.concatenate([q[: len(self.directions)], slack[None]])

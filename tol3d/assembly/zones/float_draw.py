@@ -10,18 +10,18 @@ from tol3d.assembly.zones.cross_section import QUARTER_TURN, uniform_lens
 from tol3d.assembly.zones.inverse import inverse
 from tol3d.assembly.zones.widened import Widened
 from tol3d.assembly.zones.zone_draw import ZoneDraw
-from tol3d.distributions import Distribution, Normal, Uniform
+from tol3d.distributions import Distribution, Uniform
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, Given
 from tol3d.system.draw import Values
 from tol3d.system.normals import Group, scalars
 
-Law = Literal["disc", "interval", "direction", "fraction"]
+Law = Literal["disc", "interval", "room"]
 
-SIZES: Final = {"disc": 2, "interval": 1, "direction": 6, "fraction": 1}
+SIZES: Final = {"disc": 2, "interval": 1, "room": 7}
 """Components of each law, and uniforms."""
-SIGMAS: Final = {"disc": 0.5, "interval": 1 / np.sqrt(3.0), "direction": 1.0, "fraction": 1 / np.sqrt(12.0)}
+SIGMAS: Final = {"disc": 0.5, "interval": 1 / np.sqrt(3.0), "room": 1 / np.sqrt(3.0)}
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,8 @@ class FloatDraw:
     """Numbers without unit; see model.Floating for what they mean. Implements Draw and Joint.
 
     Args:
-        laws: a point of a disc of radius 1, of -1 to 1, a direction (six independent normals), 0 to 1.
+        laws: a point of a disc of radius 1; of -1 to 1; a pose of a room, by a shift and a turn, each of -1 to 1, and
+            where its chain starts, alike.
         components: names of all their components.
     """
 
@@ -42,7 +43,7 @@ class FloatDraw:
     @property
     def distribution(self) -> Distribution:
         """Distribution of a component, as shown."""
-        return Normal(0.0, 1.0) if "direction" in self.laws else Uniform(-1.0, 1.0)
+        return Uniform(-1.0, 1.0)
 
     @property
     def uniforms(self) -> int:
@@ -84,27 +85,26 @@ class FloatDraw:
             if law == "disc":
                 radius, angle = np.sqrt(u[0]), 2 * np.pi * u[1]
                 found += [radius * np.cos(angle), radius * np.sin(angle)]
-            elif law == "direction":
-                found += [Normal(0.0, 1.0).ppf(own_u) for own_u in u]
             else:
-                found.append(2 * u[0] - 1 if law == "interval" else u[0])
+                found += [2 * own_u - 1 for own_u in u]
         return tuple(found)
 
     def mean(self, *, turning: bool) -> tuple[float, ...]:
         """See Draw: in the middle of the room."""
-        return tuple(0.5 if law == "fraction" else 0.0 for law in self.laws for _ in range(SIZES[law]))
+        return (0.0,) * len(self.components)
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: where the room ends both ways along the steepest direction of each law."""
         count = len(self.components)
-        last = np.array([1.0 if law == "fraction" else 0.0 for law in self.laws for _ in range(SIZES[law])])
-        found = values(np.concatenate([last + np.eye(count), last - np.eye(count)]))
-        slope = np.where(last > 0.0, 0.0, found[:count] - found[count:])
+        found = values(np.concatenate([np.eye(count), -np.eye(count)]))
+        slope = found[:count] - found[count:]
         along = np.zeros(count)
-        for _, own in self._blocks:
+        for law, own in self._blocks:
+            if law == "room":
+                slope[own.stop - 1] = 0.0  # a start is no way
             size = float(np.sqrt(slope[own] @ slope[own]))
             along[own] = slope[own] / size if size > 0.0 else 0.0
-        return np.stack([last + along, last - along])
+        return np.stack([along, -along])
 
 
 POINTS: Final = 16384
