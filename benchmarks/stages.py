@@ -62,7 +62,7 @@ def stages(scene: Path, trials: int, rounds: int) -> dict[str, float]:
         "contact, gap and free turn": lambda: engine.read(made, mesh, reading, angles, turning),
         "stack-up": lambda: analytic_values(model, measure, block),
         "all columns, without draws": lambda: columns_of(system, method, block),
-        "regressors of the contributors": lambda: regressors(system, measure, columns),
+        "regressors of the contributors": lambda: regressors(simulation, measure, columns),
         "statistics, regressors included": lambda: Tally.of(simulation, grids, columns),
     }
     return {name: cost(stage, trials, rounds) for name, stage in work.items()}

@@ -26,6 +26,8 @@ from tol3d.gearing.stack_up.leaning import leaning_shares
 from tol3d.gearing.system import GearSystem
 from tol3d.statistics.variance_shares import RegressorSums, shares
 from tol3d.study.regressors import regressor_groups, regressors
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
 from tol3d.system.closed_form import ClosedForm
 
 ALPHA = math.radians(20.0)
@@ -227,8 +229,8 @@ def test_a_large_sample_of_either_method_agrees(case: str, tmp_path: Path) -> No
             error = 4 / math.sqrt(TRIALS)
             assert abs(values.mean() - form.mean) < (error + NET + neglected) * form.sigma
             assert abs(values.std() / form.sigma - 1) < error * math.sqrt((kurtosis - 1) / 4) + NET + neglected
-            sums = RegressorSums.of(regressors(GearSystem(model), measure, columns).T, values)
-            found = shares(sums, regressor_groups(GearSystem(model), measure))
+            sums = RegressorSums.of(regressors(Simulation(GearSystem(model), Study()), measure, columns).T, values)
+            found = shares(sums, regressor_groups(Simulation(GearSystem(model), Study()), measure))
             for own in form.shares:
                 least = found.share[own.name] - 4 * found.standard_error[own.name] - NET - neglected
                 most = found.share[own.name] + 4 * found.standard_error[own.name] + NET + neglected

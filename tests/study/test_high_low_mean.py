@@ -15,6 +15,8 @@ from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
 from tol3d.study.high_low_mean import high_low_mean_percents, to_first_order
 from tol3d.study.overrides import simulation_of
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
 from tol3d.study.task import materials_of, method_of
 from tol3d.system.measure import Measure
 from tol3d.system.stated import mean_deviations
@@ -122,7 +124,7 @@ def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> N
         return {measure.name: values(rows)}
 
     assert set(high_low_mean_percents(system, [measure], read)[measure.name].values()) == {None}
-    linear = first_order(system, [measure], read)[measure.name]
+    linear = first_order(Simulation(system, Study()), [measure], read)[measure.name]
     assert math.isnan(linear.mean) is not mean_seats
     assert np.isnan(linear.ends).all()
 

@@ -27,6 +27,8 @@ from tol3d.study.blocks import block_trials
 from tol3d.study.draws import drawn, drawn_ones
 from tol3d.study.regression import target_sums
 from tol3d.study.regressors import regressor_set
+from tol3d.study.simulation import Simulation
+from tol3d.study.study import Study
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.study.task import Task, task_of
 from tol3d.study.versions import installed_versions
@@ -117,7 +119,7 @@ def test_each_of_very_many_contributors_has_its_share(tmp_path: Path) -> None:
 def test_few_contributors_are_all_regressed_on(paper_model: Model) -> None:
     measure = paper_model.measures[0]
     system = GearSystem(paper_model)
-    own = regressor_set(system, measure).of(measure)
+    own = regressor_set(Simulation(system, Study()), measure).of(measure)
     assert own.names == tuple(each.name for each in system.acting(measure))
     assert own.picked is None
 
@@ -201,9 +203,11 @@ def test_measures_that_lack_trials_are_regressed_on_those_that_they_have(tmp_pat
     measures, name = system.measures, system.measures[0].name
     values = {(method, own.name): columns[f"{method}:{own.name}"].copy() for own in measures for method in METHODS}
     values[GEOMETRIC, name][~good] = np.nan
-    found, _ = target_sums(system, measures, columns, values, plain_products)
+    found, _ = target_sums(Simulation(system, Study()), measures, columns, values, plain_products)
     others = {key: own[good] for key, own in columns.items()}
-    expected, _ = target_sums(system, measures, others, {key: own[good] for key, own in values.items()}, plain_products)
+    expected, _ = target_sums(
+        Simulation(system, Study()), measures, others, {key: own[good] for key, own in values.items()}, plain_products
+    )
     mine, its = found[GEOMETRIC, name], expected[GEOMETRIC, name]
     assert isinstance(mine, IndependentSums)
     assert isinstance(its, IndependentSums)

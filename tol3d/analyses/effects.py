@@ -84,7 +84,7 @@ class MeasureEffects(Section):
     failures_by: BlameBy | None = Field(
         description="simulation: Sobol' indices of failing; design points: squared direction cosines, averaged"
     )
-    failures_words: Sentence
+    failures_words: Sentence = Field(description="on the failures; where nothing acts, that")
     contributors: Mapping[Label, ContributorEffects]
 
 
@@ -243,7 +243,7 @@ def _of_measure(
         position=_position(sampled, k),
         failing_ppm=1e6 * float(sampled.failing[:, k].mean()) if limited or seated < count else None,
         failures_by=blame.by,
-        failures_words=blame.words,
+        failures_words=response.nothing_acts(measure) or blame.words,
         contributors=contributors,
     )
 

@@ -6,7 +6,7 @@ from typing import Final
 
 from tol3d.analyses.effects import ContributorEffects, Effects, Index, MeasureEffects
 from tol3d.report.number import NOTHING, measured_text, share_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
+from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title, titled
 
 MOST_SHOWN: Final = 15
 """Contributors of a measure."""
@@ -28,7 +28,11 @@ def effects_report(found: Effects) -> Page:
     head = Line(((found.scene, "bold"), (f" · effects of contributors, {found.evaluations} builds", "")))
     blocks: list[PageItem] = [head]
     for name, own in found.measures.items():
-        blocks += [*titled(name, _table(own).shortened(MOST_SHOWN)), *map(note, _words(own))]
+        if own.contributors or own.position:
+            blocks += titled(name, _table(own).shortened(MOST_SHOWN))
+        else:
+            blocks.append(title(name))
+        blocks += map(note, _words(own))
     where = POSITIONS[found.positions]
     return page(*blocks, BLANK, note(WORDS + (f"; {where}" if where else "")))
 
@@ -68,6 +72,9 @@ def _size(own: ContributorEffects) -> float:
 
 
 def _words(own: MeasureEffects) -> Sequence[str]:
+    if not own.contributors and own.position is None:
+        out = "" if own.failing_ppm is None else f", {share_text(own.failing_ppm)} out of limits"
+        return [f"{measured_text(own.mean, own.unit)} in all builds{out}: {own.failures_words}"]
     spread = [f"mean {measured_text(own.mean, own.unit)}, sigma {measured_text(own.sigma, own.unit)}"]
     if own.sum_of_first is not None and own.sum_of_total is not None:
         first, total = own.sum_of_first, own.sum_of_total

@@ -205,7 +205,7 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
     before = response.evaluations
     source = response.curves.get(own.name, own)
     system = response.simulation.system
-    space = space_of(system, source, response.draws)
+    space = space_of(system, source, response.draws, response.acting(own))
     built = _built(response)
     at_rest = response.positions(1, "rest")
     mean = space.mean[None]
@@ -231,6 +231,7 @@ def _of_measure(response: Response, own: Measure, trials: Trials) -> MeasureMeth
         factor=factor,
         modified_rss=None if factor is None else factor * rss,
         worst=None if worst is None else _worst_found(response, space, worst),
+        nothing_acts=response.nothing_acts(own),
         simulation=_sample(column, worst),
         evaluations=response.evaluations - before,
     )

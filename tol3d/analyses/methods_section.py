@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from pydantic import Field
 
-from tol3d.runs.summary.values import Count, Known, Label, MethodSection, NotNegative, Number, Section, Unit
+from tol3d.runs.summary.values import Count, Known, Label, MethodSection, NotNegative, Number, Section, Sentence, Unit
 
 
 class BuildFound(Section):
@@ -65,7 +65,7 @@ class MeasureMethods(Section):
     lower_limit: Known
     upper_limit: Known
     mean: Known = Field(description="of the mean build")
-    contributors: Count = Field(description="that act, features that are drawn each for itself one by one")
+    contributors: Count = Field(description="with a slope, features that are drawn each for itself one by one")
     by_slopes: NotNegative | None = Field(
         description="sum of all half tolerances by slopes at the mean build; null of a measure without slope there"
     )
@@ -73,6 +73,7 @@ class MeasureMethods(Section):
     factor: NotNegative | None = Field(description="C_f of modified RSS; null of one contributor")
     modified_rss: NotNegative | None
     worst: WorstFound | None = Field(description="null where it would take too many builds, or nothing acts")
+    nothing_acts: Sentence = Field(description="where no contributor was seen to act; else empty")
     simulation: MethodsSample
     evaluations: Count
 

@@ -88,9 +88,9 @@ def _limits(own: MeasureMethods) -> str:
 
 def _told(own: MeasureMethods) -> Iterator[PageItem]:
     sample, law = own.simulation, own.simulation.law
-    count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} that act"
+    count = f"{own.contributors} contributor{'s' if own.contributors != 1 else ''} with a slope"
     factor = f"C_f {own.factor:.3f}" if own.factor is not None else "no C_f of fewer than two"
-    by_slopes = f"{count}, {factor}" if own.by_slopes is not None else NO_SLOPE
+    by_slopes = own.nothing_acts or (f"{count}, {factor}" if own.by_slopes is not None else NO_SLOPE)
     yield note(f"mean build {measured_text(own.mean, own.unit)}; {by_slopes}")
     shape = [
         f"{word} {NOTHING if value is None else f'{value:.3f}'}"
@@ -108,9 +108,9 @@ def _told(own: MeasureMethods) -> Iterator[PageItem]:
     if sample.beyond_worst:
         few = f"{sample.beyond_worst} of {sample.trials} trials"
         yield warning(f"{few} lie beyond the worst found: laws without limits of their own draw beyond ±3 sigma")
-    if own.worst is None:
+    if own.worst is None and not own.nothing_acts:
         yield note("worst case: not looked for" + (", it would take too many builds" if own.contributors else ""))
-    elif own.worst.unseated is not None:
+    elif own.worst is not None and own.worst.unseated is not None:
         status = own.worst.unseated.status
         yield warning(
             f"builds within the tolerances cannot be assembled ({status}); {own.worst.met} were met in the search"

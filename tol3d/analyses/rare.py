@@ -8,7 +8,7 @@ needs none.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal, get_args
 
 import numpy as np
@@ -136,6 +136,8 @@ def rare_event(
             estimate = Estimate(where.first_order, None, None, warnings=_unsure(where.points, ()))
         first = where.first_order
         points = tuple(sorted((own for its in where.points for own in its), key=lambda own: own.beta))
+    if idle := response.nothing_acts(state.measure):
+        estimate = replace(estimate, warnings=(f"{idle}; the bound is that of plain draws",))
     evaluations = response.evaluations - before
     return RareEvent(state.measure.name, limit, side, method, points, first, second, estimate, evaluations)
 

@@ -18,6 +18,7 @@ from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
+from tol3d.study.acting import acting, nothing_acts
 from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
 from tol3d.study.draws import sampler_of, streams_of
 from tol3d.study.evaluation import Evaluation
@@ -124,8 +125,12 @@ class Response:
         return self.curves.get(measure.name, measure)
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """Contributors that act on one of the measures."""
-        return self.simulation.system.acting(self.source(measure))
+        """Contributors that act on one of the measures; see study/acting.py."""
+        return acting(self.simulation, self.source(measure))
+
+    def nothing_acts(self, measure: Measure) -> str:
+        """A sentence where no contributor acts on one of the measures, as far as was seen; "" where one does."""
+        return nothing_acts(self.simulation, self.source(measure))
 
     @property
     def minutes(self) -> float:
@@ -259,7 +264,8 @@ class Response:
     def acting_columns(self) -> NDArray[np.int64]:
         """Columns of contributors that act on some of the measures."""
         names = {own.name for measure in self.measures for own in self.acting(measure)}
-        return np.array([k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)])
+        columns = [k for name, own in self.slices.items() if name in names for k in range(own.start, own.stop)]
+        return np.array(columns, dtype=np.int64)
 
     def ranges(self, positions: Mapping[str, Array] | None = None) -> Array:
         """Range of each measure over the whole tolerance of each contributor (measures, contributors).
@@ -363,7 +369,7 @@ class Response:
             given = {name: found[self.slices[name]] for name in draw.reads}
             return np.array([*draw.deviations_given(given, *uniforms)])
         columns = draw.deviations(*uniforms)
-        return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(-1, found.shape[1])
+        return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(len(columns), found.shape[1])
 
     def drawn_by(self, name: str) -> Draw:
         """Draw of a contributor.

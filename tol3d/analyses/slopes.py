@@ -176,15 +176,15 @@ def few_slopes(
         names: of the contributors.
         deviations, positions: builds at which slopes are taken.
     """
-    columns = [k for name in names for k in range(response.slices[name].start, response.slices[name].stop)]
+    columns = np.array([k for name in names for k in _places(response.slices[name])], dtype=np.int64)
     units = {k: own.unit for own in response.contributors for k in _places(response.slices[own.name])}
-    steps = np.array([NUDGE.get(units[k], 1e-3) for k in columns])
+    steps = np.array([NUDGE.get(units[int(k)], 1e-3) for k in columns])
     shifts = np.zeros((2 * len(columns), response.components))
     shifts[np.arange(len(columns)), columns] = steps
     shifts[len(columns) + np.arange(len(columns)), columns] = -steps
     builds = (deviations[:, None] + shifts).reshape(-1, response.components)
     places = {name: np.repeat(own, len(shifts), axis=0) for name, own in positions.items()}
-    found = response.values(builds, places).values.reshape(len(deviations), 2, len(columns), -1)
+    found = response.values(builds, places).values.reshape(len(deviations), 2, len(columns), len(response.measures))
     gradient = np.zeros((len(deviations), len(response.measures), response.components))
     gradient[:, :, columns] = np.moveaxis((found[:, 0] - found[:, 1]) / (2 * steps[:, None]), 1, 2)
     return _steady(gradient)

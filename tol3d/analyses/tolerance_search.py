@@ -216,7 +216,10 @@ def begun(
         high.append(math.log(_reached(response, question, each, bounds[1])))
     if not free:
         why = "; ".join(f"{name}: {words}" for name, (_, words) in held.items())
-        raise InputError(f"expected contributors whose tolerances can be scaled, got none ({why or 'none acts'})")
+        measures = [response.of(own.measure).measures[0] for own in targets]
+        idle = (f"{own.name}: {words}" for own in measures if (words := response.nothing_acts(own)))
+        why = why or "; ".join(idle) or "none acts"
+        raise InputError(f"expected contributors whose tolerances can be scaled, got none ({why})")
     search = Search(response, targets, question, free, np.array(low), np.array(high), {})
     for target in targets:
         for side in target.sides:

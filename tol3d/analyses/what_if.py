@@ -24,6 +24,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Numbers, Ppm, PpmRange, Section, made
 from tol3d.statistics.limits import CONFIDENCE, Proportion
+from tol3d.study.acting import looked_at
 from tol3d.system.dependent import reads_of
 from tol3d.system.measure import Measure
 
@@ -182,8 +183,8 @@ def what_if(
         )
     by_name = {own.name: own for own in asked.contributors}
     rows = []
-    for own in changes:
-        line = known(asked, own.name, own.name)
+    for change in changes:
+        line = known(asked, change.name, change.name)
         first, *others = asked.lines[line]
         each = f", each of {1 + len(others)}" if others else ""
         before_, after = (told(by_name[first], states[word].drawn_by(first)) + each for word in ("before", "after"))
@@ -205,11 +206,13 @@ def _concerned(response: Response, changes: Sequence[Change], measure: str | Non
     system = response.simulation.system
     names |= {own.name for own in system.contributors if names & set(reads_of(own))}
     asked = response.measures if measure is None else response.of(measure).measures
-    found = [own.name for own in asked if names & {each.name for each in system.acting(own)}]
+    found = [own.name for own in asked if names & {each.name for each in response.acting(own)}]
     if not found:
         which = "a measure" if measure is None else repr(measure)
         changed_ones = ", ".join(own.name for own in changes)
-        raise InputError(f"expected contributors on which {which} depends, got {changed_ones}")
+        builds = [looked_at(response.simulation, response.source(own)).builds for own in asked]
+        how = f"; not seen to act in {min(builds)} builds" if all(builds) else ""
+        raise InputError(f"expected contributors on which {which} depends, got {changed_ones}{how}")
     return found
 
 

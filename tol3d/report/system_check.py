@@ -13,6 +13,7 @@ from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Tabl
 from tol3d.report.shown_unit import shown_unit
 from tol3d.report.worst_found import WORST_FOUND, worst_text
 from tol3d.statistics.limits import normal_share
+from tol3d.study.acting import acting, nothing_acts
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, method_of
@@ -60,7 +61,7 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
         return [
             block
             for measure in measures
-            if found[measure.name] and system.acting(measure)
+            if found[measure.name] and acting(simulation, measure)
             for block in _coefficients(
                 measure,
                 units[measure.name],
@@ -90,8 +91,16 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
     numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
     columns = [*(Heading(word, words=True) for word in MEASURE_WORDS), *numbers, Heading("unit")]
     measures = titled("measures", Table("", columns, rows(shown), further=further))
+    asked = system.measures if system.contributors else ()
+    idle = [f"{own.name}: {words}" for own in asked if (words := nothing_acts(simulation, own))]
     outside = [text for own in system.measures for text in _outside(own, units[own.name], found[own.name])]
-    return [*_contributors(system.contributors), *measures, *map(warning, some(outside)), *tables, *notes]
+    return [
+        *_contributors(system.contributors),
+        *measures,
+        *map(warning, some([*outside, *idle])),
+        *tables,
+        *notes,
+    ]
 
 
 def _worst(

@@ -19,6 +19,7 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.measure import SharesBy
 from tol3d.statistics import IndependentSums, independent_shares, shares
+from tol3d.study.acting import acting
 from tol3d.study.draws import redrawn
 from tol3d.study.evaluation import Evaluation, batches
 from tol3d.study.high_low_mean import Percents, high_low_mean_percents
@@ -26,11 +27,9 @@ from tol3d.study.regression import Sums
 from tol3d.study.regressors import regressor_groups
 from tol3d.study.sample import finite
 from tol3d.study.simulation import Simulation
-from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices
-from tol3d.system.system import System
 from tol3d.system.trials import Trials, joined
 from tol3d.units import RESOLVED
 
@@ -64,9 +63,9 @@ class Attribution:
     explained: float | None
 
 
-def by_regression(system: System, measure: Measure, sums: Sums | None, copula: Copula = INDEPENDENT) -> Attribution:
+def by_regression(simulation: Simulation, measure: Measure, sums: Sums | None) -> Attribution:
     """Shares of the variance of each acting contributor by regression."""
-    groups = regressor_groups(system, measure)
+    groups = regressor_groups(simulation, measure)
     if sums is None:
         return Attribution(dict.fromkeys(groups, (None, None)), "regression", None)
     if isinstance(sums, IndependentSums):
@@ -76,7 +75,7 @@ def by_regression(system: System, measure: Measure, sums: Sums | None, copula: C
             for name, own, its in zip(groups, share.tolist(), error.tolist(), strict=True)
         }
         return Attribution(percents, "regression", finite(1.0 - unexplained))
-    found = shares(sums, groups, [own.names for own in copula.blocks])
+    found = shares(sums, groups, [own.names for own in simulation.copula.blocks])
     percents = {name: (finite(100 * found.share[name]), finite(100 * found.standard_error[name])) for name in groups}
     return Attribution(percents, "regression", finite(found.determined))
 
@@ -103,9 +102,9 @@ class Attributed:
         Args:
             regressed: sums of each scalar measure with its regressors.
         """
-        system, copula = self.simulation.system, self.simulation.copula
+        system = self.simulation.system
         measures = [own for own in system.measures if own.name in regressed]
-        found = {own.name: by_regression(system, own, regressed[own.name], copula) for own in measures}
+        found = {own.name: by_regression(self.simulation, own, regressed[own.name]) for own in measures}
         lacking = [own for own in measures if _lacks(regressed[own.name], own, found[own.name])]
         if not lacking:
             return found
@@ -132,8 +131,8 @@ class Attributed:
         Nothing where contributors are correlated: they have no total effects of their own.
         """
         system = self.simulation.system
-        acting = {own.name: [each.name for each in system.acting(own)] for own in measures}
-        names = [own.name for own in system.contributors if any(own.name in each for each in acting.values())]
+        acts = {own.name: [each.name for each in acting(self.simulation, own)] for own in measures}
+        names = [own.name for own in system.contributors if any(own.name in each for each in acts.values())]
         count = min(int(MOST_OF_RUN * self.trials) // (len(names) + 1), MOST_PAIRS)
         if self.simulation.copula.blocks or count < FEWEST_PAIRS:
             return {}
@@ -146,9 +145,7 @@ class Attributed:
                 each = found[measure.name].reshape(len(batch), count) - plain[measure.name]
                 steps[measure.name] |= dict(zip(batch, each, strict=True))
         return {
-            name: _shares_of_effects(
-                {own: step[np.isfinite(step)] for own, step in found.items() if own in acting[name]}
-            )
+            name: _shares_of_effects({own: step[np.isfinite(step)] for own, step in found.items() if own in acts[name]})
             for name, found in steps.items()
         }
 

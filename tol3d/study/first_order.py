@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.acting import acting
 from tol3d.study.correlated import divided_variances
 from tol3d.study.evaluation import Values, batches, evaluations, of_alike
 from tol3d.study.extremes import ends_together
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
-from tol3d.system.copula import INDEPENDENT, Copula
+from tol3d.system.copula import Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.draw import JointDraw, drawn_each
 from tol3d.system.measure import Measure
@@ -94,24 +95,23 @@ def first_orders(
     """
     system = simulation.system
     found = {
-        shown: first_order(system, measures, own.values, simulation.copula)
+        shown: first_order(simulation, measures, own.values)
         for shown, own in evaluations(system, method).items()
         if measures
     }
     return {own.name: {shown: by_measure[own.name] for shown, by_measure in found.items()} for own in measures}
 
 
-def first_order(
-    system: System, measures: Sequence[Measure], values: Values, copula: Copula = INDEPENDENT
-) -> dict[str, FirstOrder]:
+def first_order(simulation: Simulation, measures: Sequence[Measure], values: Values) -> dict[str, FirstOrder]:
     """Measures of first order about their mean builds, by central differences over one sigma to both sides.
 
     Args:
-        system, measures: to build and to read.
+        simulation, measures: to build and to read; where contributors are correlated their parts in the variance
+            are Shapley effects.
         values: by one method, in units of the measures.
-        copula: which contributors are correlated; their parts in the variance are then Shapley effects.
     """
-    found = of_alike(system, measures, lambda alike, turning: _first_order(system, alike, turning, values))
+    system, copula = simulation.system, simulation.copula
+    found = of_alike(system, measures, lambda alike, turning: _first_order(simulation, alike, turning, values))
     return {name: _correlated(own, system, copula) for name, own in found.items()} if copula.blocks else found
 
 
@@ -130,18 +130,19 @@ def _correlated(found: FirstOrder, system: System, copula: Copula) -> FirstOrder
 
 
 def _first_order(
-    system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
+    simulation: Simulation, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
 ) -> dict[str, FirstOrder]:
     """Measures that share the mean build."""
+    system = simulation.system
     mean = mean_deviations(system, measures[0].positions)
     slices = component_slices(system)
-    acting = {measure.name: system.acting(measure) for measure in measures}
-    slopes = _slopes(system, mean, measures, acting, values)
+    every = {measure.name: acting(simulation, measure) for measure in measures}
+    slopes = _slopes(system, mean, measures, every, values)
     ends = {}
     rows = [np.zeros_like(mean), mean]
     for measure in measures:
         own_slopes = slopes[measure.name]
-        ends[measure.name] = ends_together(_concerned(system, acting[measure.name]), own_slopes, turning)
+        ends[measure.name] = ends_together(_concerned(system, every[measure.name]), own_slopes, turning)
         low, high = mean.copy(), mean.copy()
         for name, own_ends in ends[measure.name].items():
             low[:, slices[name]], high[:, slices[name]] = own_ends
@@ -155,7 +156,7 @@ def _first_order(
         numbers[known] = read[measure.name]
         effects = tuple(
             _effect(own, slopes[measure.name][own.name], ends[measure.name][own.name], turning=turning[own.name])
-            for own in acting[measure.name]
+            for own in every[measure.name]
         )
         low, high = numbers[2 + 2 * place : 4 + 2 * place]
         found[measure.name] = FirstOrder(float(numbers[0]), float(numbers[1]), effects, (float(low), float(high)))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from tol3d.distributions import DeviationLaw
 from tol3d.numerics.arrays import Array
+from tol3d.system.contributor import Contributor
 from tol3d.system.dependent import Dependent, Given, in_draw_order, reads_of
 from tol3d.system.draw import Draw, component_sigmas
 from tol3d.system.measure import Measure
@@ -138,14 +139,15 @@ class Rows:
         )
 
 
-def space_of(system: System, measure: Measure, draws: Mapping[str, Draw]) -> Space:
+def space_of(system: System, measure: Measure, draws: Mapping[str, Draw], acting: Iterable[Contributor]) -> Space:
     """The regions that act on a measure, or are read by contributors that act.
 
     Args:
         system, measure: which.
         draws: of all contributors, by name: the system's own, or other tolerances.
+        acting: contributors that act on it.
     """
-    names = {own.name for own in system.acting(measure)}
+    names = {own.name for own in acting}
     while added := {read for name in names for read in _reads(draws[name])} - names:
         names |= added
     slices = component_slices(system)

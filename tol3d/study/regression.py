@@ -10,10 +10,10 @@ from tol3d.statistics import IndependentSums, RegressorSums
 from tol3d.statistics.lazy import quick_products, sparse_products
 from tol3d.statistics.variance_shares import Products, TargetSums
 from tol3d.study.regressors import RegressorSet, regressor_sets
-from tol3d.system.copula import INDEPENDENT, Copula
+from tol3d.study.simulation import Simulation
 from tol3d.system.measure import Measure
 from tol3d.system.outcome import METHODS
-from tol3d.system.system import Columns, System
+from tol3d.system.system import Columns
 
 Sums = RegressorSums | IndependentSums
 Key = tuple[str, str]
@@ -35,29 +35,29 @@ def merged(one: Sums, other: Sums) -> Sums:
 
 
 def target_sums(
-    system: System,
+    simulation: Simulation,
     measures: Sequence[Measure],
     columns: Columns,
     values: Mapping[Key, Array],
     products: Products,
-    copula: Copula = INDEPENDENT,
 ) -> tuple[dict[Key, Sums], Among]:
     """Sums of each method's column of each measure with its regressors, by method and name.
 
     And with those columns that have the same regressors and that no trial lacks.
 
     Args:
-        system, measures: to be measured; scalar measures.
+        simulation, measures: to be measured; scalar measures.
         columns: of a block.
         values: of methods and their difference, nan where a trial lacks one.
         products: of all pairs of rows.
-        copula: which contributors are correlated.
     """
     sums: dict[Key, Sums] = {}
     among: dict[tuple[Key, ...], TargetSums] = {}
-    for own in regressor_sets(system, copula):
+    for own in regressor_sets(simulation):
         keys = [(r, m.name) for m in own.measures for r in (*METHODS, DIFFERENCE) if (r, m.name) in values]
-        block = _Block(own, own.rows(system, columns), quick_products() if len(own) > MANY_REGRESSORS else products)
+        block = _Block(
+            own, own.rows(simulation.system, columns), quick_products() if len(own) > MANY_REGRESSORS else products
+        )
         whole = [key for key in keys if not np.isnan(np.min(values[key], initial=0.0))]
         if whole:
             found, known = block.sums(whole, np.stack([values[key] for key in whole]))

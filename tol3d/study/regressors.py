@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.clusters import Clusters, Picked
+from tol3d.study.acting import acting, looked_at
+from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
-from tol3d.system.copula import INDEPENDENT, Copula
+from tol3d.system.copula import Copula
 from tol3d.system.dependent import reads_of
 from tol3d.system.itself import Itself
 from tol3d.system.measure import Measure
-from tol3d.system.regressors import regressor_count
-from tol3d.system.system import Columns, System, Theory
+from tol3d.system.regressors import regress_squares, regressor_count
+from tol3d.system.system import Columns, Theory
 
 Places = NDArray[np.intp]
 
@@ -64,6 +66,7 @@ class RegressorSet:
         clusters: division of the contributors.
         apart: whether each cluster is regressed on by itself, or all that act on a measure together.
         acting: names of those that act on each measure.
+        seen: names of those that act without a slope, the same of all measures.
         known: earlier answers, by measure.
     """
 
@@ -72,6 +75,7 @@ class RegressorSet:
     clusters: Clusters
     apart: bool
     acting: Mapping[str, tuple[str, ...]]
+    seen: frozenset[str] = frozenset()
     known: dict[str, Regressed] = field(default_factory=dict)
 
     def of(self, measure: Measure) -> Regressed:
@@ -97,48 +101,54 @@ class RegressorSet:
         rows = np.empty((len(self), len(next(iter(columns.values())))))
         ends = self.clusters.starts.tolist()
         views = {own.name: rows[slice(*at)] for own, at in zip(self.contributors, pairwise(ends), strict=True)}
-        system.regress(self.measures[0], self.contributors, columns, views)
+        sloping = [own for own in self.contributors if own.name not in self.seen]
+        system.regress(self.measures[0], sloping, columns, views)
+        for own in self.contributors:
+            if own.name in self.seen:
+                regress_squares(views[own.name], own, columns)
         return rows
 
 
-def regressor_sets(system: System, copula: Copula = INDEPENDENT) -> tuple[RegressorSet, ...]:
+def regressor_sets(simulation: Simulation) -> tuple[RegressorSet, ...]:
     """Sets of all measures of one value a trial; each has the products of its regressors worked out once."""
-    return _sets_of(Itself(system), copula)
+    return _sets_of(Itself(simulation))
 
 
-def regressor_set(system: System, measure: Measure) -> RegressorSet:
+def regressor_set(simulation: Simulation, measure: Measure) -> RegressorSet:
     """The set that a measure is in."""
-    return next(own for own in regressor_sets(system) if measure.name in own.acting)
+    return next(own for own in regressor_sets(simulation) if measure.name in own.acting)
 
 
-def regressor_groups(system: System, measure: Measure) -> Mapping[str, slice]:
+def regressor_groups(simulation: Simulation, measure: Measure) -> Mapping[str, slice]:
     """Regressors of a measure that belong to each contributor that acts on it."""
-    return regressor_set(system, measure).of(measure).groups
+    return regressor_set(simulation, measure).of(measure).groups
 
 
-def regressors(system: System, measure: Measure, columns: Columns) -> Array:
+def regressors(simulation: Simulation, measure: Measure, columns: Columns) -> Array:
     """Regressors of a block for one measure, a row each, (regressors, trials), over each contributor's sigma."""
-    own = regressor_set(system, measure)
-    return own.rows(system, columns)[own.of(measure).rows]
+    own = regressor_set(simulation, measure)
+    return own.rows(simulation.system, columns)[own.of(measure).rows]
 
 
 @lru_cache(maxsize=16)
-def _sets_of(system: Itself, copula: Copula) -> tuple[RegressorSet, ...]:
-    return tuple(_sets(system.thing, copula))
+def _sets_of(simulation: Itself) -> tuple[RegressorSet, ...]:
+    return tuple(_sets(simulation.thing))
 
 
-def _sets(system: System, copula: Copula) -> Iterator[RegressorSet]:
+def _sets(simulation: Simulation) -> Iterator[RegressorSet]:
+    system = simulation.system
     scalars = [measure for measure in system.measures if measure.take != "curve"]
-    acting = {measure.name: tuple(own.name for own in system.acting(measure)) for measure in scalars}
+    names = {measure.name: tuple(own.name for own in acting(simulation, measure)) for measure in scalars}
     alike: dict[Any, list[Measure]] = {}
     for measure in scalars:
-        alike.setdefault(system.regressor_key(measure), []).append(measure)
+        key = system.regressor_key(measure), looked_at(simulation, measure).names
+        alike.setdefault(key, []).append(measure)
     for measures in alike.values():
-        few = [own for own in measures if len(acting[own.name]) <= MOST_REGRESSED]
-        for within in _within_the_largest(few, acting):
-            yield _set(system, within, acting, copula, apart=False)
-        if many := [own for own in measures if len(acting[own.name]) > MOST_REGRESSED]:
-            yield _set(system, many, acting, copula, apart=True)
+        few = [own for own in measures if len(names[own.name]) <= MOST_REGRESSED]
+        for within in _within_the_largest(few, names):
+            yield _set(simulation, within, names, apart=False)
+        if many := [own for own in measures if len(names[own.name]) > MOST_REGRESSED]:
+            yield _set(simulation, many, names, apart=True)
 
 
 def _within_the_largest(
@@ -157,22 +167,23 @@ def _within_the_largest(
 
 
 def _set(
-    system: System,
-    measures: Sequence[Measure],
-    acting: Mapping[str, tuple[str, ...]],
-    copula: Copula,
-    *,
-    apart: bool,
+    simulation: Simulation, measures: Sequence[Measure], acting: Mapping[str, tuple[str, ...]], *, apart: bool
 ) -> RegressorSet:
+    system = simulation.system
     names = {name for own in measures for name in acting[own.name]}
     contributors = tuple(own for own in system.contributors if own.name in names)
-    groups = _dependent(system.contributors, copula)
+    groups = _dependent(system.contributors, simulation.copula)
     clusters = Clusters(
         np.array([regressor_count(own) for own in contributors], dtype=np.intp),
         np.array([groups[own.name] for own in contributors], dtype=np.intp),
     )
     return RegressorSet(
-        tuple(measures), contributors, clusters, apart, {own.name: acting[own.name] for own in measures}
+        tuple(measures),
+        contributors,
+        clusters,
+        apart,
+        {own.name: acting[own.name] for own in measures},
+        looked_at(simulation, measures[0]).names,
     )
 
 

@@ -1,5 +1,6 @@
 """Simulation: a system, its study, and published figures of it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tol3d.scene import Scene
@@ -7,9 +8,23 @@ from tol3d.study.lines import Line
 from tol3d.study.study import Study, Until
 from tol3d.system.copula import INDEPENDENT, Copula
 from tol3d.system.faults import Origin
+from tol3d.system.itself import Itself
 from tol3d.system.method import ANALYTIC_METHOD, MethodKind
 from tol3d.system.system import Published, System
 from tol3d.units import Quantity
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Contributors without a slope that were redrawn in builds of a measure.
+
+    Args:
+        builds: their number; 0 where every contributor has a slope.
+        names: of those that moved the measure; the others were not seen to act.
+    """
+
+    builds: int = 0
+    names: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -26,6 +41,7 @@ class Simulation:
         implausible: warnings of its vocabularies on the scene.
         copula: which contributors are correlated.
         lines: of the scene, which state the tolerances; none of a system made without.
+        seen: by system, what its measures were seen to depend on; filled at the first question, see acting.py.
     """
 
     system: System
@@ -37,6 +53,7 @@ class Simulation:
     implausible: tuple[str, ...] = ()
     copula: Copula = INDEPENDENT
     lines: tuple[Line, ...] = ()
+    seen: dict[Itself, Mapping[str, Seen]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def method(self) -> MethodKind:

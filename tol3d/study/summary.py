@@ -15,6 +15,7 @@ from tol3d.runs.summary.values import Method as MethodName
 from tol3d.runs.summary.values import Unit, made
 from tol3d.statistics import Agreement as Comparison
 from tol3d.statistics import LimitCounts, Moments
+from tol3d.study.acting import acting, nothing_acts
 from tol3d.study.agreement.explaining import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.attribution import Attributed, Attribution
@@ -82,6 +83,7 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
             *failures(simulation, tally),
             *_too_many(simulation),
             *_ends_not_built(simulation),
+            *_idle(simulation),
             *faults(explained),
             *simulation.warnings,
             *correlation_warnings(simulation),
@@ -158,8 +160,8 @@ def _status(measure: Measure, tally: Tally) -> Mapping[str, int]:
 
 def _too_many(simulation: Simulation) -> Iterator[str]:
     """A sentence for measures of more contributors than are regressed on together."""
-    acting = {measure.name: len(simulation.system.acting(measure)) for measure in simulation.system.measures}
-    many = {name: count for name, count in acting.items() if count > MOST_REGRESSED}
+    counts = {measure.name: len(acting(simulation, measure)) for measure in simulation.system.measures}
+    many = {name: count for name, count in counts.items() if count > MOST_REGRESSED}
     if many:
         least, most = min(many.values()), max(many.values())
         count = str(most) if least == most else f"{least} to {most}"
@@ -167,6 +169,15 @@ def _too_many(simulation: Simulation) -> Iterator[str]:
             f"{_named([*many])}: {count} tolerances act, more than the {MOST_REGRESSED} that are regressed on "
             "together; each one's share of the 3D simulation is what it has in common with the measure by itself"
         )
+
+
+def _idle(simulation: Simulation) -> Iterator[str]:
+    """A sentence on measures that depend on no tolerance, where the scene has some."""
+    alike: dict[str, list[str]] = {}
+    for measure in simulation.system.measures if simulation.system.contributors else ():
+        if words := nothing_acts(simulation, measure):
+            alike.setdefault(words, []).append(measure.name)
+    yield from (f"{_named(names)}: {words}" for words, names in alike.items())
 
 
 def _ends_not_built(simulation: Simulation) -> Iterator[str]:
@@ -306,7 +317,7 @@ def _shares(
             geometric_percent_se=known[name][1] if with_errors else None,
             high_low_mean_percent=alone[name],
         )
-        for name in (contributor.name for contributor in simulation.system.acting(measure))
+        for name in (contributor.name for contributor in acting(simulation, measure))
     ]
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d.execution.pools import Concurrency, suggested_workers
 from tol3d.statistics import Grid
+from tol3d.study.acting import looked_at
 from tol3d.study.blocks import block_trials, contacts_of
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
@@ -49,6 +50,8 @@ def workers_for(simulation: Simulation) -> int:
 def task_of(simulation: Simulation, fingerprint: str, *, keep_trials: bool) -> "Task":
     """Task of the workers; its pilot trials load what trials need: that is setup, not simulation."""
     versions = installed_versions(simulation.requires)
+    for measure in simulation.system.measures[:1]:
+        looked_at(simulation, measure)  # once, for all workers
     pilot = Task(simulation, materials_of(simulation), {}, fingerprint, keep_trials, versions)
     return replace(pilot, grids=grids_of(simulation.system, pilot.columns(0, PILOT_TRIALS)))
 

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.acting import acting
 from tol3d.study.evaluation import Evaluation, evaluations
 from tol3d.study.regions import Built, Codes, Standing, space_of
 from tol3d.study.simulation import Simulation
@@ -84,7 +85,7 @@ def built_by(evaluation: Evaluation, measure: Measure, counted: Callable[[int], 
 
 def _worst_case(simulation: Simulation, evaluation: Evaluation, measure: Measure, builds: float) -> WorstCase | None:
     system = simulation.system
-    space = space_of(system, measure, {own.name: own.draw for own in system.contributors})
+    space = space_of(system, measure, {own.name: own.draw for own in system.contributors}, acting(simulation, measure))
     if not len(space.acting) or ROWS * builds_a_row(space) > builds:
         return None
     built = built_by(evaluation, measure)

@@ -1,12 +1,14 @@
 """Regressors of a measure's variance: a few rows for each contributor."""
 
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
+from tol3d.system.draw import component_sigmas
 
 MOST_COMPONENTS: Final = 8
 """Components of a contributor that each have a row; a larger group has one of its own first-order term, and its
@@ -49,3 +51,22 @@ def regress_term(rows: Array, term: Array, sigma: float) -> None:
     """Write one value (trials,) less its mean, and its square, over its sigma: rows (2, trials)."""
     np.multiply(term, 1.0 / (sigma or 1.0), out=rows[0])
     np.square(rows[0], out=rows[1])
+
+
+def regress_squares(rows: Array, contributor: Contributor, columns: Mapping[str, NDArray[Any]]) -> None:
+    """Write rows (regressors, trials) of a contributor without a slope, which acts alike to both sides of its mean.
+
+    Each component less its mean over its sigma, squared; of a large group their sum, and before it that of the
+    components themselves. A single component has a row of its own before its square.
+    """
+    sigmas = component_sigmas(contributor.draw)
+    means = contributor.draw.mean(turning=False)
+    own = [
+        (np.asarray(columns[name], dtype=np.float64) * contributor.per_unit - mean) / (sigma or 1.0)
+        for name, mean, sigma in zip(contributor.columns, means, sigmas, strict=True)
+    ]
+    if has_square(contributor):
+        rows[0], rows[1] = sum(own), sum(each * each for each in own)
+    else:
+        for row, each in zip(rows, own, strict=True):
+            np.square(each, out=row)

@@ -130,7 +130,7 @@ class Theory(Protocol):
     """Effects on the measures of a system, and their properties that are known without trials."""
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
-        """The contributors that act on a measure."""
+        """The contributors that act on a measure by theory; study/acting.py tries those that it leaves out."""
         ...
 
     def regressor_key(self, measure: Measure) -> Hashable:

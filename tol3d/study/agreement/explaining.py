@@ -49,11 +49,13 @@ def explanations(simulation: Simulation, method: Method | None, tally: Tally) ->
     measures = [m for m in scalars_of(system) if method is not None and tally.measures[m.name].disagreement]
     if method is None or not measures:
         return {}
-    fits = {measure.name: MethodFits.of(system, measure, tally.measures[measure.name]) for measure in measures}
-    undecided = {m.name: Explanation(undecided=_too_few(system, m, tally)) for m in measures if fits[m.name] is None}
+    fits = {measure.name: MethodFits.of(simulation, measure, tally.measures[measure.name]) for measure in measures}
+    undecided = {
+        m.name: Explanation(undecided=_too_few(simulation, m, tally)) for m in measures if fits[m.name] is None
+    }
     if len(undecided) == len(measures):
         return undecided
-    widest = max(_together(system, measure) for measure in measures)
+    widest = max(_together(simulation, measure) for measure in measures)
     looked = 2 * widest + (FURTHER_SLOW_LOOKS if method.chord_error else FURTHER_LOOKS)
     worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
     look = second_look(simulation, method, looked, [max(trial, 0) for trial in worst])
@@ -74,16 +76,16 @@ def explanations(simulation: Simulation, method: Method | None, tally: Tally) ->
     }
 
 
-def _too_few(system: System, measure: Measure, tally: Tally) -> str:
+def _too_few(simulation: Simulation, measure: Measure, tally: Tally) -> str:
     own = tally.measures[measure.name].disagreement
     compared = own.sums.count if own else 0
-    needed = 2 * _together(system, measure) + LEAST_FREEDOM + 1
+    needed = 2 * _together(simulation, measure) + LEAST_FREEDOM + 1
     return f"{compared} trials are too few to tell what explains that, {needed} are enough"
 
 
-def _together(system: System, measure: Measure) -> int:
+def _together(simulation: Simulation, measure: Measure) -> int:
     """Largest number of contributors of a measure that are regressed on together."""
-    return min(len(regressor_groups(system, measure)), MOST_REGRESSED)
+    return min(len(regressor_groups(simulation, measure)), MOST_REGRESSED)
 
 
 def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:

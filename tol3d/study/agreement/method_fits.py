@@ -9,9 +9,10 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.linear_fit import LinearFit
 from tol3d.study.regressors import Regressed, regressor_set
+from tol3d.study.simulation import Simulation
 from tol3d.study.tally import Disagreement, MeasureTally
 from tol3d.system.measure import Measure
-from tol3d.system.system import System, Theory
+from tol3d.system.system import Theory
 
 LEAST_OWN = 1e-3  # of the measure's sigma; effects below it count as that, or rounding errors would be compared
 
@@ -42,17 +43,17 @@ class MethodFits:
     own: Array
 
     @classmethod
-    def of(cls, system: System, measure: Measure, tally: MeasureTally) -> "MethodFits | None":
+    def of(cls, simulation: Simulation, measure: Measure, tally: MeasureTally) -> "MethodFits | None":
         """None if there are too few trials."""
         if tally.disagreement is None or tally.geometric_regressors is None:
             return None
-        regressed = regressor_set(system, measure).of(measure)
+        regressed = regressor_set(simulation, measure).of(measure)
         methods = (tally.analytic_regressors, tally.geometric_regressors)
         fits = [LinearFit.of(sums, regressed.parts) for sums in (tally.disagreement.sums, *methods)]
         difference, analytic, geometric = fits
         if difference is None or analytic is None or geometric is None:
             return None
-        alone = _effects_at_one_position(system, measure)
+        alone = _effects_at_one_position(simulation.system, measure)
         sigma = max(*(own.target_sigma for own in methods), math.hypot(*alone.values()))
         least = np.maximum([alone.get(name, 0.0) for name in regressed.names], LEAST_OWN * sigma)
         own = np.maximum(np.maximum(analytic.effects, geometric.effects), least)

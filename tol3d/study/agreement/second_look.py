@@ -92,7 +92,7 @@ def second_look(simulation: Simulation, method: Method, count: int, others: Sequ
         for name in whole
     }
     rows, columns = dict[str, Array](), drawn_columns(system, trials)
-    for own in regressor_sets(system):
+    for own in regressor_sets(simulation):
         made = own.rows(system, columns) if columns else np.empty((0, count + len(others)))
         rows |= dict.fromkeys((measure.name for measure in own.measures), made)
     return SecondLook(trials, whole, nominal, second_order, rows)
