@@ -13,9 +13,9 @@ from tol3d.study.lines import Line
 from tol3d.system.other_laws import naturally_stays
 
 
-def groups_of(response: Response) -> dict[str, tuple[str, ...]]:
+def groups_of(response: Response) -> Mapping[str, tuple[str, ...]]:
     """Contributors by the name of their tolerance: one, or one for each feature and part that it is of."""
-    return {name: tuple(own.contributors) for name, own in _tolerances(response).items()} or response.lines
+    return {name: own.contributors for name, own in _tolerances(response).items()} or response.lines
 
 
 def _tolerances(response: Response) -> dict[str, Line]:

@@ -187,8 +187,8 @@ def what_if(
         line = known(asked, change.name, change.name)
         first, *others = asked.lines[line]
         each = f", each of {1 + len(others)}" if others else ""
-        before_, after = (told(by_name[first], states[word].drawn_by(first)) + each for word in ("before", "after"))
-        rows.append(made(ChangeMade, contributor=line, before=before_, after=after))
+        laws = {word: told(by_name[first], own.drawn_by(first)) + each for word, own in states.items()}
+        rows.append(made(ChangeMade, contributor=line, **laws))
     return made(
         WhatIf,
         changes=rows,

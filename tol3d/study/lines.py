@@ -33,10 +33,10 @@ class Line:
     """A line that states a tolerance.
 
     Args:
-        name: of the tolerance; of a file that is included several times "thickness of ring.yaml".
+        name: of the tolerance; of a file that is included several times "thickness of ring.yaml"; of what a move says
+            that of its contributor.
         contributors: names of those that it makes.
-        entries: names of its tolerances in the scene, one for each time that its file is included; none of what a
-            move says.
+        entries: names of its tolerances in the scene, one for each time that its file is included; none of a move.
         in_file: name of the tolerance in an included file; "" of the scene's own.
     """
 
@@ -48,21 +48,26 @@ class Line:
 
 def lines_of(scene: Scene, contributors: Iterable[Contributor]) -> tuple[Line, ...]:
     """The lines of a scene, in the order of their first contributors."""
-    places = {name: scene.origin.place(("tolerances", name)) for name in scene.tolerances}
-    counts = Counter(place for place in places.values() if place.file)
-    files = {str(own.path): name for name, own in scene.origin.files.items()}
+    origin = scene.origin
+    tolerances = {name: origin.place(("tolerances", name)) for name in scene.tolerances}
+    moves = {name: origin.place(("moves", name)) for name in scene.moves}
+    counts = Counter(place for place in (*tolerances.values(), *moves.values()) if place.file)
+    files = {str(own.path): name for name, own in origin.files.items()}
     in_files: dict[Place, str] = {}
     found: dict[str, Line] = {}
     for own in contributors:
         stated = own.line if isinstance(own, OfLine) else ""
         line = stated or own.name
-        entry = line if line in places else _entry(stated, scene.tolerances)
-        in_file, place = "", places.get(entry, TOP)
+        entry = line if line in tolerances else _entry(stated, tolerances)
+        move = "" if entry else max((name for name in moves if line.endswith(f" of {name}")), key=len, default="")
+        name, in_file = entry or move, ""
+        place = (tolerances if entry else moves).get(name, TOP)
         if counts[place] > 1:
             file = files[place.file]
             if place not in in_files:
-                in_files[place] = _name_in_file(entry, place, scene.origin.files[file].content)
-            in_file = in_files[place] + line[len(entry) :]
+                in_files[place] = _name_in_file(name, place, origin.files[file].content)
+            before, _, after = line.partition(name) if entry else line.rpartition(name)
+            in_file = f"{before}{in_files[place]}{after}"
             line = f"{in_file} of {file}"
         known = found.get(line, Line(line, ()))
         entries = (*known.entries, *([entry] if entry and entry not in known.entries else []))
