@@ -14,8 +14,12 @@ from tol3d.analyses.changes import Change, change_of, changed, factor_of
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_if import what_if
+from tol3d.distributions import Uniform
 from tol3d.scene.edit import write_scene
 from tol3d.simulate import load, simulation_of
+from tol3d.study.lines import lines_of
+from tol3d.system.draw import Scalar
+from tol3d.system.plain import PlainContributor
 
 FLOOR, RING = 8.0, 10.0  # um, sigmas of 3 sigma limits
 BASE = """  base:
@@ -143,6 +147,21 @@ def test_an_allocation_has_one_value_and_a_scene_with_it_is_the_same(kind: str, 
     copy = response.lines[line][1]
     with pytest.raises(InputError, match=f"--freeze: expected '{line}', .* got '{copy}' alone"):
         allocation(response, [Target("gap", (), 20_000.0)], Question(frozen=frozenset({copy})), draws=400)
+
+
+def test_what_a_move_of_a_file_states_is_shared_too(tmp_path: Path) -> None:
+    """Such as the bolts of a move, which no tolerance states."""
+    stand = f"parts:\n{BASE}moves: {{hold: {{kind: fix, part: base}}}}\n"
+    (tmp_path / "stand.yaml").write_text(stand, "utf-8")
+    text = "scene: two stands\ninclude: {a: stand.yaml, far b: stand.yaml}\n"
+    measured = "{kind: gap, from: a base.o, to: far b base.o, along: [0, 0, 1]}"
+    scene = scene_of(f"{text}measures: {{apart: {measured}}}\n", tmp_path)
+    names = ("bolt 1 of a hold", "bolt 1 of far b hold", "bolt 2 of a hold")
+    found = lines_of(scene, [PlainContributor(name, "size", Scalar(Uniform(-0.01, 0.02))) for name in names])
+    assert {own.name: (own.contributors, own.entries) for own in found} == {
+        "bolt 1 of hold of stand.yaml": (names[:2], ()),
+        "bolt 2 of hold of stand.yaml": (names[2:], ()),
+    }
 
 
 def test_features_of_a_pattern_share_their_line() -> None:
