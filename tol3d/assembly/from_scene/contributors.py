@@ -64,7 +64,7 @@ class Effects:
     """Columns of the draws of other mechanisms' moves, by name."""
     width: int = 0
 
-    def _added(self, name: str, spec_kind: str, description: str, draw: Draw, line: str = "") -> slice:
+    def _added(self, name: str, spec_kind: str, description: str, draw: Draw, *, line: str = "") -> slice:
         return self.added(PlainContributor(name, spec_kind, draw, description=description, line=line))
 
     def added(self, contributor: PlainContributor) -> slice:
@@ -95,7 +95,7 @@ class Effects:
         draw, moved, word = motion_of(self.scene, self.drawing, pattern)
         name = motion_name(own, word)
         line = f"{own.entry} {word}"
-        columns = self._added(name, own.spec.kind, f"of all features of {own.entry} together", draw, line)
+        columns = self._added(name, own.spec.kind, f"of all features of {own.entry} together", draw, line=line)
         for feature, matrix in moved.items():
             self.moved_by.setdefault(feature, []).append(Contribution(name, columns, matrix))
 
@@ -140,7 +140,7 @@ class Effects:
 
     def _dimension(self, own: Stated, spec: PlusMinusSpec | SizeSpec) -> None:
         draw = Scalar(spec.distribution.resolve(self.scene.files))
-        columns = self._added(own.name, spec.kind, spec.description, draw, own.entry)
+        columns = self._added(own.name, spec.kind, spec.description, draw, line=own.entry)
         if isinstance(spec, SizeSpec):
             self._refuse_no_size(own, draw)
             self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))
@@ -179,7 +179,7 @@ class Effects:
 
     def _zone(self, own: Stated) -> None:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
-        columns = self._added(own.name, own.spec.kind, own.spec.description, draw, own.entry)
+        columns = self._added(own.name, own.spec.kind, own.spec.description, draw, line=own.entry)
         self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
         if is_of_round_surface(own.spec, self.drawing.kind(own.feature).kind):
             shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
@@ -206,7 +206,7 @@ class Effects:
         law: Distribution = named(spec.law.touching)(
             spec.law, 0.5 * whole_form(spec, self.drawing.kind(own.feature).shape), self.scene.files
         )
-        columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)), own.entry)
+        columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)), line=own.entry)
         for k, touches in enumerate(others.values()):
             matrix = np.zeros((1, len(others)))
             matrix[0, k] = 1.0
@@ -233,7 +233,7 @@ class Effects:
             size = sized_by(self.scene, self.drawing, own.feature, "mmc")
             share = law(spec.law, 1.0, self.scene.files)
             draw = EnvelopedForm(share, spec.law.kind, enveloped(size, self.drawing, own.feature, form))
-        columns = self._added(own.name, spec.kind, spec.description, draw, own.entry)
+        columns = self._added(own.name, spec.kind, spec.description, draw, line=own.entry)
         sign = np.array([[-1.0 if shape.inner else 1.0]])
         self.formed_by.setdefault(own.feature, []).append(Contribution(own.name, columns, sign))
 
