@@ -22,7 +22,7 @@ from tol3d.adjustment import ShimPlan, ShimQuestion, length_of, shim_plan, stock
 from tol3d.adjustment.shim import Rounding
 from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
-from tol3d.analyses.kept_pages import kept_pages, kept_shares
+from tol3d.analyses.kept_pages import kept_advice, kept_pages, kept_shares
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.sweep import sweep as swept
@@ -317,6 +317,7 @@ def write_report(
         opened,
         analyses=analyses,
         shares=kept_shares(opened[0]) if analyses else {},
+        best=kept_advice(opened[0]) if analyses else "",
         accepted_ppm=accepted_ppm,
         trials=trials,
         in_3d=in_3d and not missing,

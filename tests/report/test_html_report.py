@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import re
+import shlex
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from places import ROOT
+from places import ROOT, SPUR_PAIR
 from toys.parabola import PARABOLA
 from toys.pins import PINS
 from toys.registered import TOYS, known
@@ -21,6 +22,7 @@ from tol3d.analyses.effects import effects
 from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
 from tol3d.analyses.subject import SECTIONS, Subject
+from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
 from tol3d.notebook import write_report
 from tol3d.report.compare import comparison_report
 from tol3d.report.comparison_picture import comparison_figure
@@ -31,7 +33,7 @@ from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
 from tol3d.report.report_sections import report_sections
 from tol3d.runs.bare import MissingMechanismWarning
-from tol3d.runs.run import Run
+from tol3d.runs.run import Run, open_run
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import Execution, Overrides, simulation_again
 
@@ -131,6 +133,36 @@ def test_the_same_run_gives_the_same_bytes(spur: Run, text: str, tmp_path: Path)
     assert re.sub(made, "", written.read_text()) == re.sub(made, "", text)
     with pytest.raises(InputError, match="there is one already"):
         write_report(spur, written)
+
+
+def test_the_command_that_shows_a_trial_finds_the_run_from_where_the_report_was_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    made = run_scene("spur_pair", overrides=Overrides(trials=40, witness=0), out=Path("my runs/pair $1"))
+    assert made.path.is_absolute()
+    for given in (Path("my runs/pair $1"), made):
+        page = _no_way_out(write_report(given, tmp_path / "report.html", in_3d=False, force=True).read_text())
+        words = {json.loads(text)["run"] for text in page.inside("script") if text.startswith(BARS)}
+        assert words == {"'my runs/pair $1'"}  # as a shell takes it for one word
+        assert open_run(Path(*shlex.split(words.pop()))).found.seed == made.found.seed
+
+
+def test_the_verdict_has_the_best_change_that_the_run_keeps(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SPUR_PAIR.read_text("utf-8").replace("lower_limit: 15 um", "lower_limit: 45 um"), "utf-8")
+    run = run_scene(scene, overrides=Overrides(trials=300, witness=0), out=tmp_path / "run")
+    assert 'class="advice"' not in write_report(run, tmp_path / "plain.html", in_3d=False).read_text()
+    subject = Subject(simulation_again(run), run)
+    subject.keep("changes", changes_of(subject.response, ChangesQuestion(builds=400)))
+    page = write_report(run, tmp_path / "report.html", in_3d=False).read_text()
+    advice = re.search(r'<p class="advice">what to change: (normal backlash: .*?)</p>', page)
+    assert advice
+    assert page.index("<h2>verdict</h2>") < advice.start() < page.index("<table>")
+    section = _Read(page[page.index("<h2>what to change</h2>") :].partition("</section>")[0]).texts
+    first, _, best = advice[1].partition("; ")
+    told = [text.strip() for _, text in section]
+    assert told.index(best) == told.index(first) + 1
 
 
 @pytest.mark.parametrize("name", HOSTILE)

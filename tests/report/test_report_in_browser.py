@@ -52,6 +52,34 @@ def _hues(picture: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("dark", [False, True])
+def test_digits_of_dark_cells_stand_out_and_have_no_rim_of_their_own_colour(
+    page: Page, written: Path, dark: bool
+) -> None:
+    page.open(written, dark=dark)
+    styles = page.ask(
+        "[...document.querySelectorAll('.tick.strong')].map(e => getComputedStyle(e)).map(s => [s.fill, s.stroke])"
+    )
+    assert styles
+    cell = page.ask("getComputedStyle(document.querySelector('rect.cell')).fill")
+    for fill, rim in styles:
+        assert rim == "none"
+        assert _contrast(fill, cell) > 3.0  # of a cell of full strength; WCAG asks as much of graphics
+
+
+def _contrast(first: str, second: str) -> float:
+    """Contrast of two colours `rgb(r, g, b)`, 1 to 21; WCAG 2.2, 1.4.11."""
+
+    def luminance(colour: str) -> float:
+        parts = [int(own) / 255 for own in re.findall(r"\d+", colour)[:3]]
+        linear = [own / 12.92 if own <= 0.04045 else ((own + 0.055) / 1.055) ** 2.4 for own in parts]
+        return float(np.dot([0.2126, 0.7152, 0.0722], linear))
+
+    low, high = sorted(map(luminance, (first, second)))
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.slow
 def test_parts_are_seen_whole_in_their_colours_and_can_be_hidden(page: Page, written: Path) -> None:
     page.open(written)
     page.wait(READY)

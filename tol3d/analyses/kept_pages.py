@@ -15,7 +15,7 @@ from tol3d.analyses.subject import sections_of
 from tol3d.analyses.what_if import WhatIf
 from tol3d.analyses.what_if_table import what_if_report
 from tol3d.analyses.what_to_change import Changes
-from tol3d.analyses.what_to_change_table import changes_report
+from tol3d.analyses.what_to_change_table import best_change, changes_report
 from tol3d.report.page import Page
 from tol3d.runs.run import Run
 from tol3d.runs.summary.values import Section
@@ -39,6 +39,16 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
     """
     found = sections_of(run)
     return {title: _page(run, found[name]) for name, title in TITLES.items() if name in found}
+
+
+def kept_advice(run: Run) -> str:
+    """The best change of those that a run keeps, in a line; "" for none.
+
+    Raises:
+        RunError: they were changed since they were made.
+    """
+    found = sections_of(run).get("changes")
+    return best_change(found) if isinstance(found, Changes) else ""
 
 
 def kept_shares(run: Run) -> Mapping[str, Mapping[str, Mapping[str, float]]]:

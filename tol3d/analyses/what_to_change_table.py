@@ -1,6 +1,7 @@
 """Recommended changes, as tables, and as a few lines below a verdict."""
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Final
 
 from tol3d.analyses.slopes import Rates
@@ -169,6 +170,12 @@ def changes_lines(found: Changes, where: str) -> list[PageItem]:
         dots = " …" if len(found.further) > BRIEF_TOLD else ""
         blocks.append(note(f"{len(found.further)} more NOT OK: {', '.join(found.further[:BRIEF_TOLD])}{dots}"))
     return blocks
+
+
+def best_change(found: Changes) -> str:
+    """The first measure and the best change that was found for it, in a line; "" where none is."""
+    measure, *changes = [str(own).strip() for own in islice(_answers(found), 2)] or [""]
+    return "; ".join([measure, *changes]) if changes else ""
 
 
 def _answers(found: Changes) -> Iterator[PageItem]:

@@ -3,9 +3,11 @@
 import base64
 import hashlib
 import json
+import shlex
 from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache
 from importlib import resources
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -79,6 +81,7 @@ def report_html(
     accepted_ppm: float = ACCEPTED_PPM,
     analyses: Mapping[str, Page] | None = None,
     shares: Mapping[str, Shares] | None = None,
+    best: str = "",
     trials: Sequence[int] = (),
     in_3d: bool = True,
     missing: Sequence[str] = (),
@@ -91,10 +94,11 @@ def report_html(
         accepted_ppm: share of trials that may be out of a measure's limits.
         analyses: sections of the first run by their titles.
         shares: of contributors [%] by measure, of sections that have them.
+        best: change to the first run's scene, in a line; "" for none.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
         in_3d: True to show the first run's parts in 3D.
         missing: what is left out, and why.
-        made: when and where, the one element that differs between two reports of the same runs.
+        made: when and where, the one element that differs between two reports of the same runs in the same place.
 
     Raises:
         InputError: no run, or runs that share no measure.
@@ -107,7 +111,7 @@ def report_html(
     body += (
         [*_compared(runs)]
         if len(runs) > 1
-        else [*_single(runs[0], accepted_ppm, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
+        else [*_single(runs[0], accepted_ppm, best, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
     )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
@@ -135,10 +139,10 @@ def _described(run: Run) -> str:
 
 
 def _single(
-    run: Run, accepted_ppm: float, kept: Mapping[str, Markup], trials: Sequence[int] | None
+    run: Run, accepted_ppm: float, best: str, kept: Mapping[str, Markup], trials: Sequence[int] | None
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
-    sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm))}
+    sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm, best))}
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
@@ -179,10 +183,11 @@ def _badge(run: RunSummary, accepted_ppm: float) -> Markup:
     return tag("p", VERDICTS[kind], class_=f"verdict {kind}")
 
 
-def _verdict(run: RunSummary, accepted_ppm: float) -> Markup:
+def _verdict(run: RunSummary, accepted_ppm: float, best: str) -> Markup:
     blocks = verdict_report(run, accepted_ppm, blame=True)
     accepted = tag("p", f"accepted: {share_text(accepted_ppm)} out of limits", class_="dim")
-    return together(accepted, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
+    advice = [tag("p", f"what to change: {best}", class_="advice")] if best else []
+    return together(accepted, *advice, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
 
 
 def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Markup]:
@@ -260,10 +265,21 @@ def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> It
         return
     column = value_column(measure.best_method, name)
     bars = _first_trials(run, column, samples[0].bars, _factor(run, name, measure))
-    data = {"run": str(run.path.name), "bars": bars}
+    data = {"run": _as_argument(run.path), "bars": bars}
     text = json.dumps(data, sort_keys=True).replace("<", "\\u003c")
     yield tag("script", Markup(text), type="application/json", id=f"trials-{number}")
     yield tag("p", "Click a bar to list trials in it.", class_="picked note")
+
+
+def _as_argument(folder: Path) -> str:
+    """A run's folder as an argument of a command, quoted for a shell: as it was given, or from the current folder.
+
+    >>> _as_argument(Path("runs/two plates")), _as_argument(Path("-v"))
+    ("'runs/two plates'", './-v')
+    """
+    here = Path.cwd()
+    text = str(folder.relative_to(here) if folder.is_absolute() and folder.is_relative_to(here) else folder)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 def _first_trials(run: Run, column: str, bars: Bars, factor: float) -> Mapping[str, list[int]]:

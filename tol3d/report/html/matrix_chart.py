@@ -18,6 +18,8 @@ NAMES, CELL = 230.0, 18.0
 LONGEST, LONGEST_HEAD = 38, 26
 SIGN: Final = 6.2
 """Width of a sign of a name."""
+DARK: Final = 0.75
+"""Of the largest share; digits of cells beyond it have the colour of the paper, others a rim of it."""
 FEWEST: Final = 2
 """Measures of a matrix; of one the contributors' bars say all."""
 
@@ -84,7 +86,7 @@ def matrix(shares: Shares) -> Markup:
                 )
             )
             if share >= LEAST_WRITTEN:
-                dark = "tick strong" if strength > 0.5 else "tick"
+                dark = "tick strong" if strength > DARK else "tick"
                 inside.append(
                     tag("text", f"{share:.0f}", x=place["x"] + wide / 2, y=y + 13, text_anchor="middle", class_=dark)
                 )
