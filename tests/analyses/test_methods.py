@@ -19,7 +19,7 @@ from toys.rods import RODS
 from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.fitted_law import fitted
+from tol3d.analyses.fitted_law import KINDS, Moments, fitted
 from tol3d.analyses.methods import Drawn, methods, modified_factor
 from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.methods_table import NO_SLOPE, methods_report
@@ -312,3 +312,12 @@ def test_a_mechanism_from_outside_has_all_methods_and_a_run_keeps_them(tmp_path:
 def test_what_cannot_be_asked_is_refused() -> None:
     with pytest.raises(InputError, match="expected a measure, got"):
         response_of(simulation_of(load("spur_pair"))).of("backlash of nothing")
+
+
+@pytest.mark.parametrize(("a", "b"), [(2.0, 5.0), (5.0, 2.0), (1.5, 9.0)])
+def test_a_beta_law_is_found_by_its_moments_on_the_side_to_which_it_leans(a: float, b: float) -> None:
+    """Between 3 and 10, by scipy's moments of that law."""
+    mean, variance, skewness, kurtosis = stats.beta(a, b, 3.0, 7.0).stats("mvsk")
+    (kind,) = [own for own in KINDS if own.name == "Pearson I"]
+    own = Moments(*(np.array([float(each)]) for each in (mean, np.sqrt(variance), skewness, kurtosis)))
+    assert [float(each[0]) for each in kind.fit(own)] == pytest.approx([a, b, 3.0, 7.0], rel=1e-9)

@@ -21,7 +21,7 @@ from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.estimated_changes import estimated_changes, not_ok
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import keep, sections_of
-from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
+from tol3d.analyses.what_to_change import Asked, Changes, ChangesQuestion, changes_of, contributions_of
 from tol3d.analyses.what_to_change_picture import changes_of_one, draw_changes
 from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
 from tol3d.distributions.normal import Normal
@@ -390,3 +390,16 @@ def test_every_bundled_scene_is_told_or_refused(name: str) -> None:
         return
     found = changes_of(response, ChangesQuestion(builds=100))
     assert as_text(changes_report(name, found), 120)
+
+
+@pytest.mark.parametrize("sense", ["upper", "lower"])
+def test_builds_that_fail_take_from_the_accepted_share(sense: str) -> None:
+    """1000 builds of which 5 may be out: 2 fail, so 3 of the values 0 to 997 may; the shift ends amid the next two."""
+    limit = 900.0 if sense == "upper" else 80.0
+    lower, upper = (None, limit) if sense == "upper" else (limit, None)
+    own = formula(lambda x: x[:, 0], lower, upper)
+    now = np.random.default_rng(2).permutation([*range(998), np.nan, np.nan])
+    found = list(Asked(own, 5000.0).targets(now, 498.5, 0.0))
+    shift = 900.0 - (994 + 995) / 2 if sense == "upper" else 80.0 - (2 + 3) / 2
+    assert found == [("accepted share", pytest.approx(shift, abs=1e-9))]
+    assert not list(Asked(own, 1000.0).targets(now, 498.5, 0.0))  # one may be out, two have failed already

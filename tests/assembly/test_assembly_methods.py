@@ -250,6 +250,27 @@ def test_flatness_and_near_points() -> None:
     of_second_order(assembly, np.random.default_rng(5).normal(size=(40, assembly.width)) * 0.02)
 
 
+@pytest.mark.parametrize(("nominal", "sense"), [(180.0, 1.0), (179.5, 1.0), (179.5, -1.0), (-40.0, 1.0)])
+def test_angles_about_a_direction_go_on_beyond_half_a_turn(nominal: float, sense: float) -> None:
+    """An axis turned by some degrees about z, more and less by up to 1.7 deg: read as it is, never 360 deg off."""
+    draft = Draft()
+    draft.part("part")
+    draft.feature("part.from", frame((0, 0, 0), X), deviates=False)
+    turn = np.radians(nominal)
+    draft.feature("part.to", frame((30, 20, 5), (np.cos(turn), np.sin(turn), 0.0), Z), Axis(100.0))
+    measures = {"angle": Measured(AngleSpec.reads, ("part.from", "part.to"), sense * Z)}
+    assembly = draft.assembly((Fix("fix", "part"),), measures)
+    leans, y = np.radians([-1.7, -0.6, 0.3, 1.2, 1.7]), np.cross((np.cos(turn), np.sin(turn), 0.0), Z)
+    off = -50.0 * np.tan(leans)  # of the end along y of the feature, which lies clockwise
+    assert y == pytest.approx([np.sin(turn), -np.cos(turn), 0.0], abs=1e-12)
+    rows = np.concatenate([draft.trial({"part.to start y": -own, "part.to end y": own}) for own in off])
+    expected = sense * (turn + leans)
+    found, codes = placing.values(assembly, rows, ["angle"])["angle"]
+    assert (codes == OK).all()
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    np.testing.assert_allclose(torsors.values(assembly, rows, ["angle"])["angle"], expected, atol=1e-5)
+
+
 @pytest.mark.parametrize("criterion", ["squares", "minimax"])
 def test_best_fits(criterion: str) -> None:
     """Six points in space, each in all directions, weighted."""

@@ -16,10 +16,11 @@ from foreign_parts import nist_file, slotted_block, solid, step_file
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
 from tol3d.drafting import scene_from
-from tol3d.drafting.dimensions import enveloped
+from tol3d.drafting.dimensions import distance_entry, enveloped
 from tol3d.drafting.entry import Entry, Scene, Wording
 from tol3d.drafting.fixture import seat_and_pins, three_two_one
 from tol3d.drafting.parts import drafted_parts, read_files
+from tol3d.drafting.touching import TOUCHING, overlap
 from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
@@ -351,3 +352,39 @@ def scene_file(text: str, folder: Path) -> SceneOfFile:
 def test_the_word_of_a_file_on_the_envelope_of_a_size_is_said(notes: tuple[str, ...], kind: str, expected: str) -> None:
     (given,) = (own for own in read_step_text(nist_file("ctc_01").content, "a").dimensions if own.id == 122)
     assert enveloped(replace(given, notes=notes), SimpleNamespace(kind=kind)) == expected  # type: ignore[arg-type]
+
+
+def test_faces_overlap_by_the_box_that_both_share() -> None:
+    """8 x 3 mm in directions that lean by 30 deg: one face from 0 to 12 by 0 to 5, one from 4 to 30 by 2 to 40."""
+    x, normal = np.array([math.cos(0.5), 0.0, math.sin(0.5)]), np.array([-math.sin(0.5), 0.0, math.cos(0.5)])
+    y = np.cross(normal, x)
+
+    def corners(x_range: tuple[float, float], y_range: tuple[float, float]) -> np.ndarray:
+        return np.array([a * x + b * y + 7.0 * normal for a in x_range for b in y_range])
+
+    first = corners((0.0, 12.0), (0.0, 5.0))
+    assert overlap(first, corners((4.0, 30.0), (2.0, 40.0)), x, normal) == pytest.approx(24.0, abs=11.1 * TOUCHING)
+    assert overlap(first, corners((3.0, 5.0), (1.0, 2.0)), x, normal) == pytest.approx(2.0, abs=3.1 * TOUCHING)
+    for beside in (corners((12.5, 30.0), (2.0, 4.0)), corners((4.0, 8.0), (-9.0, -0.5))):
+        assert overlap(first, beside, x, normal) == 0.0
+
+
+def test_a_distance_of_unequal_limits_deviates_by_both_from_what_is_drawn() -> None:
+    """Drawn at 20 mm, from 19.93 to 20.02 mm: -0.07 and +0.02 mm, along the direction of the face it starts at."""
+    faces = [
+        FoundFeature((k,), "plane", at, (0.0, 0.0, -1.0), (1.0, 0.0, 0.0))
+        for k, at in enumerate(((5.0, 2.0, 3.0), (9.0, 0.0, 23.0)))
+    ]
+    entries = list[Entry]()
+    drawing = SimpleNamespace(
+        datums={}, located={}, entries=entries, spread="uniform", reasons={}, of=lambda name: f"part.{name}",
+        names=SimpleNamespace(new=lambda *names: names[0]),
+        features=SimpleNamespace(named=lambda own: None, name=lambda own: f"face {own.faces[0]}"),
+    )  # fmt: skip
+    dimension = SimpleNamespace(id=7, limits=(19.93, 20.02), name="", nominal=None, least=None, most=None)
+    distance_entry(drawing, dimension, *faces)  # type: ignore[arg-type]
+    (entry,) = entries
+    said = yaml.safe_load(entry.wordings[0].lines[0])
+    assert said["of"] == "part.face 1"
+    lower, upper = (float(said["distribution"][key].split()[0]) for key in ("lower", "upper"))
+    assert (lower, upper) == pytest.approx((-0.07, 0.02), abs=1e-9)

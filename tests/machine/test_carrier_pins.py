@@ -12,6 +12,9 @@ from machine.housed import gearbox_of, system_of, values
 from numpy.typing import NDArray
 
 from tol3d import SceneError
+from tol3d.machine.centrals import displacement_name
+from tol3d.machine.nominal import Bore, HousedShaft
+from tol3d.machine.pins import Pins
 from tol3d.study.columns import columns_of
 from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.regressors import regressor_count
@@ -179,3 +182,30 @@ def test_it_is_refused_with_one_message(case: str, tmp_path: Path) -> None:
 def test_another_part_than_a_carrier_has_no_pins(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match=r"pins.carrier: expected the carrier of a planetary set or an RV reducer"):
         gearbox_of(drawn(ALONE, RADIUS).replace("carrier_pins, carrier: carrier", "carrier_pins, carrier: P"), tmp_path)
+
+
+def test_a_pin_off_the_middle_takes_the_larger_share_of_the_nearer_end() -> None:
+    """The axis from z = -40 to 10 mm, the pin's middle at 2 mm: 0.84 of the upper end, 0.16 of the lower one.
+
+    The pin itself is read by its ends at -3 and 7 mm, half of each; its x is that of the carrier turned by 120 deg.
+    """
+    turn = math.radians(120)
+    outwards = np.array([math.cos(turn), math.sin(turn), 0.0])
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 3] = (
+        outwards,
+        np.cross([0, 0, 1], outwards),
+        [30 * outwards[0], 30 * outwards[1], 2],
+    )
+    frame = np.eye(4)
+    frame[2, 3] = -5.0
+    axis = HousedShaft(
+        "m", "axis", tuple(Bore("p.axis", k, np.array([0, 0, z])) for k, z in enumerate((-40.0, 10.0))), frame, "p"
+    )
+    ends = tuple(Bore("p.pin", k, np.array([*(30 * outwards[:2]), z])) for k, z in enumerate((-3.0, 7.0)))
+    pins = Pins("set", axis, (HousedShaft("m", "pin", ends, pose, "p"),))
+    found = {own.contributor: np.array(own.matrix) for own in pins.moved()}
+    turned = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    for k, share in enumerate((0.16, 0.84)):
+        np.testing.assert_allclose(found[displacement_name(axis, k)], -share * turned, atol=1e-12)
+        np.testing.assert_allclose(found[displacement_name(pins.pins[0], k)], 0.5 * np.eye(2), atol=1e-12)

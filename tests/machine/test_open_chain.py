@@ -26,9 +26,11 @@ from machine.housed import Array
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.machine.chain import Chain
+from tol3d.machine.closed_form import with_joints
 from tol3d.machine.system import MachineSystem
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
+from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
 
@@ -342,3 +344,21 @@ def test_fcl_witnesses_a_tool_as_far_as_it_does_its_trains(tmp_path: Path) -> No
     run = run_scene(place, overrides=Overrides(trials=40, witness=6), out=tmp_path / "run").summary
     assert [own for own in run["warnings"] if "witness" in own] == []
     assert run["witness"]["measures"].keys() == run["measures"].keys()
+
+
+def test_a_contributor_of_two_trains_and_the_part_acts_by_the_sum_of_all() -> None:
+    """By hand: `wall` by 1.5 - 0.5 (2) + 2 (0.3) = 1.1, of means 3 - 0.5 (-4) + 2 (0.7) = 6.4 and sigma 0.2 each."""
+    part = ClosedForm(10.0, 13.0, 0.3, (Share("wall", 1.5, 3.0, 0.09),))
+    first = ClosedForm(1.0, 0.0, 0.0, (Share("wall", 2.0, -4.0, 0.16), Share("gear", 1.0, 3.0, 0.25)))
+    last = ClosedForm(
+        -2.0, 0.0, 0.0, (Share("wall", 0.3, 0.7, 0.0036), Share("shim", -1.0, 0.5, 0.01)), frozenset({"shim"})
+    )
+    found = with_joints(part, [(-0.5, first), (2.0, last)], ["shim", "gear", "wall"])
+    assert [own.name for own in found.shares] == ["shim", "gear", "wall"]
+    by_hand = {"shim": (-2.0, 1.0, 0.04), "gear": (-0.5, -1.5, 0.0625), "wall": (1.1, 6.4, (1.1 * 0.2) ** 2)}
+    for own in found.shares:
+        assert (own.coefficient, own.mean, own.variance) == pytest.approx(by_hand[own.name], rel=1e-12)
+    assert found.nominal == pytest.approx(10.0 - 0.5 - 4.0)
+    assert found.mean == pytest.approx(5.5 + 1.0 - 1.5 + 6.4)
+    assert found.sigma == pytest.approx(math.sqrt(0.04 + 0.0625 + 0.22**2))
+    assert found.leaning == {"shim"}

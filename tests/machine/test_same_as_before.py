@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from tol3d import Overrides, run_scene
 from tol3d.gears import SpurPair
+from tol3d.system.stated import mean_deviations, stated
 from tol3d.system.system import System
 
 Array = NDArray[np.float64]
@@ -148,3 +149,28 @@ def test_the_centre_distance_follows_from_the_bores(tmp_path: Path) -> None:
     assert isinstance(mesh.pair, SpurPair)
     assert mesh.pair.centre_distance == pytest.approx(APART, abs=1e-12)
     assert np.degrees(mesh.azimuth) == pytest.approx(np.degrees(np.arctan2(45.0, 60.1)), abs=1e-9)
+
+
+def test_the_closed_form_has_the_means_of_all_bores(tmp_path: Path) -> None:
+    """Four bores whose means differ, gears off the middle: the mean is the 3D backlash of the build at all means.
+
+    Read in the middle of the faces a backlash is linear in them but for 0.05 mm squared over 75 mm.
+    """
+    means = {"1": (10.0, -20.0), "1b": (35.0, 5.0), "2": (-15.0, 40.0), "2b": (60.0, 25.0)}
+    tolerances = "".join(
+        f"\n  {name} {axis}: {{kind: plus_minus, of: housing.bore {name}, along: {along}, "
+        f"distribution: {{kind: normal, mean: {mean} um, sigma: 3 um}}}}"
+        for name, both_means in means.items()
+        for axis, along, mean in zip("xy", ([1, 0, 0], [0, 1, 0]), both_means, strict=True)
+    )
+    measures = "\n  backlash: {kind: normal_backlash, of: stage, read_at: mean_section}"
+    housed = gearbox_of(housed_scene(tolerances=THICK + tolerances, measures=measures, moves=LAID_AT), tmp_path)
+    measure = housed.measures[0]
+    form = housed.closed_form(measure)
+    assert form is not None
+    trials = stated(housed, mean_deviations(housed, measure.positions))
+    for name, within in (("exact", 1e-4), ("analytic", 1e-9)):
+        method = housed.method(name, housed.materials(name))
+        value = float(method.answers(trials, (measure,)).values[measure.name][0, 0])
+        assert form.mean == pytest.approx(value, abs=within), name
+    assert abs(form.mean - form.nominal) > 5e-3

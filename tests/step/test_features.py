@@ -320,3 +320,19 @@ def test_the_bores_of_ftc_10_by_name_and_by_frame() -> None:
     assert seat.faces == (11986,)
     (middle,) = selected(part, Selector(datum="D"))
     assert set(middle.faces) == {404, 633, 792}
+
+
+@pytest.mark.parametrize(
+    ("point", "expected"),
+    [
+        ((14.0, 7.0, 31.0), 5.0),  # beside it: 3, 4 across
+        ((11.0, 3.0, 52.0), 12.0),  # 12 beyond the end at z = 40
+        ((14.0, 7.0, 16.0), math.sqrt(41.0)),  # 3, 4 across, 4 before the start at z = 20
+    ],
+)
+def test_the_distance_of_a_point_from_an_axis_is_that_from_its_stretch(
+    point: tuple[float, float, float], expected: float
+) -> None:
+    """An axis of 20 mm about (11, 3, 30), far from the origin."""
+    own = FoundFeature((1,), "pin", (11.0, 3.0, 30.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0), extent=(20.0, 0.0), radius=4.0)
+    assert own.axis_distance(np.array(point)) == pytest.approx(expected, abs=1e-12)

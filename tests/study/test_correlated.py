@@ -2,11 +2,13 @@
 
 import math
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from formulas import formula
+from formulas import Formula, formula
 from scipy.stats import kstest, norm, pearsonr, spearmanr
 
 from tol3d import Overrides, SceneError, run_scene
@@ -21,8 +23,10 @@ from tol3d.statistics.variance_shares import RegressorSums, shares
 from tol3d.study.correlated import closed_form_of, value_correlations
 from tol3d.study.draws import drawn, drawn_ones
 from tol3d.study.first_order import first_orders
-from tol3d.system.copula import INDEPENDENT, Block
+from tol3d.system.closed_form import ClosedForm, Share
+from tol3d.system.copula import INDEPENDENT, Block, Copula
 from tol3d.system.draw import Draw, Scalar
+from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices
 
 DOOR = Path(__file__).parents[2] / "scenes" / "door.yaml"
@@ -253,3 +257,36 @@ def test_contributors_of_several_numbers_and_constants_are_refused(tmp_path: Pat
     own.write_text(constant + f"\ncorrelations: [{{between: [{UPPER}, {DOOR_HINGE}], rho: 0.5}}]\n")
     with pytest.raises(SceneError, match="got 'upper edge x', a constant; take it out"):
         simulation_of(load(own))
+
+
+@dataclass(frozen=True)
+class Formed(Formula):
+    """A formula whose moments somebody states."""
+
+    form: ClosedForm | None = None
+
+    def closed_form(self, measure: Measure) -> ClosedForm | None:
+        return self.form
+
+
+def formed(shares: Sequence[Share], leaning: frozenset[str] = frozenset()) -> ClosedForm | None:
+    """The moments of x0 + 2 x1 + x2 with normals of sigma 1.5, 0.5 and 1; x0 and x1 are correlated by -0.6."""
+    own = formula(lambda x: x[:, 0], [Scalar(Normal(3.0, 1.5)), Scalar(Normal(-1.0, 0.5)), Scalar(Normal(0.0, 1.0))])
+    simulation, sigma = own.simulation, math.sqrt(sum(share.variance for share in shares))
+    system = Formed(**{**vars(simulation.system), "form": ClosedForm(7.0, 8.0, sigma, tuple(shares), leaning)})
+    copula = Copula((Block(("x0", "x1"), ((1.0, -0.6), (-0.6, 1.0))),))
+    return closed_form_of(replace(simulation, system=system, copula=copula), system.measures[0])
+
+
+def test_a_closed_form_is_claimed_only_where_correlated_contributors_act_by_a_slope() -> None:
+    """Var = 2.25 + 1 + 2 (1)(2)(-0.6)(1.5)(0.5) + 1; none where x1's variance is not that of its slope, or it leans."""
+    first, second, third = Share("x0", 1.0, 3.0, 2.25), Share("x1", 2.0, -2.0, 1.0), Share("x2", 1.0, 0.0, 1.0)
+    found = formed((first, second, third))
+    assert found is not None
+    assert found.sigma == pytest.approx(math.sqrt(2.25 + 1.0 - 1.8 + 1.0), rel=1e-9)
+    assert found.mean == 8.0
+    assert formed((first, replace(second, variance=1.3), third)) is None
+    assert formed((first, second, third), frozenset({"x1"})) is None
+    bent = formed((first, second, replace(third, variance=1.7)))  # x2 goes with no other
+    assert bent is not None
+    assert bent.sigma == pytest.approx(math.sqrt(2.25 + 1.0 - 1.8 + 1.7), rel=1e-9)

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from formulas import formula
 from numpy.typing import NDArray
 
 from tol3d import Overrides, Scene, load_scene, run_scene
+from tol3d.distributions.uniform import Uniform
 from tol3d.study import high_low_mean
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
@@ -18,6 +20,7 @@ from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
 from tol3d.study.task import materials_of, method_of
+from tol3d.system.draw import Scalar
 from tol3d.system.measure import Measure
 from tol3d.system.stated import mean_deviations
 
@@ -172,3 +175,22 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
     for name, own in exact.items():
         assert found[name] == {each: pytest.approx(share, rel=0.01, abs=1e-6) for each, share in own.items()}
         assert sum(share > 0.1 for share in own.values() if share is not None) > 1
+
+
+def test_ranges_are_counted_from_the_mean_build_wherever_that_is() -> None:
+    """40 + (x0 - 3)² + 2 x1 - (x2 + 1)²: x0 of 2 to 4, whose mean is in the vertex, x1 of 6 to 9, x2 of 0 to 4.
+
+    Over x0 the measure ends where it began: its range is 1, that of the mean to both ends. Over x1 it is 6, over x2,
+    from one side of the vertex at -1 to the far end, 25 - 1.
+    """
+    own = formula(
+        lambda x: 40.0 + (x[:, 0] - 3.0) ** 2 + 2.0 * x[:, 1] - (x[:, 2] + 1.0) ** 2,
+        [Scalar(Uniform(2.0, 4.0)), Scalar(Uniform(6.0, 9.0)), Scalar(Uniform(0.0, 4.0))],
+    )
+
+    def values(rows: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
+        return {"value": own.values(rows, own.positions(len(rows), "rest")).values[:, 0]}
+
+    found = high_low_mean_percents(own.simulation.system, own.measures, values)["value"]
+    total = 1.0 + 36.0 + 24.0**2
+    assert found == pytest.approx({"x0": 100 / total, "x1": 3600 / total, "x2": 57600 / total}, rel=1e-9)
