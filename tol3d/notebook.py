@@ -38,7 +38,7 @@ from tol3d.report.presenter import Display, Which, presenter_at
 from tol3d.report.report_sections import report_sections
 from tol3d.report.sheet import as_text
 from tol3d.report.table_files import ReportFormat, require_room_for_tables, write_tables
-from tol3d.report.verdict import ACCEPTED_PPM
+from tol3d.report.verdict import Accepted, AcceptedPpk
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.bare import MissingMechanismWarning, open_even_bare
 from tol3d.runs.run import Run, open_run
@@ -276,7 +276,8 @@ def write_report(
     runs: Sequence[Run | Path | str] | Run | Path | str,
     out: Path | str,
     *,
-    accepted_ppm: float = ACCEPTED_PPM,
+    accepted_ppm: float | None = None,
+    accepted_ppk: float | None = None,
     trials: Sequence[int] = (),
     in_3d: bool = True,
     format: ReportFormat = "html",
@@ -287,7 +288,8 @@ def write_report(
     Args:
         runs: finished runs, or their folders.
         out: the file; of "csv" a folder, which gets a file for each table.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted_ppm: share of trials that may be out of a measure's limits; default: as the study asks, or 0.27 %.
+        accepted_ppk: Ppk that a measure must have, instead.
         trials: which the 3D view has besides the nominal build and the worst one.
         in_3d: whether the parts are shown in 3D, which takes a megabyte.
         format: "html" the page; "xlsx", "csv" and "json" its tables, numbers with all their digits.
@@ -296,6 +298,9 @@ def write_report(
     Raises:
         RunError: one is no run, or changed since. InputError: the file is there, or cannot be written.
     """
+    if accepted_ppm is not None and accepted_ppk is not None:
+        raise InputError("expected accepted_ppm or accepted_ppk, got both")
+    accepted = accepted_ppm if accepted_ppk is None else AcceptedPpk(accepted_ppk)
     path = Path(out)
     several = [runs] if isinstance(runs, Run | Path | str) else runs
     found = [(run, "") if isinstance(run, Run) else open_even_bare(run) for run in several]
@@ -310,7 +315,7 @@ def write_report(
         raise InputError(f"{path}: expected the name of a new file, there is one already; --force replaces it")
     analyses = kept_pages(opened[0]) if len(opened) == 1 and not missing else {}
     if format != "html":
-        return write_tables(report_sections(opened, accepted_ppm, analyses), path, format, _about(opened))
+        return write_tables(report_sections(opened, accepted, analyses), path, format, _about(opened))
     now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %Z")
     made = f"report made {now} by tol3d {version('tol3d')}, Python {python_version()}, {machine()}"
     text = report.report_html(
@@ -318,7 +323,7 @@ def write_report(
         analyses=analyses,
         shares=kept_shares(opened[0]) if analyses else {},
         best=kept_advice(opened[0]) if analyses else "",
-        accepted_ppm=accepted_ppm,
+        accepted=accepted,
         trials=trials,
         in_3d=in_3d and not missing,
         missing=missing,
@@ -331,7 +336,7 @@ def write_report(
     return path
 
 
-def keep_report(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> Path:
+def keep_report(run: Run, accepted: Accepted | None = None) -> Path:
     """Write a run's report into its own folder, in place of an older one, as `tol3d run --report` does.
 
     Raises:
@@ -340,7 +345,9 @@ def keep_report(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> Path:
     path, manifest = run.path / REPORT, run.manifest
     if path.exists() and REPORT not in manifest.sums:
         raise RunError(f"{path}: this file is not the run's own; move it elsewhere")
-    write_report(run, path, accepted_ppm=accepted_ppm, force=True)
+    ppk = accepted.ppk if isinstance(accepted, AcceptedPpk) else None
+    ppm = None if isinstance(accepted, AcceptedPpk) else accepted
+    write_report(run, path, accepted_ppm=ppm, accepted_ppk=ppk, force=True)
     manifest.adding(REPORT).write()
     return path
 

@@ -13,9 +13,18 @@ from rich.console import RenderableType
 from scipy import stats
 
 from tol3d import Overrides, Run, run_scene
+from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.report.table import Detail, run_report
-from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, all_ok, verdict_table
+from tol3d.report.verdict import (
+    ACCEPTED_PPM,
+    AcceptedPpk,
+    JudgedMeasure,
+    accepted_text,
+    all_ok,
+    short_verdict,
+    verdict_table,
+)
 
 
 def lines_of(shown: RenderableType, width: int = 200) -> list[str]:
@@ -242,3 +251,31 @@ def test_no_count_and_no_range_is_said_to_end_below_0() -> None:
     assert cells["count *"] == ["1.5 pins", "0 pins", "4 pins", "≥ 1 pin"]
     assert cells["range *"][:3] == ["1.5 µm", "0.0 µm", "4.0 µm"]
     assert cells["length"][:3] == ["1.5 µm", "-1.5 µm", "4.5 µm"]
+
+
+def test_a_study_asks_for_a_ppk_and_the_verdict_says_what_it_stands_for(tmp_path: Path) -> None:
+    """N(53.4, 7.2) um with a lower limit of 15 um has Ppk 1.76: asked for 1.6 and for 1.9, the latter by the call."""
+    text = SPUR_PAIR.read_text("utf-8").replace("witness: 20", "witness: 0, accept: {ppk: 1.6}")
+    (tmp_path / "scene.yaml").write_text(text, "utf-8")
+    run = run_scene(tmp_path / "scene.yaml", out=tmp_path / "run")
+    assert run.summary["study"]["accept_ppk"] == 1.6
+    low, high = run.summary["measures"]["normal backlash"]["geometric"]["ppk_95"]
+    assert 1.6 < low < 1.76 < high < 1.9
+    lines = as_text(page(*short_verdict(run.found)), 80).splitlines()
+    share = f"{1e6 * stats.norm.sf(4.8):.3g} ppm"
+    assert any(line.startswith(f"verdict: OK · accepted: Ppk 1.6 ({share} beyond each limit)") for line in lines)
+    assert f" normal backlash: 95 % of Ppk · {low:.2f} to {high:.2f}" in [line.rstrip() for line in lines]
+    assert all_ok(run.found)
+    assert not all_ok(run.found, AcceptedPpk(1.9))
+    assert all_ok(run.found, 2700.0)
+
+
+def test_the_share_that_is_accepted_says_which_ppk_it_is() -> None:
+    """Half of 0.27 % beyond each of two limits is 3 sigma, all of it beyond one 2.782 sigma."""
+    shown: dict[str, Any] = {"take": "value", "geometric": {}, "lower_limit": 1.0}
+    one, two = (shown | {"upper_limit": upper} for upper in (None, 2.0))
+    each = {"1": [one], "2": [two], "12": [one, two]}
+    words = {ends: accepted_text(2700.0, map(typed_measure, own)) for ends, own in each.items()}
+    assert words["1"] == f"0.27 % out of limits (Ppk {stats.norm.isf(0.0027) / 3:.2f})"
+    assert words["2"] == f"0.27 % out of limits (Ppk {stats.norm.isf(0.00135) / 3:.2f})"
+    assert words["12"] == "0.27 % out of limits (Ppk 1.00 with two limits, 0.93 with one)"

@@ -11,7 +11,7 @@ from printing import printed
 from scipy import stats
 
 from tol3d import load_scene
-from tol3d.report.verdict import JudgedMeasure, verdict_table
+from tol3d.report.verdict import AcceptedPpk, JudgedMeasure, verdict_table
 from tol3d.runs.summary.sample import Sample as SampleSummary
 from tol3d.runs.summary.values import as_json
 from tol3d.statistics import Grid, Moments
@@ -161,3 +161,111 @@ def test_a_study_may_ask_by_what_ppk_is_taken() -> None:
     assert by_sigma.ppk_reason == by_quantiles.ppk_reason == "as asked"
     assert by_quantiles.ppk == summary(values, None, 9.0).ppk
     assert simulation_of(load_scene(SCENES / "every_field.yaml")).study.ppk_by == "quantiles"
+
+
+# intervals ----------------------------------------------------------------------------------------
+
+STUDIES = 200
+MISSED = int(stats.binom(STUDIES, 0.025).ppf(0.9995))  # studies whose bound may lie on the wrong side of the truth
+
+
+def missed(law: Any, n: int, limits: tuple[float | None, float], asked: PpkBy | None, truth: float) -> tuple[int, int]:
+    """Studies with the true Ppk below and above their interval, of a law."""
+    below, above, random = 0, 0, np.random.default_rng(n)
+    for _ in range(STUDIES):
+        low, high = summary(law.rvs(n, random_state=random), *limits, asked).ppk_95 or (None, None)
+        below += low is not None and truth < low
+        above += high is not None and truth > high
+    return below, above
+
+
+@pytest.mark.parametrize(
+    ("law", "n", "lower", "upper"),
+    [
+        (stats.norm(1.0, 2.0), 30, -5.0, 12.0),  # the lower limit decides
+        (stats.norm(1.0, 2.0), 200, -7.0, 9.0),  # both may
+        (stats.gamma(11), 150, None, 25.0),  # skewness 0.6
+        (stats.uniform(-1.0, 3.0), 100, -1.3, 2.4),
+    ],
+)
+def test_ppk_by_mean_and_sigma_lies_in_its_interval(law: Any, n: int, lower: float | None, upper: float) -> None:
+    margins = [upper - law.mean()] + ([] if lower is None else [law.mean() - lower])
+    below, above = missed(law, n, (lower, upper), "sigma", min(margins) / (3 * law.std()))
+    assert max(below, above) <= MISSED
+
+
+@pytest.mark.parametrize(("law", "n"), [(stats.expon(), 4000), (stats.truncnorm(0.0, 3.0), 3000), (stats.expon(), 900)])
+def test_ppk_by_quantiles_lies_in_its_interval(law: Any, n: int) -> None:
+    low, middle, high = law.ppf([LOW, MIDDLE, HIGH])
+    lower, upper = middle - 1.5 * (middle - low), middle + 1.2 * (high - middle)
+    below, above = missed(law, n, (lower, upper), "quantiles", 1.2)
+    assert max(below, above) <= MISSED
+
+
+def test_outer_quantiles_lie_in_their_intervals_and_have_none_of_few_trials() -> None:
+    """No value of 2730 lies beyond the 0.135 % quantile with a chance of 2.5 %: (1 - 0.00135)^n = 0.025."""
+    assert (1 - LOW) ** 2731 < 0.025 < (1 - LOW) ** 2730
+    random, law, beside = np.random.default_rng(3), stats.gamma(3), [0, 0, 0, 0]
+    for _ in range(STUDIES):
+        own = summary(law.rvs(3000, random_state=random))
+        assert own.p0_135_95 is not None
+        assert own.p99_865_95 is not None
+        ends = [*zip(own.p0_135_95, law.ppf([LOW, LOW]), strict=True)]
+        ends += zip(own.p99_865_95, law.ppf([HIGH, HIGH]), strict=True)
+        for k, (bound, truth) in enumerate(ends):
+            assert bound is not None
+            beside[k] += bound > truth if k % 2 == 0 else bound < truth
+    assert max(beside) <= MISSED
+    few = summary(law.rvs(2730, random_state=random))
+    assert few.p0_135_95 is not None
+    assert few.p0_135_95[0] is None
+    assert few.p0_135_95[1] is not None
+
+
+def test_bounds_by_quantiles_are_order_statistics() -> None:
+    """Of 100 000 values the ranks are those of scipy's binomial law, read from the grid to two bins of 0.001 um."""
+    values = np.sort(stats.gamma(3).rvs(100_000, random_state=5))
+    own = summary(values)
+    low, high = int(stats.binom(100_000, LOW).ppf(0.025)), int(stats.binom(100_000, LOW).ppf(0.975)) + 1
+    assert own.p0_135_95 == pytest.approx([values[low - 1], values[high - 1]], abs=2e-3)
+    assert own.p99_865_95 == pytest.approx([values[-high], values[-low]], abs=2e-3)
+
+
+def test_where_builds_failed_the_interval_is_that_of_the_share_out() -> None:
+    values = np.random.default_rng(1).normal(size=2000)
+    values[:4] = np.nan
+    share = stats.binomtest(4, 2000).proportion_ci(0.95, "exact")
+    assert summary(values, -6.0, 6.0).ppk_95 == pytest.approx(stats.norm.isf([share.high, share.low]) / 3)
+
+
+def test_bounds_of_replicates_are_students() -> None:
+    """Eight replicates of 100 trials with a mean of their own each, which independent trials do not tell of."""
+    random = np.random.default_rng(6)
+    values = random.normal(size=(8, 100)) + random.normal(scale=0.5, size=(8, 1))
+    measure = PlainMeasure("gap", "gap", lower_limit=-5.0 * MM, upper_limit=7.0 * MM)
+    rows = {k: slice(100 * k, 100 * k + 100) for k in range(8)}
+    sample = Sample.of(measure, Outcome(values.ravel()), Grid.empty(-40.0, 1e-3, 80_000), rows)
+    parts = (values.mean(axis=1) + 5.0) / (3 * values.std(axis=1, ddof=1))
+    half = stats.t(7).ppf(0.975) * parts.std(ddof=1) / math.sqrt(8)
+    middle = (values.mean() + 5.0) / (3 * values.std(ddof=1))
+    assert sample_summary(measure, sample).ppk_95 == pytest.approx([middle - half, middle + half])
+
+
+@pytest.mark.parametrize(("asked", "verdict"), [(1.0, "OK"), (1.2, "too few trials"), (1.5, "NOT OK")])
+def test_an_accepted_ppk_is_judged_by_the_whole_interval(asked: float, verdict: str) -> None:
+    """400 normal trials at 3.6 sigma: 1.2, and 95 % within 1.11 and 1.29."""
+    values = stats.norm(2.0, 3.0).ppf((np.arange(400) + 0.5) / 400)
+    shown = {
+        "take": "value",
+        "analytic": as_json(summary(values, -8.8, 40.0)),
+        "lower_limit": -8.8,
+        "upper_limit": 40.0,
+    }
+    assert JudgedMeasure.of(typed_measure(shown), AcceptedPpk(asked)).verdict == verdict
+
+
+def test_what_does_not_vary_has_any_ppk_within_its_limits_and_none_out_of_them() -> None:
+    for value, verdict in ((0.5, "OK"), (1.5, "NOT OK")):
+        own = summary(np.full(50, value), -1.0, 1.0)
+        shown = {"take": "value", "analytic": as_json(own), "lower_limit": -1.0, "upper_limit": 1.0}
+        assert JudgedMeasure.of(typed_measure(shown), AcceptedPpk(1.33)).verdict == verdict

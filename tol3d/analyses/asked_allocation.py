@@ -9,9 +9,9 @@ from tol3d.analyses.tolerance_search import Target
 from tol3d.analyses.what_if import limits_of
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
+from tol3d.statistics.limits import MOST_PPK
 
 DEFAULT_PPK = 1.33
-MOST_PPK = 10.0
 
 
 def targets_of(response: Response, measures: Sequence[str], ppm: float | None, ppk: float | None) -> list[Target]:

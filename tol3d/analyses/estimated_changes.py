@@ -31,7 +31,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.column import ranked_contributors, shares_of
 from tol3d.report.heading import badness
 from tol3d.report.number import COUNTED
-from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure
+from tol3d.report.verdict import Accepted, AcceptedPpk, JudgedMeasure, accepted_in
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import made
@@ -49,16 +49,18 @@ MOST_TRIALS: Final = 100_000
 """Trials of a run that are shifted and narrowed."""
 
 
-def not_ok(run: Run, accepted_ppm: float = ACCEPTED_PPM) -> list[str]:
-    """Measures whose verdict is NOT OK, the worst first."""
-    found = run.found.measures
-    names = [name for name, own in found.items() if JudgedMeasure.of(own, accepted_ppm).verdict == "NOT OK"]
+def not_ok(run: Run, accepted: Accepted | None = None) -> list[str]:
+    """Measures whose verdict is NOT OK, the worst first; by default by what the study asks."""
+    found, asked = run.found.measures, accepted_in(run.found, accepted)
+    names = [name for name, own in found.items() if JudgedMeasure.of(own, asked).verdict == "NOT OK"]
     return sorted(names, key=lambda name: badness(found[name].shares.out_ppm, found[name].shares.ppk))
 
 
-def estimated_changes(run: Run, simulation: Simulation, accepted_ppm: float = ACCEPTED_PPM) -> Changes | None:
+def estimated_changes(run: Run, simulation: Simulation, accepted: Accepted | None = None) -> Changes | None:
     """Recommended changes to the scene of a run, for the worst measures; None if none can be estimated."""
-    bad = [name for name in not_ok(run, accepted_ppm) if run.found.measures[name].has_limits]
+    asked_for = accepted_in(run.found, accepted)
+    accepted_ppm = asked_for.beyond_one_ppm if isinstance(asked_for, AcceptedPpk) else asked_for
+    bad = [name for name in not_ok(run, asked_for) if run.found.measures[name].has_limits]
     asked = [name for name in bad if _can_be_estimated(run.found.measures[name])]
     if not asked:
         return None

@@ -6,9 +6,12 @@ from collections.abc import Callable
 from decimal import Decimal
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from tol3d.report.verdict import Accepted
 
 PPM_PER = {"%": 1e4, "ppm": 1.0}
 WHOLE = re.compile(r"\d{1,19}(\.0*)?([eE]\+?\d{1,2})?")
@@ -89,6 +92,32 @@ def accepted_ppm(text: str) -> float:
     return ppm
 
 
+def accepted_ppk(text: str | float) -> float:
+    """A Ppk, as --accept-ppk gives it.
+
+    >>> accepted_ppk("1.33")
+    1.33
+    """
+    from tol3d.statistics.limits import MOST_PPK
+
+    try:
+        ppk = float(text)
+    except ValueError:
+        ppk = math.nan
+    if not 0.0 < ppk < MOST_PPK:
+        raise typer.BadParameter(f"expected a number above 0 and below {MOST_PPK:g}, such as 1.33, got {str(text)!r}")
+    return ppk
+
+
+def accepted_of(share: float | None, ppk: float | None) -> "Accepted | None":
+    """What --accept or --accept-ppk asks of measures; None if neither is given."""
+    from tol3d.report.verdict import AcceptedPpk
+
+    if share is not None and ppk is not None:
+        raise typer.BadParameter("--accept states a share out of limits, --accept-ppk a Ppk; leave out one of them")
+    return share if ppk is None else AcceptedPpk(ppk)
+
+
 def scene_path(text: str) -> Path:
     """A scene's file: the path itself, or the bundled scene of that name.
 
@@ -143,11 +172,17 @@ AcceptOption = Annotated[
     Any,
     typer.Option(parser=accepted_ppm, metavar="SHARE", help="Share of trials that may be out of limits; 0.27 %."),
 ]
+AcceptPpkOption = Annotated[
+    Any,
+    typer.Option(
+        "--accept-ppk", parser=accepted_ppk, metavar="PPK", help="Ppk that measures must have, such as 1.33, instead."
+    ),
+]
 FailOnLimits = Annotated[
     bool,
     typer.Option(
         "--fail-on-limits",
-        help="Exit with 1 when a trial is out of limits or failed; with --accept, when a verdict is not OK.",
+        help="Exit with 1 when a trial is out of limits or failed; with --accept or --accept-ppk, when not OK.",
     ),
 ]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print the verdict and warnings only.")]

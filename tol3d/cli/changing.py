@@ -19,12 +19,14 @@ from tol3d.cli.analysed import (
 )
 from tol3d.cli.arguments import (
     AcceptOption,
+    AcceptPpkOption,
     EngineOption,
     RunBuilders,
     SceneArgument,
     SeedOption,
     TrustParts,
     WorkersOption,
+    accepted_of,
     scene_path,
     whole,
 )
@@ -35,6 +37,7 @@ def changes(
     subject: SubjectArgument,
     measure: Annotated[str | None, typer.Option(help="Which; by default all that are NOT OK.")] = None,
     accept: AcceptOption = None,
+    accept_ppk: AcceptPpkOption = None,
     builds: Annotated[
         Any, typer.Option(parser=whole(50), metavar="N", help="By which each change is judged; 5000, or less if slow.")
     ] = None,
@@ -48,11 +51,15 @@ def changes(
     from tol3d.analyses.subject import subject_of
     from tol3d.analyses.what_to_change import ChangesQuestion, changes_of, contributions_of
     from tol3d.analyses.what_to_change_table import changes_report, contributions_table
-    from tol3d.report.verdict import ACCEPTED_PPM
+    from tol3d.report.verdict import ACCEPTED_PPM, AcceptedPpk
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    accepted = ACCEPTED_PPM if accept is None else accept
-    question = ChangesQuestion(measure, accepted, builds)
+    accepted = accepted_of(accept, accept_ppk)
+    if accepted is None:
+        ppk = own.simulation.study.accept_ppk
+        accepted = ACCEPTED_PPM if ppk is None else AcceptedPpk(ppk)
+    ppm = accepted.beyond_one_ppm if isinstance(accepted, AcceptedPpk) else accepted
+    question = ChangesQuestion(measure, ppm, builds)
     with asked_of(own, "builds") as status:
         response = own.response
         bad = None if own.run is None else not_ok(own.run, accepted)

@@ -6,7 +6,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.arguments import AcceptOption, RunArgument, RunBuilders, SceneArgument, TrustParts, scene_path, whole
+from tol3d.cli.arguments import (
+    AcceptOption,
+    AcceptPpkOption,
+    RunArgument,
+    RunBuilders,
+    SceneArgument,
+    TrustParts,
+    accepted_of,
+    scene_path,
+    whole,
+)
 from tol3d.cli.console import err_console, out_console, seconds, tell
 
 if TYPE_CHECKING:
@@ -182,23 +192,24 @@ def report(
     ] = "",
     no_3d: Annotated[bool, typer.Option("--no-3d", help="Leave out the parts in 3D: a tenth of the size.")] = False,
     accept: AcceptOption = None,
+    accept_ppk: AcceptPpkOption = None,
     force: Annotated[bool, typer.Option("--force", help="Replace what is there.")] = False,
 ) -> None:
     """Write a run, or several compared, as one page that opens anywhere, or as its tables."""
     from tol3d.errors import InputError
     from tol3d.notebook import write_report
-    from tol3d.report.verdict import ACCEPTED_PPM
 
     if format is not ReportFormatWord.HTML and (trials or no_3d):
         raise InputError(f"{'--trials' if trials else '--no-3d'}: is of the page; leave it out with --format {format}")
-    accepted = ACCEPTED_PPM if accept is None else accept
+    accepted_of(accept, accept_ppk)  # refuses both
     chosen = [whole(0)(own.strip()) for own in trials.split(",") if own.strip()]
     path = out or Path("report-csv" if format is ReportFormatWord.CSV else f"report.{format}")
     with err_console.status("report"):
         write_report(
             runs,
             path,
-            accepted_ppm=accepted,
+            accepted_ppm=accept,
+            accepted_ppk=accept_ppk,
             trials=chosen,
             in_3d=not no_3d,
             format=format.value,

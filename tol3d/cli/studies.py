@@ -14,6 +14,7 @@ import typer
 from tol3d.cli.arguments import (
     PICTURE,
     AcceptOption,
+    AcceptPpkOption,
     EngineOption,
     FailOnLimits,
     ForceOption,
@@ -34,6 +35,7 @@ from tol3d.cli.arguments import (
     VerboseOption,
     WitnessOption,
     WorkersOption,
+    accepted_of,
     scene_path,
 )
 from tol3d.cli.console import INTERRUPTED, LIMITS_FAILED, err_console, out_console, seconds, tell, warn
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 
     from tol3d.execution.watch import Finisher, Watch
     from tol3d.report.page import Page
+    from tol3d.report.verdict import Accepted
     from tol3d.runs.run import Run
     from tol3d.study.simulation import Simulation
 
@@ -66,6 +69,7 @@ def run(
     no_picture: NoPicture = False,
     pictures: PicturesOption = None,
     accept: AcceptOption = None,
+    accept_ppk: AcceptPpkOption = None,
     fail_on_limits: FailOnLimits = False,
     quiet: QuietOption = False,
     verbose: VerboseOption = False,
@@ -76,6 +80,7 @@ def run(
     """Simulate a scene: analytic model and 3D simulation side by side."""
     _refuse(force and resume, "--resume continues the run that --force would replace; leave out one of them")
     _refuse(workers is not None and scheduler is not None, "--scheduler has its own workers; leave out --workers")
+    asked = accepted_of(accept, accept_ppk)
     _refuse(quiet and verbose, "--quiet says less and --verbose more; leave out one of them")
     _refuse(no_picture and pictures is not None, "--no-picture draws nothing; leave out --pictures")
     wanted = None if no_picture else pictures.value if pictures else "worst"
@@ -87,7 +92,7 @@ def run(
 
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report
-    from tol3d.report.verdict import ACCEPTED_PPM, all_ok
+    from tol3d.report.verdict import accepted_in, all_ok
     from tol3d.runs.occupant import BEING_WRITTEN, numbered
     from tol3d.simulate import Overrides, folder_for, load, run_simulation, simulation_of, workers_for
     from tol3d.system.faults import faults_of
@@ -115,7 +120,8 @@ def run(
     with _watched(simulation, folder, draw) as watch:
         finished = run_simulation(loaded, simulation, folder, execution=execution, force=force, watch=watch)
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.SHORT
-    accepted, found = ACCEPTED_PPM if accept is None else accept, finished.found
+    found = finished.found
+    accepted = accepted_in(found, asked)
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
     if not quiet and not all_ok(found, accepted):
         out_console.print(_what_to_change(finished, simulation, accepted))
@@ -125,7 +131,8 @@ def run(
             tell(words)
     if report:
         _write_report(finished, accepted)
-    failed = _out_of_limits(finished) if accept is None else not all_ok(finished.found, accept)
+    by_trials = asked is None and found.study.accept_ppk is None
+    failed = _out_of_limits(finished) if by_trials else not all_ok(found, accepted)
     if fail_on_limits and failed:
         err_console.print("limits failed", style="red")
         raise typer.Exit(LIMITS_FAILED)
@@ -157,12 +164,12 @@ def _watched(simulation: "Simulation", folder: Path, draw: "Finisher") -> Iterat
         raise typer.Exit(INTERRUPTED) from None
 
 
-def _write_report(run: "Run", accepted_ppm: float) -> None:
+def _write_report(run: "Run", accepted: "Accepted") -> None:
     """The report of a run, in its folder."""
     from tol3d.notebook import keep_report
 
     with err_console.status("report"):
-        path = keep_report(run, accepted_ppm)
+        path = keep_report(run, accepted)
     tell(f"report: {path}")
 
 
@@ -257,7 +264,7 @@ def _stopped_in_order() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _what_to_change(run: "Run", simulation: "Simulation", accepted_ppm: float) -> "Page":
+def _what_to_change(run: "Run", simulation: "Simulation", accepted: "Accepted") -> "Page":
     """A few lines below the verdict, kept in the run; a run that cannot be asked is whole without them."""
     from tol3d.analyses.estimated_changes import estimated_changes
     from tol3d.analyses.subject import keep
@@ -268,7 +275,7 @@ def _what_to_change(run: "Run", simulation: "Simulation", accepted_ppm: float) -
 
     try:
         with faults_of(simulation.mechanism):
-            told = estimated_changes(run, simulation, accepted_ppm)
+            told = estimated_changes(run, simulation, accepted)
         if told is None:
             return page()
         keep(run, "changes", told)

@@ -182,12 +182,12 @@ def bounded_share_text(ppm: float | None, interval: Sequence[float] | None) -> s
     """A share of all trials with the interval [ppm] that holds the true one with 95 % confidence, where it is known.
 
     >>> bounded_share_text(0.0, (0.0, 184.3)), bounded_share_text(31000.0, (26000.0, 37000.0))
-    ('0 (95 % upper bound 184 ppm)', '3.1 % (95 %: 2.6 % to 3.7 %)')
+    ('0 (95 %: 0 to 184 ppm)', '3.1 % (95 %: 2.6 % to 3.7 %)')
     """
     if ppm is None or interval is None:
         return share_text(ppm)
     low, high = map(share_text, interval)
-    return f"{share_text(ppm)} (95 %: {low} to {high})" if ppm else f"0 (95 % upper bound {high})"
+    return f"{share_text(ppm)} (95 %: {low} to {high})"
 
 
 def counted(count: int, word: str) -> str:

@@ -25,7 +25,7 @@ from tol3d.runs.summary.values import Method, Section, key_of
 DIMENSIONED: Final[Mapping[str, str]] = {
     "mean_se": "standard error of the mean",
     "sigma_se": "standard error of sigma",
-    "quantile_error": "quantiles are read to",
+    "quantile_error": "grid of the quantiles",
     "deepest_overlap": "deepest overlap",
 }
 NUMBERS: Final[Mapping[str, str]] = {
@@ -47,6 +47,11 @@ AGREEMENT: Final[Mapping[str, str]] = {
     "rms_difference": "rms",
     "mean_difference": "mean",
 }
+OF_RANGES = (
+    *(("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")),
+    *(("p0.135_95", "0.135 % quantile, 95 %"), ("p99.865_95", "99.865 % quantile, 95 %")),
+)
+"""Labels of bounds in a measure's unit."""
 
 
 def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Sequence[str]) -> Iterator[Row]:
@@ -78,12 +83,15 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         bounds = [_pair(column.values, f"{key}_95") for column in columns]
         if any(own for own, column in zip(bounds, columns, strict=True) if column.method == "published"):
             yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
-    for key, label in (("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")):
+    for key, label in OF_RANGES:
         ranges = [_pair(column.values, key) for column in columns]
         if any(own for own, column in zip(ranges, columns, strict=True) if column.method == "published"):
             by = spread if key == "sigma_95" else Spread(measure.unit)
             texts = [" to ".join(value_text(by.times(end), by.unit) for end in own) or NOTHING for own in ranges]
             yield Row(f"{label}{by.words}", texts, unit=by.unit)
+    ppks = [_pair(column.values, "ppk_95") for column in columns]
+    if any(own for own, column in zip(ppks, columns, strict=True) if column.method == "published"):
+        yield Row("Ppk, 95 %", [" to ".join(map(number_text, own)) or NOTHING for own in ppks])
     for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
         yield Row(
             POOLED.get(name, name),

@@ -14,7 +14,7 @@ from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_blocks
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import measure_blocks, status_line
-from tol3d.report.verdict import ACCEPTED_PPM, verdict_report
+from tol3d.report.verdict import Accepted, verdict_report
 from tol3d.runs.run import Run
 from tol3d.runs.summary.run import RunSummary
 
@@ -33,13 +33,13 @@ class ReportSection:
 
 
 def report_sections(
-    runs: Sequence[Run], accepted_ppm: float = ACCEPTED_PPM, analyses: Mapping[str, Page] | None = None
+    runs: Sequence[Run], accepted: Accepted | None = None, analyses: Mapping[str, Page] | None = None
 ) -> list[ReportSection]:
     """The sections of one run, or of several beside each other.
 
     Args:
         runs: finished ones.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted: what is asked of a measure; default: what the study asks.
         analyses: sections of the one run by their titles.
 
     Raises:
@@ -51,7 +51,7 @@ def report_sections(
         return [ReportSection(RUNS, tuple(runs_blocks(runs))), ReportSection(MEASURES, tuple(compared_blocks(runs)))]
     (run,) = runs
     shown, presenter = shown_run(run.found), presenter_of(run.found)
-    found = [(VERDICT, verdict_report(shown, accepted_ppm, blame=True))]
+    found = [(VERDICT, verdict_report(shown, accepted, blame=True))]
     for name in shown_measures(shown.measures):
         found.append((name, measure_blocks(name, shown.measures[name], shown, presenter)))
     found += [

@@ -26,6 +26,8 @@ LENGTHS: Final = frozenset(
             "sigma_se",
             "mean_95",
             "sigma_95",
+            "p0_135_95",
+            "p99_865_95",
         ),
         *("pooled", "lower_edge", "bin_width", "max_abs_difference", "rms_difference", "mean_difference", "neglected"),
         *("second_order_rms", "second_order_mean", "left_rms", "mean_left", "mean_allowed"),

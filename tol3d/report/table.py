@@ -17,13 +17,22 @@ from tol3d.report.measure_table import (
     not_attributed,
     shown_positions,
 )
-from tol3d.report.number import COUNTED, counted, difference_text, limit_text, percent_text, share_text
+from tol3d.report.number import (
+    COUNTED,
+    NOTHING,
+    counted,
+    difference_text,
+    limit_text,
+    measured_text,
+    percent_text,
+    share_text,
+)
 from tol3d.report.page import BLANK, Line, Page, PageItem, line, note, page, some, title, warning
 from tol3d.report.presenter import Presenter, ShowsNotes, presenter_of
 from tol3d.report.published import published_blocks, published_notes
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
-from tol3d.report.verdict import ACCEPTED_PPM, short_verdict, verdict_report
+from tol3d.report.verdict import Accepted, ppk_bounds_text, short_verdict, verdict_report
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -135,7 +144,7 @@ class Detail(Enum):
 def run_report(
     run: RunSummary,
     detail: Detail = Detail.MEASURES,
-    accepted_ppm: float = ACCEPTED_PPM,
+    accepted: Accepted | None = None,
     presenter: str | None = None,
     elapsed: Elapsed | None = None,
 ) -> Page:
@@ -144,20 +153,20 @@ def run_report(
     Args:
         run: what it found.
         detail: how much of it is shown.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted: what is asked of a measure; default: what the study asks.
         presenter: import path of what shows more of the system; by default that of the run's measures.
         elapsed: what the command took besides what the run tells of itself.
     """
     shown = shown_run(run)
     warnings = [*map(warning, some(run.warnings, ", all in summary.json"))]
     if detail is Detail.VERDICT:
-        return page(*verdict_report(shown, accepted_ppm, blame=True), *warnings)
+        return page(*verdict_report(shown, accepted, blame=True), *warnings)
     own = presenter_of(run, presenter)
     if detail is Detail.SHORT:
-        head = [_run_line(run), *short_verdict(shown, accepted_ppm), *_unexplained(shown)]
+        head = [_run_line(run), *short_verdict(shown, accepted), *_unexplained(shown)]
         told = own.first_notes(run) if isinstance(own, ShowsNotes) else ()
         return page(*head, status_line(run), _time_line(run, elapsed, brief=True), *told, note(MORE), *warnings)
-    blocks: list[PageItem] = [_run_line(run), *verdict_report(shown, accepted_ppm)]
+    blocks: list[PageItem] = [_run_line(run), *verdict_report(shown, accepted)]
     for name in shown_measures(shown.measures):
         blocks += measure_blocks(name, shown.measures[name], shown, own)
     blocks += [*own.sections(run), *published_blocks(run), *correlation_blocks(run)]
@@ -248,6 +257,12 @@ def _sampling_notes(measure: MeasureSummary, own: Sample, run: RunSummary) -> It
         )
     if is_bounded(measure):
         yield "the distribution ends before mean ∓ 3 sigma: use the quantiles instead of low and high"
+    for words, quantile in (("0.135 % quantile", own.p0_135_95), ("99.865 % quantile", own.p99_865_95)):
+        if quantile:
+            low, high = (measured_text(end, unit) for end in quantile)
+            yield f"{words}: 95 % confidence interval {low} to {high}"
+    if (bounds := ppk_bounds_text(measure)) != NOTHING:
+        yield f"Ppk: 95 % confidence interval {bounds}"
     for key, label in limit_rows(measure).items():
         low_high = getattr(own, f"{key}_95")
         if low_high:

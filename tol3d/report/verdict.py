@@ -1,7 +1,7 @@
 """One row a measure: where it lies, what is out of its limits, and whether that is within what is accepted."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
@@ -29,6 +29,7 @@ from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Shown,
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
+from tol3d.statistics.limits import normal_share, ppk_beyond
 
 Verdict = Literal["OK", "NOT OK", "too few trials", "no limits"]
 
@@ -51,13 +52,60 @@ STYLES: Final[Mapping[Verdict, str]] = {"NOT OK": "red", "too few trials": "yell
 
 
 @dataclass(frozen=True)
+class AcceptedPpk:
+    """A Ppk that a measure must have, by the method that its verdict states."""
+
+    ppk: float
+
+    @property
+    def beyond_one_ppm(self) -> float:
+        """Share of a normal measure beyond a limit at this Ppk [ppm].
+
+        >>> round(AcceptedPpk(1.33).beyond_one_ppm), round(AcceptedPpk(1.0).beyond_one_ppm)
+        (33, 1350)
+        """
+        return 1e6 * normal_share(3 * self.ppk, 1.0)
+
+
+Accepted = float | AcceptedPpk
+"""The share of trials that may be out of a measure's limits [ppm], or the Ppk that it must have."""
+
+
+def accepted_in(run: RunSummary, given: Accepted | None = None) -> Accepted:
+    """What is asked of the measures of a run: as given, or what its study asks, or 0.27 % out of limits."""
+    if given is not None:
+        return given
+    return ACCEPTED_PPM if run.study.accept_ppk is None else AcceptedPpk(run.study.accept_ppk)
+
+
+def accepted_text(accepted: Accepted, measures: Iterable[MeasureSummary] = ()) -> str:
+    """What is asked of measures: a share out of limits with the Ppk that it stands for, or a Ppk with its share.
+
+    >>> accepted_text(2700.0), accepted_text(AcceptedPpk(1.33))
+    ('0.27 % out of limits (Ppk 1.00 with two limits, 0.93 with one)', 'Ppk 1.33 (33 ppm beyond each limit)')
+
+    Args:
+        accepted: share or Ppk.
+        measures: those with limits say whether with two or with one.
+    """
+    if isinstance(accepted, AcceptedPpk):
+        return f"Ppk {accepted.ppk:.4g} ({share_text(accepted.beyond_one_ppm)} beyond each limit)"
+    counts = {2 - own.limits.count(None) for own in measures if own.has_limits} or {1, 2}
+    ppks = {count: ppk_beyond(accepted * 1e-6 / count) for count in sorted(counts, reverse=True)}
+    words = ", ".join(f"{ppk:.2f} with {'two limits' if count == 2 else 'one'}" for count, ppk in ppks.items())
+    if len(ppks) == 1:
+        words = f"{next(iter(ppks.values())):.2f}"
+    return f"{share_text(accepted)} out of limits" + (f" (Ppk {words})" if accepted else "")
+
+
+@dataclass(frozen=True)
 class JudgedMeasure:
     """A measure as it is judged.
 
     Args:
         out_ppm: share of all trials that is out of its limits or failed; None where it is not known.
         interval: that holds the true share with 95 % confidence [ppm]; None where trials are too few.
-        verdict: whether that is within the accepted share.
+        verdict: whether that, or its Ppk, is accepted.
     """
 
     out_ppm: float | None
@@ -65,13 +113,26 @@ class JudgedMeasure:
     verdict: Verdict
 
     @classmethod
-    def of(cls, measure: MeasureSummary, accepted_ppm: float = ACCEPTED_PPM) -> "JudgedMeasure":
-        """A measure of a summary: OK or NOT OK where all of the interval is on one side of the accepted share."""
-        out, found = measure.shares.out_ppm, measure.shares.out_ppm_95
-        interval = (found[0], found[1]) if found else None
+    def of(cls, measure: MeasureSummary, accepted: Accepted = ACCEPTED_PPM) -> "JudgedMeasure":
+        """A measure of a summary: OK or NOT OK where all of an interval is on one side of what is accepted.
+
+        The interval is that of the share of trials out of limits, or of Ppk. A measure without limits, of which builds
+        failed, is judged by the share that an accepted Ppk stands for; one that does not vary, by a single trial.
+        """
+        own, found = measure.shares, measure.shares.out_ppm_95
+        out, interval = own.out_ppm, (found[0], found[1]) if found else None
         if not measure.has_limits and not out:
             return cls(out, interval, "no limits")
-        return cls(out, interval, _verdict(interval, accepted_ppm))
+        if not isinstance(accepted, AcceptedPpk):
+            return cls(out, interval, _verdict(interval, accepted))
+        if not measure.has_limits:
+            return cls(out, interval, _verdict(interval, accepted.beyond_one_ppm))
+        if own.ppk is None and own.ppk_by == PLAIN and own.trials > 1:
+            return cls(out, interval, "NOT OK" if out else "OK")
+        low, high = own.ppk_95 or (None, None)
+        if low is not None and low > accepted.ppk:
+            return cls(out, interval, "OK")
+        return cls(out, interval, "NOT OK" if high is not None and high < accepted.ppk else "too few trials")
 
 
 def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdict:
@@ -85,50 +146,56 @@ def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdi
     return "OK" if interval[1] <= accepted_ppm else "NOT OK"
 
 
-def all_ok(run: RunSummary, accepted_ppm: float) -> bool:
+def all_ok(run: RunSummary, accepted: Accepted | None = None) -> bool:
     """True if every measure that has limits, or failed trials, is OK."""
-    return all(JudgedMeasure.of(own, accepted_ppm).verdict in ("OK", "no limits") for own in run.measures.values())
+    asked = accepted_in(run, accepted)
+    return all(JudgedMeasure.of(own, asked).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
-def verdict_report(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False) -> list[PageItem]:
+def verdict_report(run: RunSummary, accepted: Accepted | None = None, *, blame: bool = False) -> list[PageItem]:
     """The verdict of every measure, what it rests on, and how it is reached.
 
     Args:
         run: what it found.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted: what is asked of a measure; default: what the study asks.
         blame: name the contributor that most of each measure's variance comes from.
     """
-    table = verdict_table(run, accepted_ppm, blame=blame)
-    below = [*_left_out(run, accepted_ppm), *yield_lines(run), *map(note, _notes(run))]
-    return [_verdict_line(run, accepted_ppm), BLANK, table, *below]
+    table = verdict_table(run, accepted, blame=blame)
+    below = [*_left_out(run, accepted), *yield_lines(run), *map(note, _notes(run))]
+    return [_verdict_line(run, accepted), BLANK, table, *below]
 
 
-def short_verdict(run: RunSummary, accepted_ppm: float = ACCEPTED_PPM) -> list[PageItem]:
+def short_verdict(run: RunSummary, accepted: Accepted | None = None) -> list[PageItem]:
     """The verdict of every measure, and the largest contributors of each: a first look."""
-    table = verdict_table(run, accepted_ppm, brief=True)
-    below = [*_left_out(run, accepted_ppm), *yield_lines(run), note(_ends_note(run)), *map(note, _other_ppks(run))]
-    return [_verdict_line(run, accepted_ppm), BLANK, table, *below, *_largest_contributors(run)]
+    table = verdict_table(run, accepted, brief=True)
+    below = [*_left_out(run, accepted), *yield_lines(run), note(_ends_note(run)), *map(note, _other_ppks(run))]
+    return [_verdict_line(run, accepted), BLANK, table, *below, *_largest_contributors(run)]
 
 
-def _verdict_line(run: RunSummary, accepted_ppm: float) -> Line:
+def _verdict_line(run: RunSummary, accepted: Accepted | None) -> Line:
     """The worst verdict of all measures, how many of several have it, and the accepted share."""
-    worst, judged, counted = _worst_verdict(run, accepted_ppm)
-    accepted = f"{counted} · accepted: {share_text(accepted_ppm)} out of limits" if judged else ""
-    return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, _bold(worst)), (accepted, "dim")))
+    worst, judged, counted = _worst_verdict(run, accepted)
+    words = accepted_text(accepted_in(run, accepted), run.measures.values())
+    told = f"{counted} · accepted: {words}" if judged else ""
+    return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, _bold(worst)), (told, "dim")))
 
 
-def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted_ppm: float = ACCEPTED_PPM) -> list[PageItem]:
+def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted: Accepted | None = None) -> list[PageItem]:
     """A line for each run, with its label and its verdict; nothing where no run has limits."""
-    found = [(label, *_worst_verdict(run, accepted_ppm)) for label, run in runs]
+    found = [(label, *_worst_verdict(run, accepted)) for label, run in runs]
     if not any(judged for _, _, judged, _ in found):
         return []
-    head = Line((("verdict", TITLE), (f" · accepted: {share_text(accepted_ppm)} out of limits", "dim")))
+    asked = {accepted_text(accepted_in(run, accepted)) for _, run in runs}
+    head = Line(
+        (("verdict", TITLE), (f" · accepted: {asked.pop() if len(asked) == 1 else 'as each study asks'}", "dim"))
+    )
     return [head, *(Line(((f"  {label}: ", ""), (own, _bold(own)), (counted, ""))) for label, own, _, counted in found)]
 
 
-def _worst_verdict(run: RunSummary, accepted_ppm: float) -> tuple[Verdict, int, str]:
+def _worst_verdict(run: RunSummary, accepted: Accepted | None) -> tuple[Verdict, int, str]:
     """The worst verdict of all measures, the number of measures with limits, and how many of several have it."""
-    found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
+    asked = accepted_in(run, accepted)
+    found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
     judged = sum(found.values()) - found["no limits"]
     worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
     return worst, judged, f", {found[worst]} of {judged} measures" if judged > 1 else ""
@@ -149,24 +216,25 @@ def _largest_contributors(run: RunSummary) -> list[PageItem]:
     return [BLANK, Table("largest contributors", [head], rows), *notes] if rows else []
 
 
-def _left_out(run: RunSummary, accepted_ppm: float) -> Iterator[PageItem]:
+def _left_out(run: RunSummary, accepted: Accepted | None) -> Iterator[PageItem]:
     """Number of measures without a row, and the verdict of all; nothing if each has a row."""
     left = len(run.measures) - MOST_MEASURES
     if left > 0:
-        found = Counter(JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values())
+        asked = accepted_in(run, accepted)
+        found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
         counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict])
         yield line(f" and {left} more, all in summary.json; the worst are shown, {WORST_FIRST}")
         yield line(f" all {len(run.measures)} measures: {counts}", "bold")
 
 
 def verdict_table(
-    run: RunSummary, accepted_ppm: float = ACCEPTED_PPM, *, blame: bool = False, brief: bool = False
+    run: RunSummary, accepted: Accepted | None = None, *, blame: bool = False, brief: bool = False
 ) -> Table:
     """A row a measure, of many the worst, by the 3D simulation where there is one.
 
     Args:
         run: what it found.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted: what is asked of a measure; default: what the study asks.
         blame: name the contributor that most of each measure's variance comes from.
         brief: leave out what a Ppk was taken from.
     """
@@ -174,22 +242,24 @@ def verdict_table(
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
     wide = any(None not in measure.limits for measure in shown.values())
     headings += [Heading("limits", words=wide), Heading("fraction out of limits", words=True, below=True)]
-    headings += [Heading("Ppk", plain=True)]
+    asked = accepted_in(run, accepted)
+    bounds = isinstance(asked, AcceptedPpk)
+    headings += [Heading("Ppk", plain=True), *([Heading("95 % of Ppk", words=True, below=True)] if bounds else [])]
     by = not brief and any(measure.has_limits for measure in run.measures.values())
     headings += [Heading("Ppk by", words=True)] if by else []
     headings += [Heading("mostly from", words=True, optional=True)] if blame else []
-    rows = [_row(name, measure, accepted_ppm, blame=blame, by=by) for name, measure in shown.items()]
+    rows = [_row(name, measure, asked, blame=blame, by=by, bounds=bounds) for name, measure in shown.items()]
     return Table("measure", headings, rows, repeated=1)
 
 
-def _row(name: str, measure: MeasureSummary, accepted_ppm: float, *, blame: bool, by: bool) -> Row:
-    judged = JudgedMeasure.of(measure, accepted_ppm)
+def _row(name: str, measure: MeasureSummary, accepted: Accepted, *, blame: bool, by: bool, bounds: bool) -> Row:
+    judged = JudgedMeasure.of(measure, accepted)
     low, mean, high = ends_of(measure)
     judges = judged.verdict != "no limits"
     cells = [judged.verdict if judges else NOTHING, *(_short(value, measure.unit) for value in (mean, low, high))]
     cells += [limits_text(*measure.limits, measure.unit)]
     cells += [bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING]
-    cells += [_ppk(measure)]
+    cells += [_ppk(measure), *([ppk_bounds_text(measure)] if bounds else [])]
     cells += [_ppk_by(measure)] if by else []
     cells += [_largest(measure, 1)] if blame else []
     return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""), measure.unit)
@@ -229,6 +299,14 @@ def _ppk(measure: MeasureSummary) -> Shown:
     return Shown(NOTHING if value is None else unsigned_zero(f"{value:.2f}"), value)
 
 
+def ppk_bounds_text(measure: MeasureSummary) -> str:
+    """Interval of a Ppk, 95 %, one-sided where the trials bound it on one side only."""
+    low, high = (None if own is None else f"{own:.2f}" for own in measure.shares.ppk_95 or (None, None))
+    if low is None and high is None:
+        return NOTHING
+    return f"below {high}" if low is None else f"above {low}" if high is None else f"{low} to {high}"
+
+
 def _ppk_by(measure: MeasureSummary) -> str:
     """Basis of a Ppk, with the reason; "" for a measure without limits, or an older run."""
     own = measure.shares
@@ -252,7 +330,8 @@ def _notes(run: RunSummary) -> Iterator[str]:
     measures = run.measures.values()
     yield (
         "fraction out of limits: of all trials, those included that could not be assembled, with its 95 % confidence "
-        "interval; OK if the whole interval is below the accepted share, NOT OK if it is above, else too few trials"
+        "interval; OK if the whole interval is below the accepted share, or that of Ppk above an accepted Ppk, NOT OK "
+        "if it is on the other side, else too few trials"
     )
     yield _ends_note(run)
     words = {

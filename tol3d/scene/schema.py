@@ -44,6 +44,7 @@ from tol3d.scene.place import KeyPath, Origin, Place
 from tol3d.scene.published import PublishedColumn
 from tol3d.scene.tolerance import ToleranceEntry, ToleranceSpec
 from tol3d.standards import iso_2768
+from tol3d.statistics.limits import MOST_PPK
 from tol3d.strict import Strict, refused
 from tol3d.units import Positive, Quantity, shown
 
@@ -103,6 +104,14 @@ Trials = Annotated[
 ]
 
 
+class AcceptSpec(Strict):
+    """What is asked of measures with limits."""
+
+    ppk: float = Field(
+        gt=0.0, lt=MOST_PPK, description="least Ppk, by the method that the verdict states, such as 1.33"
+    )
+
+
 class StudySpec(Strict):
     """Number of trials, seed, sampler and engine; with the options of its scene's vocabularies."""
 
@@ -130,6 +139,9 @@ class StudySpec(Strict):
         default=None,
         description="Ppk of measures of which all builds are assembled: by quantiles, or mean and sigma; default: as "
         "the values are distributed",
+    )
+    accept: AcceptSpec | None = Field(
+        default=None, description="what the verdict asks of measures; default: at most 0.27 % out of limits"
     )
 
     engines: ClassVar[Engines]  # of the subclass that validates: a grammar makes one that knows them

@@ -14,6 +14,8 @@ Mask = NDArray[np.bool_]
 
 CONFIDENCE = 0.95  # of the interval beside a ppm; what engineers expect when nothing is said
 
+MOST_PPK = 10.0  # that may be asked for; a share beyond 30 sigma is no number of builds
+
 HALF_A_TRIAL = 0.5  # trials; what is less than one of all that were run cannot be distinguished from none
 
 
@@ -165,7 +167,16 @@ def equivalent_ppk(out: Proportion) -> float | None:
     if not out.total:
         return None
     half = HALF_A_TRIAL / out.total
-    return 0.0 - float(scipy.special.ndtri(min(max(out.count / out.total, half), 1 - half))) / 3
+    return ppk_beyond(min(max(out.count / out.total, half), 1 - half))
+
+
+def ppk_beyond(share: float) -> float:
+    """The Ppk of a normal measure that has a share beyond one limit: PHI^-1(1 - p)/3; infinite of 0 and 1.
+
+    >>> round(ppk_beyond(0.00135), 3), round(ppk_beyond(0.0027), 3)
+    (1.0, 0.927)
+    """
+    return 0.0 - float(scipy.special.ndtri(share)) / 3
 
 
 def quantile_pp(lower: float | None, upper: float | None, low: float | None, high: float | None) -> float | None:

@@ -1,4 +1,4 @@
-"""Ppk of a measure: by quantiles, by the share out of limits, or by mean and sigma, and the reason for it."""
+"""Ppk of a measure: by quantiles, by the share out of limits, or by mean and sigma; the reason, and its bounds."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -8,8 +8,16 @@ from typing import Final, Literal
 import numpy as np
 
 from tol3d.statistics import LimitCounts, Moments, equivalent_ppk
-from tol3d.statistics.limits import normal_share, quantile_ppk
+from tol3d.statistics.limits import normal_share, ppk_beyond, quantile_ppk
 from tol3d.statistics.moments import kurtosis_se, skewness_se
+from tol3d.statistics.performance_bounds import (
+    OF_THE_MEDIAN,
+    Bounds,
+    index_bounds,
+    least_of,
+    quantile_index_bounds,
+    replicates_bounds,
+)
 from tol3d.study.study import PpkBy
 
 By = Literal["quantiles", "share out of limits", "mean and sigma"]
@@ -21,6 +29,9 @@ CONSTANT: Final = 1e-7  # of a limit's distance; a smaller sigma is rounding
 FEWEST: Final = math.ceil(1 / OUTER)  # trials; of fewer less than one lies beyond an outer quantile
 
 
+UNBOUNDED: Final[Bounds] = (-math.inf, math.inf)
+
+
 @dataclass(frozen=True)
 class Side:
     """Values that a limit judges: all of a measure, or of curves the lowest or the highest of each.
@@ -29,11 +40,13 @@ class Side:
         moments: of the trials that have a value.
         replicates: the same of each replicate; empty for independent trials.
         quantile: the value below which a share of them lies; None if unknown.
+        bounds: of that value, each by a chance of error; infinite where the trials have none.
     """
 
     moments: Moments
     replicates: Sequence[Moments]
     quantile: Callable[[float], float | None]
+    bounds: Callable[[float, float], Bounds] = lambda share, chance: UNBOUNDED
 
     @property
     def not_normal(self) -> str:
@@ -65,11 +78,15 @@ def _larger(error: float, replicates: Sequence[float]) -> float:
 
 @dataclass(frozen=True)
 class Performance:
-    """A Ppk, the rule by which it was found, and the reason; None if trials do not suffice."""
+    """A Ppk, the rule by which it was found, and the reason; None if trials do not suffice.
+
+    Its bounds hold the true one of that rule with 95 % confidence; infinite where the trials give none.
+    """
 
     ppk: float | None
     by: By
     reason: str
+    bounds: Bounds = UNBOUNDED
 
 
 def varying(side: Side, margin: float) -> float:
@@ -106,18 +123,47 @@ class Judged:
         if (self.lower, self.upper) == (None, None):
             return Performance(None, "mean and sigma", "")
         if self.counts.failed:
-            return Performance(
-                equivalent_ppk(self.counts.out_of_limits), "share out of limits", f"{self.counts.failed} failed"
-            )
+            found, why = equivalent_ppk(self.counts.out_of_limits), f"{self.counts.failed} failed"
+            low, high = self.interval or (0.0, 1e6)
+            bounds = ppk_beyond(high * 1e-6), ppk_beyond(low * 1e-6)
+            return Performance(found, "share out of limits", why, bounds)
         if not any(varying(side, margin) for side, margin in self._sides):
             return Performance(None, "mean and sigma", "")
         reason = "as asked" if asked else next(self._reasons_against_normal(), "")
         if asked == "sigma" or not reason:
             indices = [margin / (3 * sigma) for side, margin in self._sides if (sigma := varying(side, margin))]
-            return Performance(min(indices, default=None), "mean and sigma", reason)
+            return Performance(min(indices, default=None), "mean and sigma", reason, least_of(self._by_moments))
         found = quantile_ppk(self.lower, self.upper, self.low.pair(OUTER, 0.5), self.high.pair(0.5, 1 - OUTER))
         few = any(side.moments.count < FEWEST for side, _ in self._sides)
-        return Performance(found, "quantiles", f"{reason}; under {FEWEST} trials" if few else reason)
+        reason = f"{reason}; under {FEWEST} trials" if few else reason
+        return Performance(found, "quantiles", reason, least_of(self._by_quantiles))
+
+    def _by_moments(self, chance: float) -> list[Bounds]:
+        """Bounds of the index of each limit, by mean and sigma."""
+        found = []
+        for (side, margin), sign in zip(self._sides, self._signs, strict=True):
+            if (sigma := varying(side, margin)) and side.replicates:
+                limit = side.moments.mean - sign * margin
+                parts = [(own.mean - limit) / own.sigma if own.m2 > 0 else math.nan for own in side.replicates]
+                parts = [sign * own / 3 for own in parts]
+                found.append(replicates_bounds(margin / (3 * sigma), parts, chance))
+            elif sigma:
+                found.append(index_bounds(side.moments, margin, sign, chance))
+        return found
+
+    def _by_quantiles(self, chance: float) -> list[Bounds]:
+        """The same by quantiles, as of independent trials: nets have no larger errors of a share, but for chance."""
+        found = []
+        for (side, margin), sign in zip(self._sides, self._signs, strict=True):
+            median = side.bounds(0.5, OF_THE_MEDIAN * chance)
+            outer = side.bounds(OUTER if sign > 0 else 1 - OUTER, (1 - OF_THE_MEDIAN) * chance)
+            found.append(quantile_index_bounds(median, outer, side.moments.mean - sign * margin))
+        return found
+
+    @property
+    def _signs(self) -> list[float]:
+        """Of each limit that there is: +1 of the lower one, -1 of the upper one."""
+        return [sign for limit, sign in ((self.lower, 1.0), (self.upper, -1.0)) if limit is not None]
 
     @property
     def _sides(self) -> list[tuple[Side, float]]:

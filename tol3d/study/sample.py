@@ -10,6 +10,7 @@ from tol3d.runs.summary import sample as summary
 from tol3d.runs.summary.values import made
 from tol3d.statistics import CountGrid, Grid, LimitCounts, Moments, pp
 from tol3d.statistics.limits import quantile_pp
+from tol3d.statistics.performance_bounds import CHANCE, Bounds, rank_below
 from tol3d.study.performance import OUTER, Judged, Side
 from tol3d.study.replicated import Replicated, students_half
 from tol3d.study.study import PpkBy
@@ -85,7 +86,13 @@ class Sample:
     def side(self) -> Side:
         """Its values, as a limit judges them."""
         replicates = [*self.replicated.moments.values()] if self.replicated else []
-        return Side(self.moments, replicates, lambda p: quantile(self.moments, self.grid, p))
+        moments, grid = self.moments, self.grid
+        return Side(
+            moments,
+            replicates,
+            lambda p: quantile(moments, grid, p),
+            lambda p, chance: quantile_bounds(moments, grid, p, chance),
+        )
 
 
 def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None) -> summary.Sample:
@@ -110,6 +117,8 @@ def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None)
         p0_135=low,
         p50=middle,
         p99_865=high,
+        p0_135_95=both(quantile_bounds(moments, sample.grid, OUTER, CHANCE)),
+        p99_865_95=both(quantile_bounds(moments, sample.grid, 1 - OUTER, CHANCE)),
         quantile_error=sample.grid.quantile_error,
         outside_grid=sample.grid.underflow + sample.grid.overflow,
         below_limit_ppm=finite(limits.below_limit.ppm),
@@ -131,6 +140,7 @@ def sample_summary(measure: Measure, sample: Sample, asked: PpkBy | None = None)
             quantile_pp(lower, upper, low, high) if performance.by == "quantiles" else pp(lower, upper, moments.sigma)
         ),
         ppk=finite(performance.ppk),
+        ppk_95=both(performance.bounds) if performance.ppk is not None else None,
         ppk_by=performance.by,
         ppk_reason=performance.reason or None,
         pooled=pooled or None,
@@ -185,6 +195,23 @@ def quantile(moments: Moments, grid: Grid, p: float) -> float | None:
     return None if value is None else min(max(value, moments.minimum), moments.maximum)
 
 
+def quantile_bounds(moments: Moments, grid: Grid, p: float, chance: float) -> Bounds:
+    """Bounds of the quantile of a sample's law, each by a chance of error; infinite where the trials are too few.
+
+    Order statistics, read from the grid to a bin outside them.
+    """
+    count = moments.count
+    if not count:
+        return -math.inf, math.inf
+    low, high = rank_below(count, p, chance), rank_below(count, 1 - p, chance)
+    lower = quantile(moments, grid, (low - 0.5) / count) if low else None
+    upper = quantile(moments, grid, (count - high + 0.5) / count) if high else None
+    return (
+        -math.inf if lower is None else max(lower - grid.quantile_error, moments.minimum),
+        math.inf if upper is None else min(upper + grid.quantile_error, moments.maximum),
+    )
+
+
 def mean_interval(moments: Moments, errors: Errors) -> list[float | None]:
     """Bounds of the true mean, 95 % confidence, by Student's t; null where its error is not known."""
     half = students_half(errors.mean_se, errors.freedom)
@@ -205,6 +232,11 @@ def sigma_interval(moments: Moments, errors: Errors) -> list[float | None]:
 def finite(value: float | None) -> float | None:
     """JSON has no nan: an unknown value (a sigma of one trial) is null."""
     return None if value is None or not math.isfinite(value) else value
+
+
+def both(bounds: Bounds) -> list[float | None]:
+    """Both bounds, as JSON has them; null for none."""
+    return [finite(bounds[0]), finite(bounds[1])]
 
 
 def listed(interval: tuple[float, float] | None) -> list[float] | None:

@@ -85,6 +85,7 @@ def study_of(scene: Scene) -> Study:
         engine=spec.engine,
         witness=spec.witness,
         ppk_by=spec.ppk_by,
+        accept_ppk=None if spec.accept is None else spec.accept.ppk,
         options=scene.grammar.options_of(scene),
     )
 

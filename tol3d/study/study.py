@@ -24,7 +24,8 @@ class Study:
     """Number of trials, their seed and sampling, and the engine.
 
     With `until` the number is a maximum. `replicates` of a sampler are parts of equal size, each randomised
-    anew. `ppk_by` is the basis of Ppk; None takes that of the trials' law. `options` are those of the system's
+    anew. `ppk_by` is the basis of Ppk; None takes that of the trials' law. `accept_ppk` is asked of measures;
+    None asks for a share out of limits. `options` are those of the system's
     vocabulary adds, for its own use.
     """
 
@@ -36,6 +37,7 @@ class Study:
     engine: str = "exact"
     witness: int = 0
     ppk_by: PpkBy | None = None
+    accept_ppk: float | None = None
     options: Mapping[str, Option] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -26,7 +26,7 @@ from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percen
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
 from tol3d.study.regressors import MOST_REGRESSED
-from tol3d.study.sample import finite, in_unit, listed, sample_summary
+from tol3d.study.sample import both, finite, in_unit, listed, sample_summary
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import shortfalls
 from tol3d.study.study import Study
@@ -108,6 +108,7 @@ def _asked(study: Study) -> StudySummary:
         engine=study.engine,
         witness=study.witness,
         ppk_by=study.ppk_by,
+        accept_ppk=study.accept_ppk,
     )
 
 
@@ -349,6 +350,7 @@ def _curve(simulation: Simulation, measure: Measure, own: CurveTally) -> CurveMe
             out_ppm=limits.out_of_limits.ppm,
             out_ppm_95=listed(own.interval_ppm(method)),
             ppk=finite(performance.ppk),
+            ppk_95=both(performance.bounds) if performance.ppk is not None else None,
             ppk_by=performance.by,
             ppk_reason=performance.reason or None,
             spectrum=spectrum_sample(measure, own.spectra[method]),

@@ -29,7 +29,6 @@ from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.html.view_3d import view_3d
 from tol3d.report.joint import correlation_blocks
-from tol3d.report.number import share_text
 from tol3d.report.page import Page, Table, note, warning
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.report_sections import (
@@ -48,7 +47,7 @@ from tol3d.report.report_sections import (
 )
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import meanings, measure_blocks
-from tol3d.report.verdict import ACCEPTED_PPM, JudgedMeasure, verdict_report
+from tol3d.report.verdict import Accepted, JudgedMeasure, accepted_in, accepted_text, verdict_report
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
@@ -78,7 +77,7 @@ VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to sa
 def report_html(
     runs: Sequence[Run],
     *,
-    accepted_ppm: float = ACCEPTED_PPM,
+    accepted: Accepted | None = None,
     analyses: Mapping[str, Page] | None = None,
     shares: Mapping[str, Shares] | None = None,
     best: str = "",
@@ -91,7 +90,7 @@ def report_html(
 
     Args:
         runs: finished ones.
-        accepted_ppm: share of trials that may be out of a measure's limits.
+        accepted: what is asked of a measure; default: what the study asks.
         analyses: sections of the first run by their titles.
         shares: of contributors [%] by measure, of sections that have them.
         best: change to the first run's scene, in a line; "" for none.
@@ -111,7 +110,7 @@ def report_html(
     body += (
         [*_compared(runs)]
         if len(runs) > 1
-        else [*_single(runs[0], accepted_ppm, best, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
+        else [*_single(runs[0], accepted, best, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
     )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
@@ -139,10 +138,11 @@ def _described(run: Run) -> str:
 
 
 def _single(
-    run: Run, accepted_ppm: float, best: str, kept: Mapping[str, Markup], trials: Sequence[int] | None
+    run: Run, accepted: Accepted | None, best: str, kept: Mapping[str, Markup], trials: Sequence[int] | None
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
-    sections: dict[str, Inside] = {VERDICT: together(_badge(shown, accepted_ppm), _verdict(shown, accepted_ppm, best))}
+    asked = accepted_in(found, accepted)
+    sections: dict[str, Inside] = {VERDICT: together(_badge(shown, asked), _verdict(shown, asked, best))}
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
@@ -176,18 +176,18 @@ def _presenter(run: RunSummary) -> Presenter:
     return presenter_of(run)
 
 
-def _badge(run: RunSummary, accepted_ppm: float) -> Markup:
-    verdicts = {JudgedMeasure.of(own, accepted_ppm).verdict for own in run.measures.values()}
+def _badge(run: RunSummary, accepted: Accepted) -> Markup:
+    verdicts = {JudgedMeasure.of(own, accepted).verdict for own in run.measures.values()}
     kind = "not-ok" if "NOT OK" in verdicts else "open" if "too few trials" in verdicts else "ok"
     kind = "none" if verdicts == {"no limits"} else kind
     return tag("p", VERDICTS[kind], class_=f"verdict {kind}")
 
 
-def _verdict(run: RunSummary, accepted_ppm: float, best: str) -> Markup:
-    blocks = verdict_report(run, accepted_ppm, blame=True)
-    accepted = tag("p", f"accepted: {share_text(accepted_ppm)} out of limits", class_="dim")
+def _verdict(run: RunSummary, accepted: Accepted, best: str) -> Markup:
+    blocks = verdict_report(run, accepted, blame=True)
+    asked = tag("p", f"accepted: {accepted_text(accepted, run.measures.values())}", class_="dim")
     advice = [tag("p", f"what to change: {best}", class_="advice")] if best else []
-    return together(accepted, *advice, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
+    return together(asked, *advice, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
 
 
 def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Markup]:

@@ -57,7 +57,13 @@ class Sample(LimitShares):
     p0_135: Known = Field(validation_alias="p0.135", description="0.135 % quantile")
     p50: Known
     p99_865: Known = Field(validation_alias="p99.865")
-    quantile_error: NotNegative = Field(description="width of a bin of the grid that quantiles are read from")
+    p0_135_95: Maybe[KnownRange] = Field(
+        default=LEFT_OUT, validation_alias="p0.135_95", description="bounds of the true quantile, 95 % confidence"
+    )
+    p99_865_95: Maybe[KnownRange] = Field(default=LEFT_OUT, validation_alias="p99.865_95")
+    quantile_error: NotNegative = Field(
+        description="width of a bin of the grid that quantiles are read from, not their sampling error"
+    )
     outside_grid: Count
     below_limit_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")
     above_limit_ppm_95: PpmRange | None
@@ -71,6 +77,7 @@ class Sample(LimitShares):
     kurtosis: Known = Field(description="excess kurtosis")
     pp: Known
     ppk: Known
+    ppk_95: Maybe[KnownRange] = Field(default=LEFT_OUT, description="bounds of the true Ppk, 95 % confidence")
     ppk_by: PpkBy
     ppk_reason: Maybe[Label] = Field(default=LEFT_OUT, description="why by that; mean and sigma need no reason")
     pooled: Maybe[Mapping[Label, Known]] = Field(
@@ -125,6 +132,7 @@ class CurveSample(LimitShares):
     min: KnownNumbers
     max: KnownNumbers
     ppk: Maybe[Known] = Field(default=LEFT_OUT, description="of the lowest and the highest value of each trial")
+    ppk_95: Maybe[KnownRange] = LEFT_OUT
     ppk_by: Maybe[PpkBy] = LEFT_OUT
     ppk_reason: Maybe[Label] = LEFT_OUT
     spectrum: Maybe[SpectrumSample] = LEFT_OUT

@@ -32,6 +32,7 @@ def _rising(bounds: list[float]) -> list[float]:
     return bounds
 
 
+FigureRange = Annotated[list[Figure], Field(min_length=2, max_length=2), AfterValidator(_rising)]
 PpmRange = Annotated[list[Ppm], Field(min_length=2, max_length=2), AfterValidator(_rising)]
 
 
@@ -142,6 +143,7 @@ class PublishedCurve(Strict):
     out_ppm: Ppm | None = Field(default=None, description="share that failed or is out of limits [ppm]")
     out_ppm_95: PpmRange | None = Field(default=None, description="bounds of the true share, 95 % confidence [ppm]")
     ppk: Figure | None = Field(default=None, description="Ppk")
+    ppk_95: FigureRange | None = Field(default=None, description="bounds of the true Ppk, 95 % confidence")
     spectrum: PublishedSpectrum | None = Field(default=None, description="its harmonics")
 
     @property

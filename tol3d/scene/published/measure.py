@@ -21,6 +21,7 @@ from tol3d.scene.nearest import nearest
 from tol3d.scene.published.figures import (
     Count,
     Figure,
+    FigureRange,
     Figures,
     Ppm,
     PpmRange,
@@ -57,6 +58,12 @@ class PublishedMeasure(Strict):
     sigma_se: Quantity | None = Field(default=None, description="standard error of sigma")
     mean_95: Range | None = Field(default=None, description="bounds of the true mean, 95 % confidence")
     sigma_95: Range | None = Field(default=None, description="bounds of the true sigma, 95 % confidence")
+    p0_135_95: Range | None = Field(
+        default=None, alias="p0.135_95", description="bounds of the true 0.135 % quantile, 95 % confidence"
+    )
+    p99_865_95: Range | None = Field(
+        default=None, alias="p99.865_95", description="bounds of the true 99.865 % quantile, 95 % confidence"
+    )
     contributors: Mapping[Name, Share] = Field(
         default_factory=dict, description="share of each tolerance [% of the variance]"
     )
@@ -65,6 +72,7 @@ class PublishedMeasure(Strict):
     kurtosis: Figure | None = Field(default=None, description="excess kurtosis")
     pp: Figure | None = Field(default=None, description="Pp")
     ppk: Figure | None = Field(default=None, description="Ppk")
+    ppk_95: FigureRange | None = Field(default=None, description="bounds of the true Ppk, 95 % confidence")
     below_limit_ppm: Ppm | None = Field(default=None, description="share below the lower limit [ppm]")
     above_limit_ppm: Ppm | None = Field(default=None, description="share above the upper limit [ppm]")
     failed_ppm: Ppm | None = Field(default=None, description="share that could not be assembled [ppm]")
