@@ -144,6 +144,7 @@ def _room(path: str) -> str:
 
 
 def _needed_by(summary: Mapping[str, Any]) -> Iterator[str]:
+    """The shipped mechanisms of a summary, with those that they include: a machine of plain joints may have trains."""
     maker, measures = summary.get("mechanism"), summary.get("measures")
     known = maker if isinstance(maker, Mapping) else {}
     beside = known.get("beside")
@@ -151,7 +152,9 @@ def _needed_by(summary: Mapping[str, Any]) -> Iterator[str]:
     entries = measures.values() if isinstance(measures, Mapping) else ()
     kinds = (entry.get("kind") for entry in entries if isinstance(entry, Mapping))
     words = {kind for kind in kinds if isinstance(kind, str)}
-    return (path for path in SHIPPED if _room(path) in named_there or words & _declared(path))
+    found = {path for path in SHIPPED if _room(path) in named_there or words & _declared(path)}
+    included = {name for path in found for name in _mechanism(named(path), path).includes}
+    return (path for path in SHIPPED if path in found or _room(path) in included)
 
 
 @lru_cache

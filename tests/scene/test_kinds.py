@@ -332,6 +332,12 @@ def test_a_summary_is_read_by_the_kinds_of_its_measures() -> None:
     assert kinds.summary_kinds({"mechanism": None, "measures": {"play": {"kind": []}}}) == kinds.summary_kinds()
 
 
+def test_a_summary_is_read_by_the_kinds_that_its_mechanism_includes() -> None:
+    plain = {"tip": {"kind": "position_error"}}
+    assert "trains" in kinds.summary_kinds({"mechanism": {"name": "machine"}, "measures": plain}).run.model_fields
+    assert "trains" not in kinds.summary_kinds({"mechanism": {"name": "assembly"}, "measures": plain}).run.model_fields
+
+
 # new kinds of gears -------------------------------------------------------------------------------
 
 NEW_FILES = {

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from tol3d.report.presenter import presenter_of
-from tol3d.runs.summary.kinds import default_kinds
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.text import kinds_of
 
 MOST_TOGETHER = 4  # measures in one picture; of more, the worst
 HEAT_MAP = "contributors.png"  # with all pictures
@@ -74,7 +74,7 @@ def _draw(
     summary: Mapping[str, Any],
     picture: Path,
 ) -> None:
-    order = (picture, presenter, pictures, default_kinds(summary), json.dumps(summary))
+    order = (picture, presenter, pictures, kinds_of(summary), json.dumps(summary))
     refused, errors = process.communicate(pickle.dumps(sys.path) + pickle.dumps(order))
     for name, reason in json.loads(refused or "{}").items():
         words = f"{name} could not be drawn ({reason}); the run is whole without it"

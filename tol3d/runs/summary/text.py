@@ -61,19 +61,26 @@ def typed(
         fault: makes the error of a place and what is wrong there, which is raised.
         kinds: allowed contents; default: those of this package's mechanisms.
     """
-    tried = kinds or default_kinds(summary)
+    tried = kinds or kinds_of(summary)
     try:
         return tried.run.model_validate(summary)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-    whole = kinds or default_kinds()
-    if tried is not whole:
-        return typed(summary, fault, whole)  # its message knows all kinds
     context = first.get("ctx", {})
     extra = context.get("key") if first["type"] == "unknown_key" else context.get("field")
     place = ".".join(map(str, (*_without_tag(first["loc"], tried), *([extra] if extra else []))))
     got = "" if first["type"] == "value_refused" else f", got {shown(first['input'])}"
     raise fault(_printable(place or "the whole"), _printable(f"{first['msg']}{got}"))
+
+
+def kinds_of(summary: Mapping[str, Any]) -> SummaryKinds:
+    """Kinds by which a summary is read: of its mechanisms where these know all of it, or of every mechanism."""
+    own = default_kinds(summary)
+    try:
+        own.run.model_validate(summary)
+    except ValidationError:  # every mechanism's know what else it has; or their message names all that it could be
+        return default_kinds()
+    return own
 
 
 def missing_mechanism(summary: Mapping[str, Any], kinds: SummaryKinds | None = None) -> str:
