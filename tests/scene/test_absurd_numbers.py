@@ -9,6 +9,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fixtures import Command
 from places import SCENES
@@ -98,6 +99,39 @@ def test_an_absurd_number_is_refused_or_checked(name: str, share: float, tmp_pat
     assert checked > 5
     assert len(said) > 15
     assert all(text.startswith(str(tmp_path / "scene.yaml")) for text in said)
+
+
+TILTED = """
+scene: a dimension along a tilted direction
+parts:
+  pin: {{kind: solid, features: {{
+    foot: {{kind: plane, at: [0 mm, 0 mm, 0 mm], normal: {down}, extent: [9 mm, 9 mm]}},
+    bore: {{kind: cylinder, at: [3 mm, 4 mm, 20 mm], axis: {aside}, length: 8 mm, diameter: 4 mm, hole: true}}}}}}
+tolerances:
+  height: {{kind: plus_minus, of: pin.bore, datums: [foot], along: {up}, distribution: {{kind: uniform, lower: -1 um, upper: 3 um}}}}
+moves:
+  put: {{kind: fix, part: pin}}
+measures:
+  rise: {{kind: gap, from: pin.foot, to: pin.bore, along: {askew}}}
+study: {{trials: 30, seed: 2}}
+"""  # noqa: E501
+DIRECTIONS = {"up": (0.0, 0.0, 1.0), "down": (0.0, 0.0, -1.0), "aside": (1.0, 0.0, 0.0), "askew": (0.0, 0.6, 0.8)}
+
+
+def test_directions_of_any_length_mean_the_same(tmp_path: Path) -> None:
+    found = {}
+    for length in (1.0, 3e155, 7e-200):
+        words = {name: str([length * number for number in direction]) for name, direction in DIRECTIONS.items()}
+        scene = tmp_path / "scene.yaml"
+        scene.write_text(TILTED.format(**words), "utf-8")
+        found[length] = run_scene(scene, out=tmp_path / f"{length}").columns()
+    # the height's deviation is along z, of which the measure's direction has 0.8; -1 to 3 um, mean 1 um
+    rise = found[1.0]["geometric:rise"]
+    assert np.ptp(rise) > 2.0 * 0.8
+    assert abs(rise.mean() - (0.6 * 4e3 + 0.8 * 20e3) - 0.8 * 1.0) < 4 * 0.8 * 4.0 / 12**0.5 / 30**0.5
+    for length, columns in found.items():
+        for name, values in ((name, own) for name, own in columns.items() if own.dtype.kind == "f"):
+            assert np.allclose(values, found[1.0][name], rtol=1e-12, atol=1e-9), (length, name)
 
 
 @pytest.mark.slow

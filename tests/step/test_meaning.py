@@ -11,10 +11,11 @@ from places import TESTS
 from tol3d.step import frame
 from tol3d.step.datum import Compartment
 from tol3d.step.feature import NamedFeature
-from tol3d.step.meaning import Meaning, Meanings, meanings, surfaces_of
+from tol3d.step.meaning import MATERIAL, Meaning, Meanings, meanings, surfaces_of
 from tol3d.step.nominals import disagreements, measured
 from tol3d.step.outline import StepText
 from tol3d.step.surfaces import Surface
+from tol3d.step.tolerance import ProjectedZone
 
 with (TESTS / "step" / "expected.csv").open(encoding="utf-8", newline="") as opened:
     ROWS = list(csv.DictReader(opened))
@@ -51,6 +52,34 @@ def changed(model: str, identifier: int, **changes: object) -> Meaning:
     )
     found = Meanings(StepText(tolerances=tolerances, **fields), surfaces_of(text)).all
     return next(each for each in found if each.tolerance == identifier)
+
+
+def test_a_zone_of_no_width_is_left_out_with_that_reason() -> None:
+    """A zone of 0 is one at MMC or LMC alone, of a feature whose size has limits."""
+    bounded = [(model, row) for model in FILES for row in step_text(model).tolerances if {*row.modifiers} & MATERIAL]
+    (model, own), sized = bounded[0], 0
+    assert own.magnitude is not None
+    for value, material, left in (
+        (-0.02, (), True),
+        (-0.02, own.modifiers, True),
+        (0.0, (), True),
+        (0.0, own.modifiers, False),
+        (0.0, ("least material requirement",), False),
+        (1e-5, (), False),
+    ):
+        magnitude = replace(own.magnitude, written=value)
+        found = changed(model, own.id, magnitude=magnitude, modifiers=material)
+        told = f"a zone of {magnitude}: expected one wider than 0, or 0 with Ⓜ or Ⓛ" if left else ""
+        assert (found.how == "left out", found.why) == (left, told), (value, material)
+        sized += not left
+    assert sized == 3
+    own = next(row for row in step_text("CTC-01").tolerances if row.id == 21)  # of a slot without limits
+    assert own.magnitude is not None
+    none, material = replace(own.magnitude, written=0.0), ("maximum material requirement",)
+    told = "a zone of 0 mm, and without a size that has limits there is no bonus"
+    assert changed("CTC-01", 21, magnitude=none, modifiers=material).why == told
+    told = "a zone projected by 0 mm: expected a length above 0"
+    assert changed("CTC-01", 21, projected=ProjectedZone(none, ())).why == told
 
 
 def feature(model: str, identifier: int) -> NamedFeature:

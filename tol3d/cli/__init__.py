@@ -2,15 +2,15 @@
 
 Exit codes: 0 done, 1 limits failed (with --fail-on-limits), 2 wrong input, a write that the disk or the system refused
 (full, read-only, broken, a limit on files) or too little memory, 3 a fault of tol3d or of a mechanism of another
-package, 130 interrupted. Imports stand inside the functions here, so that `tol3d --help` loads no numpy, no CAD and no
-plotting.
+package, 130 interrupted, 141 where nobody reads the output any more (`| head`). Imports stand inside the functions
+here, so that `tol3d --help` loads no numpy, no CAD and no plotting.
 """
 
 import gc
 import sys
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Annotated, TextIO
 
 import typer
@@ -31,7 +31,7 @@ from tol3d.cli import (
     studies,
 )
 from tol3d.cli.arguments import app
-from tol3d.cli.console import DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
+from tol3d.cli.console import BROKEN_PIPE, DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
 __all__ = [
     "adjustment",
@@ -146,7 +146,7 @@ def _exit_codes() -> Iterator[None]:
             err_console.print("stopped")  # typer ends an interrupted command without a word
         raise
     except BrokenPipeError:
-        sys.exit(DONE)
+        raise
     except Exception as error:
         if short := _out_of_memory(error):
             sys.stderr.write(f"{short}\n")  # rich would want more of it
@@ -161,6 +161,27 @@ def _exit_codes() -> Iterator[None]:
         sys.exit(FAULT)
 
 
+@contextmanager
+def _broken_pipes() -> Iterator[None]:
+    """End without a word where nobody reads the output any more, as in `tol3d check scene.yaml | head`."""
+    import os
+
+    try:
+        try:
+            yield
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except (BrokenPipeError, SystemExit) as ended:
+        if not any(isinstance(each, BrokenPipeError) for each in _causes(ended)):  # typer ends with 1 of one
+            raise
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):  # what is left in them would be refused again as Python ends
+            with suppress(OSError, ValueError, AttributeError):
+                os.dup2(nowhere, stream.fileno())
+        sys.exit(BROKEN_PIPE)
+
+
 def _print_fault(words: str, whom: str, error: BaseException) -> None:
     """A fault of code, with the last lines of its traceback for those who mend it."""
     import traceback
@@ -172,18 +193,31 @@ def _print_fault(words: str, whom: str, error: BaseException) -> None:
 
 def _out_of_memory(error: Exception) -> str:
     """Message where the system gives no more memory; empty for other errors."""
-    import errno
-
-    failed = isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno == errno.ENOMEM)
-    failed = failed or (isinstance(error, ImportError) and NO_ROOM_TO_LOAD in str(error))
-    if not failed and not _has_filled_its_room():
+    lacking = next((each for each in _causes(error) if _wants_memory(each)), None)
+    if lacking is None and not _has_filled_its_room():
         return ""
-    why = " ".join(str(error).split())
+    why = " ".join(str(lacking or error).split())
     return (
         f"out of memory{f' ({why})' if why else ''}: the input is not at fault; allow more (a run takes 1 to 2 GB of "
         "address space and some for each worker), or use fewer --workers; finished blocks are kept, and the same "
         "command resumes the run"
     )
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    """An error and those that it was raised for, from the last to the first: libraries hide what the system told."""
+    while error is not None:
+        yield error
+        error = error.__cause__ or error.__context__
+
+
+def _wants_memory(error: BaseException) -> bool:
+    import errno
+
+    if isinstance(error, OSError) and error.errno == errno.ENOMEM:
+        return True
+    unloaded = isinstance(error, ImportError | OSError) and NO_ROOM_TO_LOAD in str(error)
+    return unloaded or isinstance(error, MemoryError)
 
 
 def _has_filled_its_room() -> bool:
@@ -227,7 +261,7 @@ def main() -> None:
     """Entry point of the `tol3d` command."""
     write_plainly()
     try:
-        with _few_collections(), _plain_warnings(), _exit_codes():
+        with _few_collections(), _plain_warnings(), _broken_pipes(), _exit_codes():
             app()
     finally:
         gc.freeze()  # else Python looks through all of it again while it ends: 0.4 s of a command of 2 s

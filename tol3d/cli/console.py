@@ -17,6 +17,7 @@ from rich.segment import Segment
 
 BEGAN: Final = time.perf_counter() - time.process_time()  # s; of the command, whose start is work of this process
 DONE, LIMITS_FAILED, WRONG_INPUT, FAULT, INTERRUPTED = 0, 1, 2, 3, 130
+BROKEN_PIPE: Final = 141  # as shells tell of SIGPIPE: 128 + 13
 
 PLAIN_SIGNS: Final = {
     "−": "-",
@@ -104,6 +105,10 @@ class SafeConsole(Console):
         """See Console; what rich itself sends to the terminal is marked as control and passes."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else Segment(shown_controls(segment.text), segment.style)
+
+    def on_broken_pipe(self) -> None:
+        """Leave it to the command to end: rich would with 1, the code for failed limits."""
+        raise BrokenPipeError
 
 
 out_console: Final = SafeConsole(highlight=False, soft_wrap=False, markup=False)

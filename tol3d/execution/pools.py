@@ -148,13 +148,49 @@ class OnCluster:
     """Runs calls on the workers of a Dask cluster; a worker that dies has its calls run by another."""
 
     client: Any
+    address: str
     slots: int
     shares_memory: bool = False
 
     def submit(self, function: Callable[..., T], *arguments: Any) -> Pending[T]:
         """See Pool."""
-        pending: Pending[T] = self.client.submit(function, *arguments, pure=False)
-        return pending
+        return _ByAWorker(self.client, self.address, self.client.submit(function, *arguments, pure=False))
+
+
+@dataclass(frozen=True)
+class _ByAWorker(Pending[T]):
+    """A call on a cluster.
+
+    Raises:
+        RunError: by `result`, if the cluster has had no worker for a while.
+    """
+
+    client: Any
+    address: str
+    future: Any
+
+    def result(self) -> T:
+        while True:
+            try:
+                found: T = self.future.result(timeout=None if self.future.done() else ANSWER_S / 2)
+                return found
+            except TimeoutError:
+                if self.future.done():  # the call's own
+                    raise
+            if not self.client.nthreads():
+                self._await_a_worker()
+
+    def cancel(self) -> None:
+        self.future.cancel()
+
+    def _await_a_worker(self) -> None:
+        try:
+            self.client.wait_for_workers(1, timeout=ANSWER_S)
+        except TimeoutError:
+            raise RunError(
+                f"--scheduler {self.address}: its workers are gone; finished blocks are kept: start others with "
+                f"`dask worker {self.address}`, and the same command resumes the run"
+            ) from None
 
 
 @contextmanager
@@ -233,7 +269,7 @@ def _cluster(address: str) -> Iterator[Pool]:
         raise InputError("--scheduler needs Dask: pip install 'tol3d[dask]'") from None
     client = _client(distributed, address)
     try:
-        yield OnCluster(client, _threads_of(client, address))
+        yield OnCluster(client, address, _threads_of(client, address))
     except distributed.scheduler.KilledWorker as error:
         raise RunError(f"--scheduler {address}: this study kills workers ({error}); finished blocks are kept") from None
     except (CancelledError, distributed.comm.CommClosedError) as error:

@@ -241,8 +241,14 @@ class Place:
 
 
 def partial_of(path: Path) -> Path:
-    """The folder in which a run that goes to `path` is written."""
+    """The folder in which a run that goes to `path` is written.
+
+    Raises:
+        RunError: it is the root folder, which has no name.
+    """
     path = path.resolve()  # so that "." has a name
+    if not path.name:
+        raise RunError(f"{path}: no run takes the place of the root of all folders; name a folder in it")
     return path.with_name(path.name + ".partial")
 
 

@@ -1,5 +1,6 @@
 """Three values along x, y and z: lengths with their units, or a direction in plain numbers."""
 
+from math import frexp, ldexp
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field
@@ -8,6 +9,7 @@ from tol3d.strict import refused
 from tol3d.units import COMMA_SEPARATES, Of, Quantity, shown
 
 AXES = 3  # x, y, z
+LEAST, MOST = 1e-3, 1e3  # of a direction's largest number; others are scaled, as the square of 1e155 is no number
 
 Coordinate = Annotated[Quantity, Of("length")]
 
@@ -32,7 +34,12 @@ def three(expected: str) -> BeforeValidator:
 def _pointing(direction: tuple[float, float, float]) -> tuple[float, float, float]:
     if not any(direction):
         raise refused("", "a direction with a number other than 0", "zeros only")
-    return direction
+    largest = max(map(abs, direction))
+    if LEAST <= largest <= MOST:
+        return direction
+    _, exponent = frexp(largest)
+    x, y, z = (ldexp(number, -exponent) for number in direction)  # exact: powers of two
+    return x, y, z
 
 
 Vector = Annotated[tuple[Coordinate, Coordinate, Coordinate], three("three lengths, such as [0 mm, 12 mm, 5 mm]")]

@@ -183,6 +183,10 @@ class Meanings:
         """Reason why the feature or the kind of a tolerance cannot be said at all; empty if it can."""
         if tolerance.magnitude is None:
             return "the file states no value"
+        if why_not := unphysical(tolerance):
+            return why_not
+        if tolerance.magnitude.value == 0.0 and not self.has_size(tolerance.feature):
+            return f"a zone of {tolerance.magnitude}, and without a size that has limits there is no bonus"
         if tolerance.feature.whole and tolerance.kind == "surface profile" and tolerance.datums:
             return ""
         if tolerance.feature.lies_on != "faces":
@@ -377,6 +381,20 @@ class Meanings:
         faces = set(feature.faces)
         sizes = [each for each in self.text.dimensions if each.is_size and each.limits is not None]
         return any(faces & set(each.features[0].faces) for each in sizes)
+
+
+def unphysical(tolerance: Tolerance) -> str:
+    """Reason why the numbers of a tolerance limit nothing; empty if they do."""
+    stated, bounded = tolerance.magnitude, MATERIAL & {*tolerance.modifiers}
+    if stated is not None and (stated.value < 0.0 or (stated.value == 0.0 and not bounded)):
+        return f"a zone of {stated}: expected one wider than 0, or 0 with Ⓜ or Ⓛ"
+    lengths = (
+        ("projected by", tolerance.projected and tolerance.projected.length),
+        ("per", tolerance.per_unit and tolerance.per_unit.size),
+        ("per", tolerance.per_unit and tolerance.per_unit.second),
+    )
+    wrong = next((f"{words} {own}" for words, own in lengths if own and own.value <= 0.0), "")
+    return wrong and f"a zone {wrong}: expected a length above 0"
 
 
 def orientation(shape: Shape, datum: Shape) -> str:
