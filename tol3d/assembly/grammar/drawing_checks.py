@@ -360,7 +360,8 @@ def implausible_leans(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Orientation zones in which a feature may lean by more than ten degrees."""
     drawing = Drawing(scene)
     for name, spec in scene.of(OrientationSpec).items():
-        reach = float(np.ptp(drawing.kind(spec.of).shape.ends, axis=0).max())
+        shape = drawing.kind(spec.of).shape
+        reach = 2.0 * shape.radius if isinstance(shape, RoundPlane) else float(np.ptp(shape.ends, axis=0).max())
         if spec.zone.projected is not None:
             reach = spec.zone.projected.internal
         if reach > 0.0 and (lean := math.atan(spec.zone.size / reach)) > MOST_LEAN:
