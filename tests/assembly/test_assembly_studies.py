@@ -64,11 +64,13 @@ def test_shares_of_what_takes_a_size_are_its_total_effects(tmp_path: Path, norma
     assert np.allclose(rows * sigmas.T**2 @ rows.T, covariance())
     generator = np.random.default_rng(11)
     plain, other = (sigmas * generator.standard_normal((5, 200_000)) for _ in range(2))
-    effects = [np.mean((np.hypot(*rows @ plain) - np.hypot(*rows @ _with_row(plain, other, k))) ** 2) for k in range(5)]
+    size = np.hypot(*rows @ plain)
+    steps = [size - np.hypot(*rows @ _with_row(plain, other, k)) for k in range(5)]
+    effects = [50 * np.mean(own**2) / np.var(size) for own in steps]
     names = ("b1 off", "b2 off", "c off", "hole x", "hole y")
-    for name, own in zip(names, 100 * np.array(effects) / sum(effects), strict=True):
+    for name, own in zip(names, effects, strict=True):
         assert abs(found[name]["geometric_percent"] - own) < 5 * found[name]["geometric_percent_se"] + 0.2, name
-        assert found[name]["geometric_percent_se"] < 3.0
+        assert found[name]["geometric_percent_se"] < 5.0
 
 
 def _with_row(plain: np.ndarray, other: np.ndarray, k: int) -> np.ndarray:

@@ -49,16 +49,16 @@ def geometric(measure: MeasureSummary) -> dict[str, float]:
     return {own.name: own.geometric_percent for own in measure.contributors if own.geometric_percent is not None}
 
 
-def assert_near(measure: MeasureSummary, effects: Sequence[float]) -> None:
-    """Shares are the parts of the sum of known total effects, within the errors that they state."""
-    expected = {f"x{k}": 100 * own / sum(effects) for k, own in enumerate(effects)}
+def assert_near(measure: MeasureSummary, effects: Sequence[float], variance: float) -> None:
+    """Shares are known total effects, as parts of a known variance, within the errors that they state."""
+    expected = {f"x{k}": 100 * own / variance for k, own in enumerate(effects)}
     for own in measure.contributors:
         assert own.geometric_percent is not None
         assert own.geometric_percent_se is not None
         assert abs(own.geometric_percent - expected[own.name]) < SURE * own.geometric_percent_se, own.name
-        assert own.geometric_percent_se < 6.0
+        assert own.geometric_percent_se < 15.0
     found = geometric(measure)
-    assert sum(found.values()) == pytest.approx(100.0)
+    assert max(found.values()) <= 100.0
     assert max(found, key=found.__getitem__) == max(expected, key=expected.__getitem__)
 
 
@@ -71,13 +71,13 @@ def test_a_product_names_its_factors_and_not_the_summand_that_a_regression_sees(
     laws = [Normal(a, 0.3), Normal(b, 0.5), Normal(0.04, 0.2)]
     measure = measured(lambda x: x[:, 0] * x[:, 1] + c * x[:, 2], laws, 16_000)
     effects = [0.3**2 * (0.5**2 + b**2), 0.5**2 * (0.3**2 + a**2), (c * 0.2) ** 2]
-    assert_near(measure, effects)
+    linear = (b * 0.3) ** 2 + (a * 0.5) ** 2 + (c * 0.2) ** 2  # of the measure about the means
+    variance = (0.3 * 0.5) ** 2 + linear
+    assert_near(measure, effects, variance)
     assert measure.shares_by is not None
     own = measure.shares_by["geometric"]
     assert own.by == "total effects"
-    linear = (b * 0.3) ** 2 + (a * 0.5) ** 2 + (c * 0.2) ** 2  # of the measure about the means
-    explained = 100 * linear / ((0.3 * 0.5) ** 2 + linear)
-    assert own.explained_percent == pytest.approx(explained, abs=5.0)  # 5 standard errors of r²
+    assert own.explained_percent == pytest.approx(100 * linear / variance, abs=5.0)  # 5 standard errors of r²
     largest_alone = max(measure.contributors, key=lambda each: each.high_low_mean_percent or 0.0)
     assert largest_alone.name == "x2"  # a product of deviations is 0 at the others' means: high–low–mean sees little
 
@@ -113,17 +113,18 @@ def of_size(trials: int) -> MeasureSummary:
 
 
 def test_the_size_of_a_sum_has_the_total_effects_of_a_quadrature() -> None:
-    assert_near(of_size(6000), [total_of_size(k) for k in range(len(SIGMAS))])
+    variance = folded_variance(MIDDLE, math.sqrt(sum(own**2 for own in SIGMAS)))
+    assert_near(of_size(8000), [total_of_size(k) for k in range(len(SIGMAS))], variance)
 
 
 def test_the_largest_of_several_has_the_total_effects_of_a_quadrature() -> None:
     """max(x, y, z, ...) by a grid of quantiles; its error is of second order in 1/60."""
     laws = [Normal(0.0, 0.04), Normal(-0.01, 0.09), Normal(0.03, 0.06)]
-    measure = measured(lambda x: np.abs(x).max(axis=1), laws, 5000)
+    measure = measured(lambda x: np.abs(x).max(axis=1), laws, 12_000)
     grid = stats.norm.ppf((np.arange(60) + 0.5) / 60)
     x, y, z = np.meshgrid(*(law.mean + law.sigma * grid for law in laws), indexing="ij")
     cube = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
-    assert_near(measure, [float(cube.var(axis=k).mean()) for k in range(3)])
+    assert_near(measure, [float(cube.var(axis=k).mean()) for k in range(3)], float(cube.var()))
 
 
 @pytest.mark.parametrize("trials", [300, 8])
@@ -212,8 +213,8 @@ LENGTHS = {  # of a or b, along, mean and sigma [um]
 }
 
 
-def total_of(name: str) -> float:
-    """Total effect on the size by quadrature: over x and y of all others, by 41 x 41 x 81 nodes of Hermite."""
+def total_of(name: str) -> tuple[float, float]:
+    """Total effect on the size, and its variance, by quadrature of 81 nodes of Hermite for each of three lengths."""
     nodes, weights = np.polynomial.hermite_e.hermegauss(81)
     weights = weights / weights.sum()
     vectors = {key: (-1 if of == "a" else 1) * np.array(along) for key, (of, along, _, _) in LENGTHS.items()}
@@ -224,10 +225,11 @@ def total_of(name: str) -> float:
     size = np.sqrt(sum(own**2 for own in moved))
     at = np.moveaxis(size, keys.index(name), -1)
     variance = at**2 @ weights - (at @ weights) ** 2
-    return float(weights @ variance @ weights)
+    whole = float(weights @ (at**2 @ weights) @ weights) - float(weights @ (at @ weights) @ weights) ** 2
+    return float(weights @ variance @ weights), whole
 
 
-@pytest.fixture(scope="module", params=[3000, 120], ids=["total effects", "high-low-mean"])
+@pytest.fixture(scope="module", params=[6000, 120], ids=["total effects", "high-low-mean"])
 def run(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("sizes")
     lines = [
@@ -243,12 +245,14 @@ def test_screen_page_chart_map_and_table_name_the_same_largest_contributor_first
     measure = run.found.measures["size"]
     assert measure.shares_by is not None
     way, left = measure.shares_by["geometric"].by, 100 - (measure.shares_by["geometric"].explained_percent or 0.0)
-    assert way == ("total effects" if run.trials == 3000 else "high-low-mean")
+    assert way == ("total effects" if run.trials == 6000 else "high-low-mean")
     truth = {name: total_of(name) for name in ("first", "largest", "third")}
-    assert max(truth, key=truth.__getitem__) == "largest"
+    assert max(truth, key=lambda name: truth[name][0]) == "largest"
     found = geometric(measure)
-    share = 100 * truth["largest"] / sum(truth.values())
-    assert found["largest"] == pytest.approx(share, abs=12.0)
+    if way == "total effects":
+        errors = {own.name: own.geometric_percent_se or 0.0 for own in measure.contributors}
+        for name, (effect, variance) in truth.items():
+            assert abs(found[name] - 100 * effect / variance) < SURE * errors[name]
     words = f"not attributed {left:.0f} %; by {way.replace('-', '–')}: largest {found['largest']:.0f} %"
     screen = printed(run_report(run.found, Detail.SHORT)).splitlines()
     assert any(line.startswith("size ") and words in " ".join(line.split()) for line in screen), screen

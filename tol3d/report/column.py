@@ -17,8 +17,8 @@ HEADINGS: Mapping[Method, str] = {
 NOT_ATTRIBUTED = "not attributed"
 SHARES_BY: Mapping[SharesBy, str] = {"total effects": "total effects", "high-low-mean": "high–low–mean"}
 SHARES_BY_MEANS: Mapping[SharesBy, str] = {
-    "total effects": "total effects, mean squared change of the measure when one contributor is drawn again",
-    "high-low-mean": "high–low–mean, squared range over one contributor's limits",
+    "total effects": "total effects, the variance by a contributor alone and in interactions, together more than 100 %",
+    "high-low-mean": "high–low–mean, each contributor's squared range as a part of their sum",
 }
 SHARES: Mapping[Method, str] = {"analytic": "analytic_percent", "geometric": "geometric_percent"}
 
@@ -106,7 +106,7 @@ def shares_by_words(measures: Iterable[MeasureSummary]) -> Iterator[str]:
     if meanings:
         yield (
             f"{NOT_ATTRIBUTED} first: a regression on the contributors explains less than 90 % of the variance, or has "
-            f"too few trials; the shares are then parts of the sum of all contributors, by {'; by '.join(meanings)}"
+            f"too few trials; the shares are then by {'; by '.join(meanings)}"
         )
 
 

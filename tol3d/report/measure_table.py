@@ -192,7 +192,7 @@ def _share(measure: MeasureSummary, column: Column, name: str, error: float | No
 def _sum_of(measure: MeasureSummary, column: Column, names: Sequence[str]) -> float | None:
     """Share of several contributors together [%]; None where none of theirs is known."""
     known = [share for name in names if (share := column.percents.get(name)) is not None]
-    return sum(known) if known and _varies(measure, column) else None
+    return min(sum(known), 100.0) if known and _varies(measure, column) else None
 
 
 def _varies(measure: MeasureSummary, column: Column) -> bool:

@@ -1,9 +1,9 @@
 """Shares of the variance of each contributor: one decision for the screen, reports, charts and tables.
 
 They are those of a regression where it explains EXPLAINED of the variance. Of the size of a vector, the worst of
-several poses or a product it explains little, and names what little it explains. Then total effects take its place, as
-shares of their sum, where they need less than MOST_OF_RUN of the run's builds: builds in which one contributor is drawn
-again and all else stays. Otherwise it is high–low–mean, two builds a contributor.
+several poses or a product it explains little, and names what little it explains. Then total effects take its place
+where they need less than MOST_OF_RUN of the run's builds: builds in which one contributor is drawn again and all else
+stays. Otherwise it is high–low–mean, two builds a contributor.
 
 Source of total effects: Jansen, Analysis of variance designs for model output, Comput. Phys. Commun. 117 (1999).
 """
@@ -41,11 +41,13 @@ EXPLAINED: Final = 0.9
 MOST_OF_RUN: Final = 0.1
 """Builds for total effects, as a fraction of the trials."""
 MOST_PAIRS: Final = 512
-"""Pairs of builds of each contributor; so many give an effect to 6 %."""
-LEAST_PAIRS: Final = 32
-"""Pairs from which on total effects are taken before high–low–mean: they are known to a quarter."""
+"""Pairs of builds of each contributor."""
+LEAST_PAIRS: Final = 128
+"""Pairs from which on total effects are taken before high–low–mean: random ones know them to 13 %, Sobol's better."""
+TELLING_PAIRS: Final = 32
+"""Pairs from which on they are taken where that which leads by high–low–mean has less than half of the largest."""
 FEWEST_PAIRS: Final = 8
-"""Pairs from which on total effects say more than nothing, where high–low–mean sees no effect at all: to half."""
+"""Pairs from which on they are taken where high–low–mean sees no effect at all."""
 
 
 @dataclass(frozen=True)
@@ -111,13 +113,16 @@ class Attributed:
         ends = self.alone
         if ends is None:
             ends = high_low_mean_percents(system, lacking, self.evaluation.values)
-        effects = self._total_effects(lacking)
+        effects = self._total_effects(lacking, {own.name: regressed[own.name].target_sigma for own in lacking})
         for measure in lacking:
             own, names = found[measure.name], found[measure.name].percents
             pairs, known = effects.get(measure.name, (0, {}))
             high_low = {name: share for name in names if (share := ends.get(measure.name, {}).get(name)) is not None}
             seen = len(high_low) == len(names) and any(high_low.values())
-            if known and (pairs >= LEAST_PAIRS or (not seen and pairs >= FEWEST_PAIRS)):
+            largest = max((share or 0.0 for share, _ in known.values()), default=0.0)
+            misled = seen and known and 2 * (known[max(high_low, key=high_low.__getitem__)][0] or 0.0) < largest
+            least = LEAST_PAIRS if not misled else TELLING_PAIRS
+            if known and pairs >= (least if seen else FEWEST_PAIRS):
                 found[measure.name] = replace(own, percents=known, by="total effects")
             elif seen:
                 whole = sum(high_low.values())
@@ -125,7 +130,9 @@ class Attributed:
                 found[measure.name] = replace(own, percents=percents, by="high-low-mean")
         return found
 
-    def _total_effects(self, measures: Sequence[Measure]) -> Mapping[str, tuple[int, Mapping[str, Percent]]]:
+    def _total_effects(
+        self, measures: Sequence[Measure], sigmas: Mapping[str, float]
+    ) -> Mapping[str, tuple[int, Mapping[str, Percent]]]:
         """By measure the least number of pairs of builds of a contributor that could be assembled, and the shares.
 
         Nothing where contributors are correlated: they have no total effects of their own.
@@ -133,9 +140,10 @@ class Attributed:
         system = self.simulation.system
         acts = {own.name: [each.name for each in acting(self.simulation, own)] for own in measures}
         names = [own.name for own in system.contributors if any(own.name in each for each in acts.values())]
-        count = min(int(MOST_OF_RUN * self.trials) // (len(names) + 1), MOST_PAIRS)
-        if self.simulation.copula.blocks or count < FEWEST_PAIRS:
+        room = min(int(MOST_OF_RUN * self.trials) // (len(names) + 1), MOST_PAIRS)
+        if self.simulation.copula.blocks or room < FEWEST_PAIRS:
             return {}
+        count = 2 ** (room.bit_length() - 1)
         pairs = _Pairs(self.simulation, count, names)
         plain = self.evaluation.of(pairs.plain, measures)
         steps: dict[str, dict[str, Array]] = {own.name: {} for own in measures}
@@ -144,10 +152,11 @@ class Attributed:
             for measure in measures:
                 each = found[measure.name].reshape(len(batch), count) - plain[measure.name]
                 steps[measure.name] |= dict(zip(batch, each, strict=True))
-        return {
-            name: _shares_of_effects({own: step[np.isfinite(step)] for own, step in found.items() if own in acts[name]})
+        seen = {
+            name: {own: step[np.isfinite(step)] for own, step in found.items() if own in acts[name]}
             for name, found in steps.items()
         }
+        return {name: _of_variance(found, sigmas[name] ** 2) for name, found in seen.items()}
 
 
 @dataclass(frozen=True)
@@ -191,18 +200,17 @@ def _lacks(sums: Sums, measure: Measure, found: Attribution) -> bool:
     return varies and (found.explained is None or found.explained < EXPLAINED)
 
 
-def _shares_of_effects(steps: Mapping[str, Array]) -> tuple[int, Mapping[str, Percent]]:
-    """The least number of pairs of a contributor, and each one's mean square step [% of their sum] with its error."""
+def _of_variance(steps: Mapping[str, Array], variance: float) -> tuple[int, Mapping[str, Percent]]:
+    """The least number of pairs of a contributor, and half of each one's mean square step [% of the variance].
+
+    With standard errors. A total effect is no more than all: what chance, or builds that could not be assembled, add is
+    cut off.
+    """
     fewest = min(map(len, steps.values()), default=0)
     if fewest < FEWEST_PAIRS:
         return fewest, {}
-    means = np.array([float(np.mean(own**2)) for own in steps.values()])
-    errors = np.array([float(np.std(own**2)) / math.sqrt(len(own)) for own in steps.values()])
-    whole = float(means.sum())
-    if not whole > 0.0:
-        return fewest, {}
-    parts = means / whole
-    others = np.sqrt(np.maximum((errors**2).sum() - errors**2, 0.0))
-    off = np.hypot((1.0 - parts) * errors, parts * others) / whole
-    percents = zip((100 * parts).tolist(), (100 * off).tolist(), strict=True)
-    return fewest, dict(zip(steps, percents, strict=True))
+    found = {}
+    for name, step in steps.items():
+        halves = 50.0 * step**2 / variance
+        found[name] = min(float(np.mean(halves)), 100.0), float(np.std(halves)) / math.sqrt(len(halves))
+    return fewest, found if any(share for share, _ in found.values()) else {}

@@ -20,6 +20,7 @@ from tol3d.system.stated import component_count, component_slices
 from tol3d.system.system import StreamKey, System
 from tol3d.system.trials import Trials
 
+MOST_EVEN = 4096  # dimensions of Sobol' points; of more they cost more than builds
 MANY_STREAMS = 256  # from here on compiling what draws them pays
 
 
@@ -57,18 +58,26 @@ def drawn_ones(simulation: Simulation, trials: Sequence[int]) -> Trials:
 
 
 def redrawn(simulation: Simulation, count: int, names: Collection[str]) -> Trials:
-    """Trials 0 ... count - 1 by Monte Carlo, whatever the study's sampler, with other draws of some contributors.
+    """Trials of Sobol' points, of random ones in very many dimensions, with other draws of some contributors.
 
     Args:
         simulation: whose seed they have.
-        count: of trials.
-        names: of contributors whose draws are those of trials count ... 2 count - 1.
+        count: of trials; a power of two.
+        names: of contributors with other draws than without them here.
     """
-    return _trials(
-        replace(simulation, study=replace(simulation.study, sampler="monte_carlo", replicates=1)),
-        lambda sampler, stream: sampler.uniforms(stream, count if stream.name in names else 0, count),
-        count,
-    )
+    system, seed = simulation.system, simulation.study.seed
+    streams = streams_of(system)
+    even = 2 * len(streams) <= MOST_EVEN
+    sampler = Sobol(seed, count, 2 * len(streams)) if even else MonteCarlo(seed)
+
+    def uniforms(key: StreamKey) -> Array:
+        stream, other = streams[key], key[0] in names
+        if even:
+            return sampler.uniforms(replace(stream, dimension=stream.dimension + other * len(streams)), 0, count)
+        return sampler.uniforms(stream, other * count, count)
+
+    positions = system.positions({key: uniforms(key) for key in system.streams})
+    return Trials(_deviations(simulation, uniforms, count), positions)
 
 
 def deviations(simulation: Simulation, first: int, count: int) -> Array:

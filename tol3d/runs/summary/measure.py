@@ -46,7 +46,9 @@ class ContributorShare(Section):
 class Unexplained(Section):
     """Shares of a measure that a regression on its contributors does not explain."""
 
-    by: SharesBy = Field(description="where the shares are from instead, as parts of the sum of all contributors'")
+    by: SharesBy = Field(
+        description="total effects, or squared ranges as parts of their sum, in place of the regression's shares"
+    )
     explained_percent: Known = Field(description="of the variance, by the regression, less what chance explains")
 
 
