@@ -110,7 +110,7 @@ def test_shares_do_not_depend_on_the_order_of_measures(tmp_path: Path) -> None:
     assert shares["first"]["position"] > 50
 
 
-def test_a_measure_that_nothing_moves_is_not_warned_of(tmp_path: Path) -> None:
+def test_a_measure_that_nothing_moves_is_told_of_once(tmp_path: Path) -> None:
     text = plate({name: constant(0.01) for name in SIGMAS})
     text += "  still: {kind: point_plane, from: plate.floor, to: plate.b1}\n"
-    assert ran(tmp_path, "run", text).summary["warnings"] == []
+    assert ran(tmp_path, "run", text).summary["warnings"] == ["still: no tolerance acts on it"]

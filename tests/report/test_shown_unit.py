@@ -100,7 +100,19 @@ def test_check_shows_it_alike(tmp_path: Path) -> None:
 def test_lengths_alone_are_converted_and_all_of_them(run: Run) -> None:
     """Every number of the classes of a measure is one or is named here as none; each by a thousand."""
     none = {
-        *("trials", "count", "counts", "outside_grid", "compared", "skewness", "kurtosis", "pp", "ppk", "status"),
+        *(
+            "trials",
+            "count",
+            "counts",
+            "outside_grid",
+            "compared",
+            "skewness",
+            "kurtosis",
+            "pp",
+            "ppk",
+            "ppk_95",
+            "status",
+        ),
         *("reasons", "chord_error_um", "mesh_error_um", "law_sigmas_um", "position_deg", "curve", "largest_trial"),
         *("below_limit_ppm", "above_limit_ppm", "failed_ppm", "out_ppm", "trial_of_the_largest", "standard_errors"),
         *("below_limit_ppm_95", "above_limit_ppm_95", "out_ppm_95", "percent", "largest_percent"),

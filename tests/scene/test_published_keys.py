@@ -18,6 +18,7 @@ STATED: Final = {
     "witness.*": "what our own engines find of each other",
     "measures.*.agreement.explanation.*": "what our own methods leave out",
     "study.until": "at which errors it was to stop",
+    "study.accept_ppk": "what it was asked to reach",
     "study.profile_steps": "how finely our own witness measures",
     "measures.*.chord_error_um": "how finely our own meshes measure",
     "measures.*.mesh_error_um": "how finely our own meshes measure",
