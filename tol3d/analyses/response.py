@@ -34,6 +34,7 @@ from tol3d.system.method import ANALYTIC_METHOD, Method
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
 from tol3d.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
 from tol3d.system.other_laws import scaled as scaled_draw
+from tol3d.system.other_laws import shifted as shifted_draw
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
 from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
@@ -416,6 +417,17 @@ class Response:
         """
         changes = {name: partial(scaled_draw, factor=factor, stays=stays.get(name)) for name, factor in factors.items()}
         return self._made_again(changes, physical=physical)
+
+    def shifted(self, changes: Mapping[str, float]) -> "Response":
+        """The same system with other means of tolerances, by contributor; their widths stay.
+
+        Args:
+            changes: of the means [mm, rad or K].
+
+        Raises:
+            InputError: no such contributor, one whose law cannot be shifted, or deviations that cannot be.
+        """
+        return self._made_again({name: partial(shifted_draw, by=by) for name, by in changes.items()})
 
     def sized(self, widths: Mapping[str, float]) -> "Response":
         """The same system with zones of other widths [mm], by contributor.

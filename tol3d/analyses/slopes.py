@@ -5,16 +5,18 @@ length of a sum, or the least of several, slopes at the mean build are useless.
 """
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from tol3d.analyses.response import NUDGE, Response
+from tol3d.analyses.response import Response
 from tol3d.numerics.arrays import Array
+from tol3d.system.contributor import Contributor, WithNominal
 from tol3d.system.dependent import Dependent
-from tol3d.system.draw import Ball, Planar, component_sigmas, drawn_each
+from tol3d.system.draw import Draw, Each, JointDraw, Scalar, component_sigmas, drawn_each
 
 AT_ONCE: Final = 2**22
 """Numbers of a batch of builds: rows times components, 32 MB."""
@@ -32,7 +34,7 @@ class Rates:
         response: the response.
         slopes: mean over builds (measures, components).
         steadiness: its size over the rms of the slopes (measures, components); 1 where all builds have the same.
-        variances: by slopes, of each contributor (measures, contributors).
+        variances: by slopes, of each contributor, at each of the builds (rows, measures, contributors).
         nominal: every deviation 0, averaged over positions (measures,).
         mean_build: every contributor at its mean, likewise.
         first: what each contributor's mean moves of that way (measures, contributors).
@@ -51,8 +53,26 @@ class Rates:
     @property
     def shares(self) -> Array:
         """Shares of the variances by slopes (measures, contributors); they sum to 1 where anything acts."""
-        whole = self.variances.sum(axis=1, keepdims=True)
-        return self.variances / np.where(whole > 0.0, whole, 1.0)
+        return self.mean_variances / self._whole
+
+    @property
+    def share_errors(self) -> Array:
+        """Their standard errors, by how slopes differ from build to build; NaN of a single build."""
+        whole = self.variances.sum(axis=2, keepdims=True)
+        off = (np.nan_to_num(self.variances) - self.shares * np.nan_to_num(whole)) / self._whole
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # a single build
+            return np.asarray(off.std(axis=0, ddof=1) / np.sqrt(len(off)))
+
+    @property
+    def mean_variances(self) -> Array:
+        """Variances averaged over the builds (measures, contributors)."""
+        return _mean(self.variances)
+
+    @property
+    def _whole(self) -> Array:
+        whole = self.mean_variances.sum(axis=1, keepdims=True)
+        return np.where(whole > 0.0, whole, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,25 +80,17 @@ class Lever:
     """A nominal that can be moved.
 
     Args:
-        name: of the contributor, with its component where it has several.
-        contributor: its name.
-        direction: in which deviations move (components,) [mm, rad or K].
-        slope: change of the measure, in its unit.
+        line: of the scene that states it, for one contributor or several.
+        slope: change of the measure, in its unit, a mm, rad or K.
+        nominal: word of a drawing for it.
         unit, per_unit: of the contributor.
-        room: the least change that is physical [mm, rad or K].
     """
 
-    name: str
-    contributor: str
-    direction: Array
+    line: str
     slope: float
+    nominal: str
     unit: str
     per_unit: float
-    room: float
-
-    def allows(self, change: float) -> bool:
-        """True if its mean stays physical."""
-        return change >= self.room
 
 
 def rates_of(response: Response, deviations: Array, positions: Mapping[str, Array], rows: int) -> Rates:
@@ -96,10 +108,12 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
     middle = _mean(_gradients(response, np.repeat((mean / 2)[None], rows, axis=0), places))
     slopes, steadiness = _steady(drawn)
     off = deviations - deviations.mean(axis=0)
-    variances = np.array([_variances(drawn[:, :, own], off[:, own]) for own in response.slices.values()]).reshape(
+    variances = np.array(
+        [_variances(drawn[:, :, own], response.draws[name], off[:, own]) for name, own in response.slices.items()]
+    ).reshape(-1, rows, len(response.measures))
+    first = np.array([middle[:, own] @ mean[own] for own in response.slices.values()]).reshape(
         -1, len(response.measures)
     )
-    first = np.array([middle[:, own] @ mean[own] for own in response.slices.values()]).reshape(variances.shape)
     nominal, built = (_at(response, row, places, rows) for row in (zero, mean))
     second = _second(response, mean, built, places, rows)
     by_contributor = np.array([second[:, own].sum(axis=1) for own in response.slices.values()]).reshape(first.shape)
@@ -107,7 +121,7 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
         response,
         slopes,
         steadiness,
-        variances.T,
+        np.moveaxis(variances, 0, 2),
         nominal,
         built,
         first.T,
@@ -118,42 +132,47 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
 def levers_of(response: Response, slopes: Array, steadiness: Array) -> list[Lever]:
     """Nominals that move a measure in one direction, the steepest first: lengths, then others.
 
-    A length in a random direction, a share of a play and a draw that follows others have no nominal to be moved.
+    Only what a drawing states has a nominal. A zone, a length in a random direction, a share of a play and a draw that
+    follows others have none.
 
     Args:
         response: whose contributors.
         slopes, steadiness: of the measure (components,), see `Rates`.
     """
-    found = []
-    for own in response.contributors:
-        draw, columns = response.draws[own.name], response.slices[own.name]
-        if (
-            isinstance(draw, Ball | Dependent)
-            or own.unit == "1"
-            or (isinstance(draw, Planar) and draw.direction is None)
-        ):
+    found, known = [], {own.name: own for own in response.contributors}
+    for line, names in response.lines.items():
+        own, columns = known[names[0]], np.concatenate([_columns(response, name) for name in names])
+        if own.unit == "1" or not all(_has_nominal(known[name], response.draws[name]) for name in names):
             continue
-        count = columns.stop - columns.start
-        together = count > 1 and drawn_each(draw)
-        for k in range(1 if together else count):
-            direction = np.zeros(response.components)
-            direction[columns if together else columns.start + k] = 1.0
-            slope = float(slopes @ direction)
-            steady = float(steadiness[columns].min() if together else steadiness[columns][k])
-            if steady < STEADY or slope == 0.0:
-                continue
-            component = "" if together else draw.components[k]
-            least = own.least if count == 1 else None
-            room = -np.inf if least is None else least - float(response.mean[columns][0])
-            name = f"{own.name}, {component}" if component else own.name
-            found.append(Lever(name, own.name, direction, slope, own.unit, own.per_unit, room))
-    return sorted(found, key=lambda each: (each.unit != "um", each.unit, -abs(each.slope) * each.per_unit, each.name))
+        slope, steady = float(slopes[columns].sum()), float(steadiness[columns].min())
+        if steady >= STEADY and slope != 0.0:
+            found.append(Lever(line, slope, nominal_of(own), own.unit, own.per_unit))
+    return sorted(found, key=lambda each: (each.unit != "um", each.unit, -abs(each.slope) * each.per_unit, each.line))
 
 
-def _variances(slopes: Array, off: Array) -> Array:
-    """Variance of one contributor's first order (measures,), averaged over the builds at which slopes were taken."""
-    covariance = off.T @ off / max(len(off) - 1, 1)
-    return _mean(np.einsum("rmi,ij,rmj->rm", slopes, covariance, slopes))
+def nominal_of(contributor: Contributor) -> str:
+    """The word of a drawing for what moves its mean; "" where there is none."""
+    return contributor.nominal if isinstance(contributor, WithNominal) else ""
+
+
+def _has_nominal(contributor: Contributor, draw: Draw) -> bool:
+    one = isinstance(draw, Scalar) or drawn_each(draw)
+    return bool(nominal_of(contributor)) and one and not isinstance(draw, Dependent)
+
+
+def _columns(response: Response, name: str) -> NDArray[np.int64]:
+    return np.arange(response.slices[name].start, response.slices[name].stop)
+
+
+def _variances(slopes: Array, draw: Draw, off: Array) -> Array:
+    """Variance of one contributor's first order at each build (rows, measures), by the law where that states it."""
+    if isinstance(draw, JointDraw) and not isinstance(draw, Dependent):
+        covariance = draw.covariance
+    elif isinstance(draw, Scalar | Each):
+        covariance = np.diag(np.square(component_sigmas(draw)))
+    else:
+        covariance = off.T @ off / max(len(off) - 1, 1)
+    return np.asarray(np.einsum("rmi,ij,rmj->rm", slopes, covariance, slopes))
 
 
 def _gradients(response: Response, rows: Array, positions: Mapping[str, Array]) -> Array:
@@ -164,34 +183,6 @@ def _gradients(response: Response, rows: Array, positions: Mapping[str, Array]) 
         for k in range(0, len(rows), many)
     ]
     return np.concatenate(pieces)
-
-
-def few_slopes(
-    response: Response, names: Sequence[str], deviations: Array, positions: Mapping[str, Array]
-) -> tuple[Array, Array]:
-    """Slopes of measures by some contributors, and how steady they are: see `Rates`; 0 for all others.
-
-    Args:
-        response: of the measures.
-        names: of the contributors.
-        deviations, positions: builds at which slopes are taken.
-    """
-    columns = np.array([k for name in names for k in _places(response.slices[name])], dtype=np.int64)
-    units = {k: own.unit for own in response.contributors for k in _places(response.slices[own.name])}
-    steps = np.array([NUDGE.get(units[int(k)], 1e-3) for k in columns])
-    shifts = np.zeros((2 * len(columns), response.components))
-    shifts[np.arange(len(columns)), columns] = steps
-    shifts[len(columns) + np.arange(len(columns)), columns] = -steps
-    builds = (deviations[:, None] + shifts).reshape(-1, response.components)
-    places = {name: np.repeat(own, len(shifts), axis=0) for name, own in positions.items()}
-    found = response.values(builds, places).values.reshape(len(deviations), 2, len(columns), len(response.measures))
-    gradient = np.zeros((len(deviations), len(response.measures), response.components))
-    gradient[:, :, columns] = np.moveaxis((found[:, 0] - found[:, 1]) / (2 * steps[:, None]), 1, 2)
-    return _steady(gradient)
-
-
-def _places(columns: slice) -> range:
-    return range(columns.start, columns.stop)
 
 
 def _steady(gradients: Array) -> tuple[Array, Array]:

@@ -1,57 +1,70 @@
 """Recommended changes for measures out of limits: nominals to move, tolerances to halve, causes of a mean off nominal.
 
-Rates select contributors (slopes.py). Each change is then simulated: the same builds again, as the study draws them,
-but with a nominal moved, or with a tolerance half as wide. As draws are the same, only the change differs.
-estimated_changes.py prints estimates below a verdict, by rates alone.
+Rates select contributors (slopes.py). Each change is then simulated: the same uniforms again, drawn by the changed
+laws. Only what helps is told (compared_builds.py): fewer builds of the measure out of limits, or a higher Ppk, beyond
+chance, and no other measure with limits worse.
 """
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 from pydantic import Field
 
-from tol3d.analyses.drawn_builds import drawn_builds, halved_deviations
+from tol3d.analyses.changes import told
+from tol3d.analyses.compared_builds import SURE, Compared, judged, limits_of
+from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.response import Response
-from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, rates_of
+from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, nominal_of, rates_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED
 from tol3d.report.verdict import ACCEPTED_PPM
 from tol3d.runs.summary.values import Count, Known, Label, Number, Positive, Ppm, PpmRange, Section, made
-from tol3d.statistics import LimitCounts, Moments
-from tol3d.study.performance import OUTER, Judged, Performance, Side
+from tol3d.statistics import LimitCounts
+from tol3d.study.performance import OUTER
 from tol3d.study.sample import finite, listed
-from tol3d.system.measure import Measure
+from tol3d.system.measure import Inspecting, Measure
 
-By = Literal["simulation", "rates"]
-Target = Literal["middle of the limits", "accepted share", "Ppk 1.33"]
-
-TARGET_PPK: Final = 1.33
+AIM: Final = 1.33
+"""Ppk that a change should reach, where none is asked for."""
 SECONDS: Final = 20.0
 """Seconds of builds for a measure, by the method's stated cost of one: a result must not depend on the clock."""
 MOST_ROWS: Final = 16
-"""At how many builds slopes are taken."""
+MOST_SLOPES: Final = 1600
+"""Builds at which slopes are taken: so many, or more where there are so few contributors."""
 MOST_BUILDS: Final = 5000
 FEWEST_BUILDS: Final = 400
 """For each change."""
 TRIED: Final = 8
-"""Tolerances that are halved, of which the best are told."""
-TOLD: Final = 5
+"""Tolerances that are halved."""
 LEVERS: Final = 3
-"""Contributors by which a mean is moved."""
+"""Contributors whose nominals are moved."""
+STEPS: Final = 2
+"""Ways of each of them: by its slope, and by the secant."""
+SHORTER: Final = (0.2, 0.35, 0.5, 0.6, 0.7, 0.8)
+"""Fractions of the way, where the mean follows neither."""
+BENT: Final = 0.1
+"""Fraction of a shift; if more is left after the secant, the mean does not follow it."""
+TOGETHER: Final = 4
+"""Changes that are made together, at most."""
+TOLD: Final = 8
+HALF: Final = 0.5
 NO_SHIFT: Final = 0.01
 """Fraction of sigma; a mean that is nearer to its target stays."""
-SURE: Final = 3.0
-"""Standard errors of a mean, within which it stays too."""
 MET: Final = 0.01
-"""Fraction of a shift that may be left."""
+"""Fraction of a shift that may be left, and of a Ppk."""
 SHARE_OF_PLAY: Final = "1"
 """Unit of what is no tolerance: where a part lies in its play."""
 USELESS: Final = 1e-3
 """Fraction of the steepest slope; a mean is not moved by a flatter one."""
+BESIDE: Final = 200
+"""Builds of measures without limits, beside a change."""
+SEEN: Final = 0.1
+"""Fraction of sigma, by which the mean of another measure moves if it is told; of a Ppk as much."""
 
 
 class Spread(Section):
@@ -64,30 +77,36 @@ class Spread(Section):
     ppk: Known
 
 
-class Moved(Section):
-    """A nominal that moves a mean as far as it should."""
+class Step(Section):
+    """A change to one tolerance: its nominal moved, or half as wide."""
 
-    contributor: Label
-    change: Number = Field(description="of the nominal, in `unit`")
+    contributor: Label = Field(description="the line of the scene that states it, for all that it holds for")
+    change: Known = Field(description="of the nominal, in `unit`; None where the tolerance is half as wide")
     unit: Label
+    nominal: str = Field(description="the word of a drawing for it, such as E_sns and E_sni; empty of a half")
+    becomes: Label = Field(description="the tolerance then, in words and numbers")
+
+
+class Beside(Section):
+    """Another measure before and after a change, in its unit."""
+
+    measure: Label
+    unit: Label
+    has_limits: bool
+    now: Spread
     after: Spread
 
 
-class Shift(Section):
-    """A shift of a measure's mean, all else as it is."""
+class Proposal(Section):
+    """Changes that help, and what they make of the measure and of others."""
 
-    target: Target
-    shift: Number
+    steps: list[Step]
     after: Spread
-    by: list[Moved]
+    beside: list[Beside]
 
-
-class Halved(Section):
-    """A tolerance that is half as wide about its middle."""
-
-    contributor: Label
-    share_percent: Known = Field(description="of the variance, by slopes")
-    after: Spread
+    def reaches(self, ppk: float) -> bool:
+        """True if its Ppk is as high as that."""
+        return self.after.ppk is not None and self.after.ppk >= (1.0 - MET) * ppk
 
 
 class MeanOffset(Section):
@@ -106,8 +125,8 @@ class MeasureChanges(Section):
     upper_limit: Known
     builds: Positive = Field(description="by which each change is judged")
     now: Spread
-    shifts: list[Shift]
-    halved: list[Halved]
+    proposals: list[Proposal] = Field(description="the best first")
+    tried: Count = Field(description="changes that were simulated")
     nominal: Known = Field(description="every deviation 0, averaged over positions")
     taken: list[MeanOffset]
     taken_together: Known = Field(description="what of mean less nominal is no contributor's alone")
@@ -117,8 +136,8 @@ class MeasureChanges(Section):
 class Changes(Section):
     """Recommended changes to a scene, measure by measure."""
 
-    by: By
     accepted_ppm: Ppm
+    ppk: Number = Field(description="that a change should reach")
     measures: Mapping[Label, MeasureChanges]
     further: list[Label] = Field(description="measures that leave their limits too and were not looked at")
     evaluations: Count
@@ -132,11 +151,17 @@ class ChangesQuestion:
         measure: its name; None for all that leave their limits.
         accepted_ppm: share of builds that may be out of limits.
         builds: number that judges each change; None takes as many as are quick to make.
+        ppk: that a change should reach.
+        seconds: of builds for a measure.
+        most_builds: of each change, where `builds` says none.
     """
 
     measure: str | None = None
     accepted_ppm: float = ACCEPTED_PPM
     builds: int | None = None
+    ppk: float = AIM
+    seconds: float = SECONDS
+    most_builds: int = MOST_BUILDS
 
 
 def changes_of(
@@ -172,11 +197,11 @@ def changes_of(
         effort = Effort.of(own, question)
         deviations, positions = drawn_builds(own, effort.builds)
         rates = rates_of(own, deviations, positions, effort.rows)
-        found[name] = _Simulated(own, question.accepted_ppm, rates, deviations, positions).changes()
+        found[name] = _Asked(response, own, question.ppk, rates, deviations, positions).changes()
     return made(
         Changes,
-        by="simulation",
         accepted_ppm=question.accepted_ppm,
+        ppk=question.ppk,
         measures=found,
         further=[],
         evaluations=response.evaluations - before,
@@ -211,20 +236,22 @@ class Effort:
     Args:
         rows: at which slopes are taken.
         builds: of each change.
+        enough: whether the seconds suffice for as many builds as can judge a change.
     """
 
     rows: int
     builds: int
+    enough: bool
 
     @classmethod
     def of(cls, response: Response, question: ChangesQuestion) -> "Effort":
         """By what a build takes, as the method says, so that it is the same on every machine."""
-        simulation = response.simulation
-        cost = max(simulation.system.cost(response.measures), 1) * 60.0 / simulation.method.contacts_per_minute
-        rows = int(SECONDS / cost / max(BATCHES * response.components, 1))
-        builds = int(SECONDS / cost / (TRIED + 2 * LEVERS + 1))
-        builds = question.builds or min(max(builds, FEWEST_BUILDS), MOST_BUILDS)
-        return cls(min(max(rows, 2), MOST_ROWS), builds)
+        cost = 60.0 * response.minutes or 1e-9
+        rows = int(question.seconds / cost / max(BATCHES * response.components, 1))
+        quick = int(question.seconds / cost / (TRIED + STEPS * LEVERS + TOGETHER + 1))
+        builds = question.builds or min(max(quick, FEWEST_BUILDS), question.most_builds)
+        most = max(MOST_SLOPES // max(response.components, 1), MOST_ROWS)
+        return cls(min(max(rows, 2), most, builds), builds, quick >= FEWEST_BUILDS and rows > 0)
 
 
 def _read_of(response: Response, name: str) -> list[str]:
@@ -244,170 +271,279 @@ def _bad(response: Response, deviations: Array, positions: Mapping[str, Array], 
     return sorted((name for name in out if out[name] > accepted_ppm), key=lambda name: -out[name])
 
 
-def limits_of(measure: Measure) -> tuple[float | None, float | None]:
-    """Its limits in its unit."""
-    lower, upper, per = measure.lower_limit, measure.upper_limit, measure.per_internal
-    return None if lower is None else lower * per, None if upper is None else upper * per
-
-
 # a measure ----------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class _Change:
+    """Nominals that are moved, by line of the scene [mm, rad or K], and tolerances that are half as wide."""
+
+    moved: Mapping[str, float]
+    halved: tuple[str, ...] = ()
+
+    def made(self, response: Response) -> Response:
+        """The system with it."""
+        halves = {name: HALF for line in self.halved for name in response.lines[line]}
+        moved = {name: by for line, by in self.moved.items() for name in response.lines[line]}
+        return response.scaled(halves).shifted(moved)
+
+    def beside(self, other: "_Change") -> "_Change":
+        """Both."""
+        return _Change({**self.moved, **other.moved}, (*self.halved, *other.halved))
+
+
 @dataclass(frozen=True, eq=False)
-class Asked:
-    """A measure that leaves its limits.
+class _Asked:
+    """A measure that leaves its limits, and the builds by which changes are judged.
 
     Args:
+        whole: of all measures.
         response: of it alone.
-        accepted_ppm: share of builds that may be out of limits.
+        aim: Ppk that is asked for.
+        rates: of it.
+        deviations, positions: the builds.
     """
 
+    whole: Response
     response: Response
-    accepted_ppm: float
-
-    @property
-    def measure(self) -> Measure:
-        """Which."""
-        return self.response.measures[0]
-
-    def judged(self, values: Array) -> tuple[Moments, LimitCounts, Performance]:
-        """Builds (n,) as a study judges trials; NaN where one fails."""
-        good = values[~np.isnan(values)]
-        moments, counts = Moments.of(good), LimitCounts.of(values, *limits_of(self.measure))
-        side = Side(moments, [], lambda p: float(np.quantile(good, p)) if len(good) else None)
-        judged = Judged(*limits_of(self.measure), side, side, counts, counts.out_of_limits.interval_ppm())
-        return moments, counts, judged.performance(self.response.simulation.study.ppk_by)
-
-    def spread(self, values: Array) -> Spread:
-        """Spread of builds (n,)."""
-        moments, counts, performance = self.judged(values)
-        out = counts.out_of_limits
-        return made(
-            Spread,
-            mean=finite(moments.mean) if moments.count else None,
-            sigma=finite(moments.sigma),
-            out_ppm=finite(out.ppm),
-            out_ppm_95=listed(out.interval_ppm()),
-            ppk=finite(performance.ppk),
-        )
-
-    def targets(self, now: Array, mean: float, error: float) -> Iterator[tuple[Target, float]]:
-        """Shift of the mean needed for each target that is not reached.
-
-        Args:
-            now: builds (n,); NaN where one fails.
-            mean, error: of the measure, and its standard error.
-        """
-        good = now[~np.isnan(now)]
-        least = max(NO_SHIFT * float(np.std(good)), SURE * error) if len(good) > 1 else 0.0
-        for target, shift in self._targets(now, good, mean) if len(good) else ():
-            if abs(shift) > least:
-                yield target, shift
-
-    def _targets(self, now: Array, good: Array, mean: float) -> Iterator[tuple[Target, float]]:
-        lower, upper = limits_of(self.measure)
-        if lower is not None and upper is not None:
-            yield "middle of the limits", (lower + upper) / 2 - mean
-            return
-        sign, limit = (1.0, upper) if upper is not None else (-1.0, lower)
-        assert limit is not None, "a measure with limits"
-        values, edge = np.sort(sign * good), sign * limit  # as of an upper limit
-        spare = math.floor(self.accepted_ppm * 1e-6 * len(now)) - (len(now) - len(good))
-        if 0 <= spare < len(good):
-            outer = values[-1 - spare : len(values) - spare + 1].mean()  # between the last one within and the next
-            yield "accepted share", sign * min(edge - float(outer), 0.0)
-        if len(now) == len(good) > 1:
-            _, _, performance = self.judged(now)
-            middle, reach = sign * mean, 3 * float(np.std(values, ddof=1))
-            if performance.by == "quantiles":
-                middle, outer = (float(own) for own in np.quantile(values, (0.5, 1 - OUTER)))
-                reach = outer - middle
-            yield "Ppk 1.33", sign * min(edge - TARGET_PPK * reach - middle, 0.0)
-
-
-def levers_for(levers: Sequence[Lever], shift: float) -> list[Lever]:
-    """Those that move a mean so far with the least change, and stay physical."""
-    most = max((abs(own.slope) * own.per_unit for own in levers), default=0.0)
-    useful = (own for own in levers if abs(own.slope) * own.per_unit > USELESS * most)
-    return [own for own in useful if own.allows(shift / own.slope)][:LEVERS]
-
-
-@dataclass(frozen=True, eq=False)
-class _Simulated(Asked):
-    """The same, with the builds by which changes are judged."""
-
+    aim: float
     rates: Rates
     deviations: Array
     positions: Mapping[str, Array]
 
-    def built(self, deviations: Array) -> Array:
-        """Values (n,), NaN where a build fails."""
-        found = self.response.values(deviations, self.positions)
-        return np.asarray(np.where(found.seated[:, 0], found.values[:, 0], np.nan))
+    @property
+    def measure(self) -> Measure:
+        return self.response.measures[0]
+
+    def built(self, response: Response, deviations: Array) -> Array:
+        """Values (n, measures), NaN where a build fails."""
+        found = response.values(deviations, {name: own[: len(deviations)] for name, own in self.positions.items()})
+        return np.asarray(np.where(found.seated, found.values, np.nan))
+
+    @cached_property
+    def now(self) -> Array:
+        """Of the measure, as it is."""
+        return self.built(self.response, self.deviations)[:, 0]
 
     def changes(self) -> MeasureChanges:
         """All of them."""
-        now = self.built(self.deviations)
         lower, upper = limits_of(self.measure)
         nominal, taken = finite(float(self.rates.nominal[0])), list(self.taken())
-        told = sum(own.first_order + own.second_order for own in taken)
-        spread, (mean, error) = self.spread(now), self.mean_of(now)
+        known = sum(own.first_order + own.second_order for own in taken)
+        mean, error = self.mean_and_error
+        singles = [*self.moves(), *self.halves()]
+        tried = len(singles)
+        found = [own for each in singles if each is not None and (own := self.proposal(*each)) is not None]
+        if more := self.together(found):
+            tried, found = tried + 1, [*found, more]
+        found.sort(key=lambda own: _worth(own[1].after))
         return made(
             MeasureChanges,
             unit=self.measure.unit,
             lower_limit=lower,
             upper_limit=upper,
-            builds=len(now),
-            now=spread,
-            shifts=list(self.shifts(now, mean, error)),
-            halved=self.halved(spread),
+            builds=len(self.now),
+            now=self.spread(self.measure, self.now),
+            proposals=[own for _, own in found[:TOLD]],
+            tried=tried,
             nominal=nominal,
             taken=taken,
-            taken_together=None if nominal is None else finite(mean - nominal - told),
+            taken_together=None if nominal is None else finite(mean - nominal - known),
             taken_error=finite(error),
         )
 
-    def mean_of(self, now: Array) -> tuple[float, float]:
+    def spread(self, measure: Measure, values: Array) -> Spread:
+        """Spread of a measure's builds (n,)."""
+        moments, counts, performance = judged(measure, values, self.response.simulation.study.ppk_by)
+        out = counts.out_of_limits
+        return made(
+            Spread,
+            mean=finite(moments.mean) if moments.count else None,
+            sigma=finite(moments.sigma) if moments.count > 1 else None,
+            out_ppm=finite(out.ppm),
+            out_ppm_95=listed(out.interval_ppm()),
+            ppk=finite(performance.ppk),
+        )
+
+    # which changes --------------------------------------------------------------------------------
+
+    @cached_property
+    def mean_and_error(self) -> tuple[float, float]:
         """Mean of the measure and its standard error, less what the draws are off their means, by slopes."""
-        good = ~np.isnan(now)
+        good = ~np.isnan(self.now)
         if not good.any():
             return math.nan, math.nan
         off = (self.deviations[good] - self.response.mean) @ self.rates.slopes[0]
-        left = now[good] - off
+        left = self.now[good] - off
         return float(left.mean()), float(left.std() / math.sqrt(len(left)))
 
-    def shifts(self, now: Array, mean: float, error: float) -> Iterator[Shift]:
-        """Towards each target, by several nominals; a number of things that are counted has no mean to be moved."""
-        if self.measure.unit in COUNTED:
+    @cached_property
+    def shift(self) -> float:
+        """How far the mean lies from the middle of both limits, or from where the Ppk is what is asked for."""
+        good = self.now[~np.isnan(self.now)]
+        if len(good) < 2:
+            return 0.0
+        mean, error = self.mean_and_error
+        lower, upper = limits_of(self.measure)
+        if lower is not None and upper is not None:
+            shift = (lower + upper) / 2 - mean
+        else:
+            sign, limit = (1.0, upper) if upper is not None else (-1.0, lower)
+            assert limit is not None, "a measure with limits"
+            values = sign * good  # as of an upper limit
+            _, _, performance = judged(self.measure, good, self.response.simulation.study.ppk_by)
+            middle, reach = sign * mean, 3 * float(np.std(values, ddof=1))
+            if performance.by == "quantiles":
+                middle, outer = (float(own) for own in np.quantile(values, (0.5, 1 - OUTER)))
+                reach = outer - middle
+            shift = sign * min(sign * limit - self.aim * reach - middle, 0.0)
+        return shift if abs(shift) > max(NO_SHIFT * float(np.std(good)), SURE * error) else 0.0
+
+    def moves(self) -> Iterator[tuple[_Change, Array] | None]:
+        """Nominals moved, of those that move the mean with the least change.
+
+        A number of things that are counted has no mean to be moved, and no nominal moves what is judged against it.
+        """
+        measure = self.measure
+        inspects = isinstance(measure, Inspecting) and measure.inspects
+        if measure.unit in COUNTED or inspects or not self.shift:
             return
         levers = levers_of(self.response, self.rates.slopes[0], self.rates.steadiness[0])
-        for target, shift in self.targets(now, mean, error):
-            by = [self.moved(lever, shift, now) for lever in levers_for(levers, shift)]
-            yield made(Shift, target=target, shift=shift, after=self.spread(now + shift), by=by)
+        most = max((abs(own.slope) * own.per_unit for own in levers), default=0.0)
+        count = 0
+        for lever in levers:
+            if abs(lever.slope) * lever.per_unit > USELESS * most and self._can_be(lever, self.shift / lever.slope):
+                yield self.moved(lever)
+                count += 1
+                if count == LEVERS:
+                    return
 
-    def moved(self, lever: Lever, shift: float, now: Array) -> Moved:
-        """A nominal moved; where the mean does not follow its slope, once more by the secant."""
-        change = shift / lever.slope
-        after = self.built(self.deviations + change * lever.direction)
-        got = float(np.nanmean(after) - np.nanmean(now)) if np.isfinite(after).any() else 0.0
-        factor = shift / got if got else 0.0
-        if abs(factor - 1.0) > MET and 0.5 < factor < 2.0 and lever.allows(change * factor):
+    def _can_be(self, lever: Lever, change: float) -> bool:
+        try:
+            _Change({lever.line: change}).made(self.response)
+        except InputError:
+            return False
+        return True
+
+    def moved(self, lever: Lever) -> tuple[_Change, Array] | None:
+        """A nominal moved, once more by the secant where the mean does not follow its slope; None if that harms.
+
+        Where it does not follow the secant either, the best of some shorter ways.
+        """
+        change = self.shift / lever.slope
+        tried = {change: self.changed(_Change({lever.line: change}))}
+        factor = self.left(tried[change])
+        if abs(factor - 1.0) > MET and 0.5 < factor < 2.0 and self._can_be(lever, change * factor):
             change *= factor
-            after = self.built(self.deviations + change * lever.direction)
-        told, unit = change / lever.per_unit, lever.unit
-        return made(Moved, contributor=lever.name, change=told, unit=unit, after=self.spread(after))
+            tried[change] = self.changed(_Change({lever.line: change}))
+        if abs(self.left(tried[change]) - 1.0) > BENT:
+            for shorter in (share * change for share in SHORTER):
+                if self._can_be(lever, shorter):
+                    tried[shorter] = self.changed(_Change({lever.line: shorter}))
+            change = min(tried, key=lambda own: _worth(self.spread(self.measure, tried[own])))
+        after = tried[change]
+        return (_Change({lever.line: change}), after) if self.compared(after).better() else None
 
-    def halved(self, now: Spread) -> list[Halved]:
-        """The tolerances whose halving helps most."""
-        shares = self.rates.shares[0]
+    def left(self, after: Array) -> float:
+        """The shift over that of the mean after a change; 0 where none is known."""
+        if not np.isfinite(after).any():
+            return 0.0
+        got = float(np.nanmean(after) - np.nanmean(self.now))
+        return self.shift / got if got else 0.0
+
+    def halves(self) -> Iterator[tuple[_Change, Array] | None]:
+        """Tolerances half as wide, of those with the largest shares."""
+        known = {own.name: k for k, own in enumerate(self.response.contributors)}
+        shares = {
+            line: float(self.rates.shares[0, [known[name] for name in names]].sum())
+            for line, names in self.response.lines.items()
+            if self.response.contributors[known[names[0]]].unit != SHARE_OF_PLAY
+        }
+        for line in sorted((line for line in shares if shares[line] > 0.0), key=lambda own: -shares[own])[:TRIED]:
+            change = _Change({}, (line,))
+            try:
+                after = self.changed(change)
+            except InputError:  # it has no width of its own, or acts by more than its deviation
+                continue
+            yield (change, after) if self.compared(after).better() else None
+
+    def together(self, found: "Sequence[tuple[_Change, Proposal]]") -> "tuple[_Change, Proposal] | None":
+        """The best nominal and the best halves at once, as few as reach the Ppk; None where one does, or none do."""
+        if not found or any(own.reaches(self.aim) for _, own in found):
+            return None
+        ranked = sorted(found, key=lambda own: _worth(own[1].after))
+        moves = [change for change, _ in ranked if change.moved][:1]
+        steps = [*moves, *(change for change, _ in ranked if change.halved)][:TOGETHER]
+        whole = steps[0]
+        for step in steps[1:]:
+            whole = whole.beside(step)
+            own = self.proposal(whole, self.changed(whole))
+            if own is not None and own[1].reaches(self.aim):
+                return own
+        return None
+
+    # what comes of them -----------------------------------------------------------------------------
+
+    def changed(self, change: _Change) -> Array:
+        """Values of the measure (n,) with a change."""
+        deviations, _ = drawn_builds(change.made(self.response), len(self.deviations))
+        return self.built(self.response, deviations)[:, 0]
+
+    def compared(self, after: Array) -> Compared:
+        """The measure before and after a change."""
+        return Compared(self.measure, self.now, after, self.response.simulation.study.ppk_by)
+
+    def proposal(self, change: _Change, after: Array) -> "tuple[_Change, Proposal] | None":
+        """A change that helps, with what it does beside; None where it harms another measure with limits."""
+        if not self.compared(after).better():
+            return None
+        deviations, _ = drawn_builds(change.made(self.response), len(self.deviations))
+        beside = []
+        for response, before in self.others:
+            values = self.built(response, deviations[: len(before)])
+            for k, measure in enumerate(response.measures):
+                own = Compared(measure, before[:, k], values[:, k], response.simulation.study.ppk_by)
+                limits = limits_of(measure) != (None, None)
+                if limits and not own.no_worse(self.aim):
+                    return None
+                each = made(
+                    Beside,
+                    measure=measure.name,
+                    unit=measure.unit,
+                    has_limits=limits,
+                    now=self.spread(measure, own.before),
+                    after=self.spread(measure, own.after),
+                )
+                if _is_seen(each):
+                    beside.append(each)
+        spread = self.spread(self.measure, after)
+        return change, made(Proposal, steps=list(self.steps(change)), after=spread, beside=beside)
+
+    @cached_property
+    def others(self) -> list[tuple[Response, Array]]:
+        """Other measures, with limits and without, each with builds as they are."""
         found = []
-        known = self.response.contributors
-        ranked = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] > 0.0]
-        for k in [k for k in ranked if known[k].unit != SHARE_OF_PLAY][:TRIED]:
-            name = known[k].name
-            after = self.spread(self.built(halved_deviations(self.response, name, self.deviations)))
-            found.append(made(Halved, contributor=name, share_percent=100 * float(shares[k]), after=after))
-        return helpful(found, now)
+        for limits, count in ((True, len(self.deviations)), (False, BESIDE)):
+            others = [own for own in self.whole.measures if own.name != self.measure.name]
+            if names := [own.name for own in others if (limits_of(own) != (None, None)) == limits]:
+                response = self.whole.of(*names)
+                found.append((response, self.built(response, self.deviations[:count])))
+        return found
+
+    def steps(self, change: _Change) -> Iterator[Step]:
+        """A change, line by line."""
+        known, draws = {own.name: own for own in self.response.contributors}, change.made(self.response).draws
+        for line in (*change.moved, *change.halved):
+            first, *others = self.response.lines[line]
+            own, moved = known[first], line in change.moved
+            yield made(
+                Step,
+                contributor=line,
+                change=change.moved[line] / own.per_unit if moved else None,
+                unit=own.unit,
+                nominal=nominal_of(own) if moved else "",
+                becomes=told(own, draws[first]) + (f", each of {1 + len(others)}" if others else ""),
+            )
 
     def taken(self) -> Iterator[MeanOffset]:
         """By contributor, the most first."""
@@ -418,10 +554,12 @@ class _Simulated(Asked):
                 yield made(MeanOffset, contributor=name, first_order=float(first[k]), second_order=float(second[k]))
 
 
-def helpful(found: Sequence[Halved], now: Spread) -> list[Halved]:
-    """Those that make less fail, the best first; where the mean is beyond a limit, less spread makes more fail."""
-    return sorted((own for own in found if _worth(own.after) < _worth(now)), key=lambda own: _worth(own.after))[:TOLD]
-
-
 def _worth(after: Spread) -> tuple[float, float]:
-    return after.out_ppm or 0.0, after.sigma or 0.0
+    return after.out_ppm or 0.0, -(after.ppk or 0.0)
+
+
+def _is_seen(own: Beside) -> bool:
+    """True if the mean or the Ppk of another measure changes by what a reader should see."""
+    now, after = own.now, own.after
+    moved = abs((after.mean or 0.0) - (now.mean or 0.0)) > SEEN * (now.sigma or 0.0)
+    return moved or (own.has_limits and abs((after.ppk or 0.0) - (now.ppk or 0.0)) > SEEN)

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Final
 
 from tol3d.analyses.what_to_change import Changes, MeasureChanges, Spread
+from tol3d.analyses.what_to_change_table import proposal_text
 from tol3d.report.canvas import BLACK, BLUE, GREEN, ORANGE, OUTSIDE, label_angles, new_figure, plain_axes, save_figure
 from tol3d.report.label import legible
 from tol3d.report.number import UNIT_SIGNS, share_text
@@ -52,7 +53,7 @@ def draw_changes(name: str, found: Changes, path: Path) -> None:
 def changes_of_one(own: MeasureChanges) -> list[tuple[str, Spread, str]]:
     """Every change of a measure in words, what it makes of it, and its colour."""
     found = [("as it is", own.now, BLACK)]
-    for shift in own.shifts:
-        found.append((f"mean shifted: {shift.target}", shift.after, BLUE))
-        found += [(f"by {each.contributor}", each.after, GREEN) for each in shift.by]
-    return [*found, *((f"half {each.contributor}", each.after, ORANGE) for each in own.halved)]
+    for each in own.proposals:
+        moves = any(step.change is not None for step in each.steps)
+        found.append((proposal_text(each), each.after, BLUE if len(each.steps) > 1 else GREEN if moves else ORANGE))
+    return found

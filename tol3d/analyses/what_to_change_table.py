@@ -4,14 +4,15 @@ from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Final
 
+from tol3d.analyses.compared_builds import SURE
 from tol3d.analyses.slopes import Rates
-from tol3d.analyses.what_to_change import SURE, Changes, MeasureChanges, Moved, Spread, Target
+from tol3d.analyses.what_to_change import Beside, Changes, MeasureChanges, Proposal, Spread, Step
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
+    bounded_share_text,
     counted,
     limit_text,
-    percent_cell,
     share_text,
     unsigned_zero,
     value_cell,
@@ -26,15 +27,10 @@ LEAST_TAKEN: Final = 0.005
 BRIEF_TOLD: Final = 3
 ERRORS: Final = 1.96
 """Standard errors of an interval of 95 %."""
-BY: Final = {
-    "simulation": (
-        "each change is simulated with the same draws: one nominal shifted, or one tolerance halved about its middle"
-    ),
-    "rates": (
-        "estimates: the trials of the run shifted, or narrowed by the contributor's share of the variance; "
-        "tol3d changes simulates each change"
-    ),
-}
+NOTE: Final = (
+    "each change is simulated with the same uniforms: a nominal moved, or a tolerance half as wide; told is what makes "
+    "the measure better beyond chance, and no other one with limits worse"
+)
 AFTER: Final = (
     Heading("mean"),
     Heading("sigma"),
@@ -51,13 +47,14 @@ def changes_report(name: str, found: Changes) -> Page:
         name: of the scene.
         found: in it.
     """
-    head = Line(((name, "bold"), (f" · what to change · accepted: {share_text(found.accepted_ppm)} out of limits", "")))
+    aims = f" · accepted: {share_text(found.accepted_ppm)} out of limits · aim: Ppk {found.ppk:g}"
+    head = Line(((name, "bold"), (f" · what to change{aims}", "")))
     blocks: list[PageItem] = [head, BLANK, *_answers(found)]
     if not found.measures:
         blocks.append(line(" nothing: no measure is out of its limits more often than accepted"))
     for measure, own in found.measures.items():
         blocks += _of_measure(measure, own)
-    blocks += [BLANK, note(BY[found.by]) if found.measures else BLANK]
+    blocks += [BLANK, note(NOTE) if found.measures else BLANK]
     if found.further:
         blocks.append(note(f"not looked at: {', '.join(found.further)}"))
     return page(*blocks, note(f"{found.evaluations} builds"))
@@ -68,17 +65,41 @@ def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
     yield title(name, f" · limits {_limits(own)} · {own.builds} builds each")
     yield BLANK
     rows = [Row("as it is", ["", *_after(own.now, unit)])]
-    for shift in own.shifts:
-        told = f"mean {_signed(shift.shift, unit)}: {shift.target}"
-        rows.append(Row(told, ["", *_after(shift.after, unit)]))
-        rows += [Row(f"  by {by.contributor}", [_change(by), *_after(by.after, unit)]) for by in shift.by]
-    rows += [
-        Row(f"half {each.contributor}", [_half(each.share_percent), *_after(each.after, unit)]) for each in own.halved
-    ]
+    for each in own.proposals:
+        rows.append(Row(proposal_text(each), [_how_much(each), *_after(each.after, unit)]))
+        rows += [Row(f"  {_beside(other)}", [""] * (1 + len(AFTER))) for other in each.beside]
     yield Table("change", [Heading("by how much"), *AFTER], rows)
     if table := _taken_table(own):
         yield BLANK
         yield table
+
+
+def proposal_text(own: Proposal) -> str:
+    """Its steps: `half centre distance`, `pinion tooth thickness (E_sns and E_sni)`."""
+    return " and ".join(f"half {each.contributor}" if each.change is None else _moved(each) for each in own.steps)
+
+
+def _moves(own: Proposal) -> bool:
+    return all(each.change is not None for each in own.steps)
+
+
+def _moved(own: Step) -> str:
+    plain = own.nominal in own.contributor.lower().split() or own.nominal == "nominal"
+    return own.contributor if plain else f"{own.contributor} ({own.nominal})"
+
+
+def _how_much(own: Proposal) -> Shown | str:
+    """By how much a nominal moves, or what a tolerance becomes; of several changes nothing."""
+    if len(own.steps) > 1:
+        return ""
+    (step,) = own.steps
+    return step.becomes if step.change is None else _change(step)
+
+
+def _beside(own: Beside) -> str:
+    """Another measure before and after a change: `lost motion 1′25″ → 1′50″`."""
+    text = f"{own.measure} {_valued(own.now.mean, own.unit)} → {_valued(own.after.mean, own.unit)}"
+    return f"{text}, Ppk {_ppk(own.now)} → {_ppk(own.after)}" if own.has_limits else text
 
 
 def _taken_table(own: MeasureChanges) -> Table | None:
@@ -110,19 +131,17 @@ def _off(value: float | None, unit: str) -> Shown | str:
 
 
 def _after(own: Spread, unit: str) -> Sequence[Shown | str]:
-    ppk = NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}")
-    sigma = value_cell(own.sigma, unit)
     return [
         value_cell(own.mean, unit),
-        sigma,
+        value_cell(own.sigma, unit),
         Shown(share_text(own.out_ppm), own.out_ppm),
         NOTHING if own.out_ppm_95 is None else " to ".join(map(share_text, own.out_ppm_95)),
-        Shown(ppk, own.ppk),
+        Shown(_ppk(own), own.ppk),
     ]
 
 
-def _half(percent: float | None) -> Shown:
-    return Shown(f"{percent_cell(percent)} % of variance", percent)
+def _ppk(own: Spread) -> str:
+    return NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}")
 
 
 def _limits(own: MeasureChanges) -> str:
@@ -148,10 +167,10 @@ def _signed(value: float, unit: str) -> str:
     return f"{'−' if value < 0.0 else '+'}{text}"
 
 
-def _change(own: Moved) -> Shown:
-    digits = f"{abs(own.change):.4g}"
-    sign = "−" if own.change < 0.0 else "+"
-    return Shown(f"{sign}{digits} {UNIT_SIGNS.get(own.unit, own.unit)}", own.change)
+def _change(own: Step) -> Shown:
+    change = own.change or 0.0
+    digits, sign = f"{abs(change):.4g}", "−" if change < 0.0 else "+"
+    return Shown(f"{sign}{digits} {UNIT_SIGNS.get(own.unit, own.unit)}", change)
 
 
 # below a verdict ----------------------------------------------------------------------------------
@@ -161,11 +180,14 @@ def changes_lines(found: Changes, where: str) -> list[PageItem]:
     """A few lines for each measure.
 
     Args:
-        found: by rates.
+        found: in a run.
         where: what `tol3d changes` is to be asked for the whole.
     """
-    blocks: list[PageItem] = [title("what to change", f" · estimated; tol3d changes {where} simulates it")]
-    blocks += _answers(found)
+    if not found.measures:
+        return [note(f"tol3d changes {where} asks what to change")]
+    builds = min(own.builds for own in found.measures.values())
+    words = f" · simulated, {builds} builds each; tol3d changes {where} has more"
+    blocks: list[PageItem] = [title("what to change", words), *_answers(found)]
     if found.further:
         dots = " …" if len(found.further) > BRIEF_TOLD else ""
         blocks.append(note(f"{len(found.further)} more NOT OK: {', '.join(found.further[:BRIEF_TOLD])}{dots}"))
@@ -180,28 +202,30 @@ def best_change(found: Changes) -> str:
 
 def _answers(found: Changes) -> Iterator[PageItem]:
     for name, own in found.measures.items():
-        yield line(f" {name}: {share_text(own.now.out_ppm)} out of limits")
-        yield from map(note, _brief(own))
+        yield line(f" {name}: {_told(own.now)}")
+        yield from map(note, _brief(own, found.ppk))
 
 
-def _brief(own: MeasureChanges) -> Iterator[str]:
-    unit = own.unit
-    for shift in own.shifts:
-        by = " or ".join(f"{each.contributor} {_change(each)}" for each in shift.by[:2])
-        how = f": {by}" if by else ""
-        yield f" shift the mean by {_signed(shift.shift, unit)} to {_aim(shift.target)}{how}; then {_told(shift.after)}"
-    halves = [f"{each.contributor}: {_told(each.after)}" for each in own.halved[:BRIEF_TOLD]]
-    if halves:
-        yield f" halve {'; or '.join(halves)}"
-
-
-def _aim(target: Target) -> str:
-    return target if target == "Ppk 1.33" else f"the {target}"
+def _brief(own: MeasureChanges, ppk: float) -> Iterator[str]:
+    """The best changes, the best first, and whether one suffices."""
+    first, rest = own.proposals[: BRIEF_TOLD - 1], own.proposals[BRIEF_TOLD - 1 :]
+    if all(_moves(each) for each in first):  # a tolerance is among them, too
+        rest = [each for each in rest if not _moves(each)] or rest
+    for k, each in enumerate([*first, *rest[:1]]):
+        steps = [
+            f"halve {step.contributor}" if step.change is None else f"move {_moved(step)} by {_change(step)}"
+            for step in each.steps
+        ]
+        beside = "".join(f"; {_beside(other)}" for other in each.beside[:BRIEF_TOLD])
+        yield f" {'or ' if k else ''}{' and '.join(steps)}: {_told(each.after)}{beside}"
+    if not own.proposals:
+        yield f" none of {counted(own.tried, 'change')} that were simulated helps without harm to another measure"
+    if not any(each.reaches(ppk) for each in own.proposals):
+        yield f" Ppk {ppk:g} is reached by none; tol3d allocate looks for tolerances that reach it"
 
 
 def _told(after: Spread) -> str:
-    ppk = NOTHING if after.ppk is None else unsigned_zero(f"{after.ppk:.2f}")
-    return f"{share_text(after.out_ppm)} out, Ppk {ppk}"
+    return f"{bounded_share_text(after.out_ppm, after.out_ppm_95)} out, Ppk {_ppk(after)}"
 
 
 # all measures -------------------------------------------------------------------------------------
@@ -216,7 +240,8 @@ def contributions_table(rates: Rates) -> Table:
             numbers = (
                 float(slopes[0] if len(slopes) == 1 else (slopes * slopes).sum() ** 0.5),
                 100 * float(rates.shares[measure, k]),
-                float(rates.variances[measure, k]) ** 0.5,
+                100 * ERRORS * float(rates.share_errors[measure, k]),
+                float(rates.mean_variances[measure, k]) ** 0.5,
                 float(rates.first[measure, k]),
                 float(rates.second[measure, k]),
             )
@@ -226,7 +251,8 @@ def contributions_table(rates: Rates) -> Table:
         "contributor",
         "of the slope",
         "slope",
-        "share of variance [%]",
+        "share of variance, estimated by slopes [%]",
+        "95 % ± of that [%]",
         "sigma it gives",
         "mean it gives",
         "mean by its spread",

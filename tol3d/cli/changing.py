@@ -47,9 +47,9 @@ def changes(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what to change where limits are left: which nominal to move, which tolerance to halve."""
-    from tol3d.analyses.estimated_changes import not_ok
+    from tol3d.analyses.changes_of_run import not_ok
     from tol3d.analyses.subject import subject_of
-    from tol3d.analyses.what_to_change import ChangesQuestion, changes_of, contributions_of
+    from tol3d.analyses.what_to_change import AIM, ChangesQuestion, changes_of, contributions_of
     from tol3d.analyses.what_to_change_table import changes_report, contributions_table
     from tol3d.report.verdict import ACCEPTED_PPM, AcceptedPpk
 
@@ -58,8 +58,8 @@ def changes(
     if accepted is None:
         ppk = own.simulation.study.accept_ppk
         accepted = ACCEPTED_PPM if ppk is None else AcceptedPpk(ppk)
-    ppm = accepted.beyond_one_ppm if isinstance(accepted, AcceptedPpk) else accepted
-    question = ChangesQuestion(measure, ppm, builds)
+    ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
+    question = ChangesQuestion(measure, ppm, builds, aim)
     with asked_of(own, "builds") as status:
         response = own.response
         bad = None if own.run is None else not_ok(own.run, accepted)

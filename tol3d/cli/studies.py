@@ -266,7 +266,7 @@ def _stopped_in_order() -> Iterator[None]:
 
 def _what_to_change(run: "Run", simulation: "Simulation", accepted: "Accepted") -> "Page":
     """A few lines below the verdict, kept in the run; a run that cannot be asked is whole without them."""
-    from tol3d.analyses.estimated_changes import estimated_changes
+    from tol3d.analyses.changes_of_run import changes_of_run
     from tol3d.analyses.subject import keep
     from tol3d.analyses.what_to_change_table import changes_lines
     from tol3d.errors import InputError
@@ -275,10 +275,11 @@ def _what_to_change(run: "Run", simulation: "Simulation", accepted: "Accepted") 
 
     try:
         with faults_of(simulation.mechanism):
-            told = estimated_changes(run, simulation, accepted)
+            told = changes_of_run(run, simulation, accepted)
         if told is None:
             return page()
-        keep(run, "changes", told)
+        if told.measures:
+            keep(run, "changes", told)
     except InputError as error:
         warn(f"no changes are proposed: {error}")
         return page()

@@ -199,6 +199,7 @@ def rv_system(scene: Scene) -> RVSystem:
             *UNITS[spec.dimensions[0]],
             spec.description,
             least=0.0 if acts[name].effect in NOT_NEGATIVE else None,
+            nominal=spec.nominal,
         )
         for name, spec in scene.distributed.items()
     ]

@@ -153,6 +153,14 @@ class Distribution(ABC):
         middle = self.pivot if about is None else about
         return self.mapped(lambda own: middle if own == middle else middle + factor * (own - middle), factor)
 
+    def shifted(self, by: float) -> Self:
+        """A law of the same shape, farther along [mm, rad or K].
+
+        Raises:
+            InputError: see `mapped`.
+        """
+        return self.mapped(lambda own: own + by, 1.0)
+
     def of_size(self, size: float) -> Self:
         """A law that one number states, by another one [mm, rad or K].
 

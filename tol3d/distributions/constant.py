@@ -46,6 +46,10 @@ class Constant(Distribution):
         """See Distribution: its value."""
         return replace(self, value=size)
 
+    def shifted(self, by: float) -> Self:
+        """See Distribution."""
+        return replace(self, value=self.value + by)
+
     def mapped(self, place: Place, factor: float) -> Self:
         """See Distribution.
 

@@ -77,7 +77,9 @@ def _drawn(spec: "CloseLoopSpec", scene: Scene) -> Iterator[PlainContributor]:
             continue
         if room.distribution is not None:
             draw = Scalar(room.distribution.resolve(scene.files))
-            yield PlainContributor(clearance_name(joint), "clearance", draw, description=f"clearance of {joint}")
+            yield PlainContributor(
+                clearance_name(joint), "clearance", draw, description=f"clearance of {joint}", nominal="clearance"
+            )
         if isinstance(room.floating, RandomFloatSpec):
             words = f"where {joint} lies in its clearance"
             ends = tuple(f"{end} {axis}" for end in ("start", "end") for axis in "xy")
@@ -87,7 +89,7 @@ def _drawn(spec: "CloseLoopSpec", scene: Scene) -> Iterator[PlainContributor]:
         for key, each in given.deviations.items():
             law = Scalar(each.distribution.resolve(scene.files))
             unit_of, per = UNITS["angle" if each.is_angle else "length"]
-            yield PlainContributor(deviation_name(key, of), "input", law, unit_of, per, each.description)
+            yield PlainContributor(deviation_name(key, of), "input", law, unit_of, per, each.description, nominal="")
 
 
 class _Known:

@@ -100,7 +100,8 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         acts[name] = acts_of(scene, own, name, spec)
         draw = draw_of(scene, own, spec)
         unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
-        contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description))
+        nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
+        contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description, nominal=nominal))
     made = made_gears(scene, own)
     return PlanetarySystem(
         scene.scene,

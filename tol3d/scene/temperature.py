@@ -42,6 +42,11 @@ class TemperatureSpec(ToleranceSpec):
     kind: Literal["temperature"]
     of: Parts = Field(description="the parts that are warmer: one name or a list")
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: no drawing says how warm parts are."""
+        return ""
+
     def references(self) -> tuple[Reference, ...]:
         """Every part."""
         return tuple(Reference(("of", index), name, (GrowingSpec,)) for index, name in enumerate(self.of))

@@ -68,6 +68,11 @@ class ToleranceSpec(ToleranceEntry):
 
     distribution: StatedDistribution = Field(description="the law of the deviation")
 
+    @property
+    def nominal(self) -> str:
+        """Word of a drawing for what moves the mean of the deviation; "" where it has nothing to be moved."""
+        return "nominal"
+
     def file_names(self) -> Iterator[tuple[KeyPath, str]]:
         """Files that its law reads."""
         return ((("distribution", field), name) for field, name in self.distribution.file_names())

@@ -1,10 +1,10 @@
 """A contributor: one toleranced deviation, as every study sees it."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from tol3d.distributions import DeviationLaw
-from tol3d.system.draw import Draw
+from tol3d.system.draw import Draw, Remembered
 
 
 class Contributor(Protocol):
@@ -53,6 +53,16 @@ class Contributor(Protocol):
     @property
     def distribution(self) -> DeviationLaw:
         """The law of the deviation, or of its length if it has a direction."""
+        ...
+
+
+@runtime_checkable
+class WithNominal(Protocol, metaclass=Remembered):
+    """A Contributor that knows the word of a drawing for what moves its mean."""
+
+    @property
+    def nominal(self) -> str:
+        """Such as "E_sns and E_sni", "position", or "nominal"; "" where a drawing has nothing to be moved."""
         ...
 
 

@@ -1,8 +1,9 @@
 """A measure: one number a trial, or a curve, as every study sees it."""
 
 from collections.abc import Sequence
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
+from tol3d.system.draw import Remembered
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
 from tol3d.system.spectrum import Spectrum
@@ -74,4 +75,14 @@ class Measure(Protocol):
 
         Such a value is negative and continues the gap smoothly through 0, so both methods may be compared there too.
         """
+        ...
+
+
+@runtime_checkable
+class Inspecting(Protocol, metaclass=Remembered):
+    """A Measure that may judge a feature against the place where its drawing has it."""
+
+    @property
+    def inspects(self) -> bool:
+        """True if so: a nominal that is moved moves that place too."""
         ...

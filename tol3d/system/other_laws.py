@@ -118,6 +118,18 @@ def scaled(draw: Draw, factor: float, stays: Stays | None = None) -> Draw:
     return with_law(draw, own.distribution.scaled_at(factor, stays or naturally_stays(draw)))
 
 
+def shifted(draw: Draw, by: float) -> Draw:
+    """A draw of the same width whose mean lies elsewhere.
+
+    Raises:
+        InputError: it has no law of its own, or one that begins where it begins.
+    """
+    if not _is_of_law(draw):
+        raise InputError(f"expected a contributor that is drawn by a law, got {_words(draw)}")
+    own: Any = draw
+    return with_law(draw, own.distribution.shifted(by))
+
+
 def refuse_held(contributor: Contributor) -> None:
     """Refuse a tolerance that acts elsewhere too.
 

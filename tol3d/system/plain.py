@@ -61,6 +61,7 @@ class PlainContributor:
         least: smallest physical deviation [mm, rad or K].
         held: other holder of its tolerance, such as the gauge that inspects; "" for none.
         line: name of the scene's line that makes it among others, see study/lines.py; "" for its own name.
+        nominal: see `WithNominal`.
     """
 
     name: str
@@ -72,6 +73,7 @@ class PlainContributor:
     least: float | None = None
     held: str = ""
     line: str = ""
+    nominal: str = "nominal"
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -100,6 +102,7 @@ class PlainMeasure:
             that continues the gap smoothly through 0; False where its value is on another scale or means nothing.
         pooled_statistics: of all trials together, besides those that every sample has.
         positions, take, spectrum: see Measure; a mechanism whose methods know positions states others.
+        inspects: see `Inspecting`.
     """
 
     name: str
@@ -115,6 +118,7 @@ class PlainMeasure:
     positions: Positions = AT_RANDOM
     take: Take = "value"
     spectrum: Spectrum | None = None
+    inspects: bool = False
 
 
 def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) -> tuple[PlainContributor, ...]:
@@ -135,6 +139,7 @@ def contributors_of(scene: Scene, draws: Mapping[type[ToleranceSpec], Drawn]) ->
             draws.get(type(spec), _scalar)(spec.distribution.resolve(scene.files), spec),
             *UNITS[spec.dimensions[0]],
             spec.description,
+            nominal=spec.nominal,
         )
         for name, spec in scene.distributed.items()
     )

@@ -64,8 +64,10 @@ class Effects:
     """Columns of the draws of other mechanisms' moves, by name."""
     width: int = 0
 
-    def _added(self, name: str, spec_kind: str, description: str, draw: Draw, *, line: str = "") -> slice:
-        return self.added(PlainContributor(name, spec_kind, draw, description=description, line=line))
+    def _added(
+        self, name: str, spec_kind: str, description: str, draw: Draw, *, line: str = "", nominal: str = ""
+    ) -> slice:
+        return self.added(PlainContributor(name, spec_kind, draw, description=description, line=line, nominal=nominal))
 
     def added(self, contributor: PlainContributor) -> slice:
         """The columns of a further contributor."""
@@ -122,7 +124,7 @@ class Effects:
             if isinstance(pair, PatternPairSpec) and pair.bolt is not None and pair.bolt.distribution is not None:
                 own, draw = f"bolt {k + 1} of {name}", Scalar(pair.bolt.distribution.resolve(self.scene.files))
                 self._refuse_no_bolt(name, k, pair.bolt, draw)
-                columns = self._added(own, "size", f"bolt through {pair.from_} and {pair.to}", draw)
+                columns = self._added(own, "size", f"bolt through {pair.from_} and {pair.to}", draw, nominal="size")
                 self.bolts[name, k] = Contribution(own, columns, np.eye(1))
 
     def _refuse_no_bolt(self, name: str, k: int, spec: BoltSpec, draw: Scalar) -> None:
@@ -135,12 +137,14 @@ class Effects:
     def _locator(self, name: str) -> None:
         spec = self.scene.tolerances[name]
         assert isinstance(spec, LocatorSpec)
-        columns = self._added(name, spec.kind, spec.description, Scalar(spec.distribution.resolve(self.scene.files)))
+        draw = Scalar(spec.distribution.resolve(self.scene.files))
+        columns = self._added(name, spec.kind, spec.description, draw, nominal=spec.nominal)
         self.locators.setdefault((spec.of, spec.pair), []).append(Contribution(name, columns, np.eye(1)))
 
     def _dimension(self, own: Stated, spec: PlusMinusSpec | SizeSpec) -> None:
         draw = Scalar(spec.distribution.resolve(self.scene.files))
-        columns = self._added(own.name, spec.kind, spec.description, draw, line=own.entry)
+        words = (own.name, spec.kind, spec.description)
+        columns = self._added(*words, draw, line=own.entry, nominal=spec.nominal)
         if isinstance(spec, SizeSpec):
             self._refuse_no_size(own, draw)
             self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))

@@ -123,7 +123,8 @@ def shown_measures(scene: Scene, read: Mapping[str, Measured]) -> tuple[PlainMea
     found = []
     for own in measures_of(scene):
         unit, per_unit = UNITS[dimension_of(scene, own.name)]
-        found.append(replace(own, worse=read[own.name].reads.worse, unit=unit, per_internal=1.0 / per_unit))
+        reads = read[own.name].reads
+        found.append(replace(own, worse=reads.worse, unit=unit, per_internal=1.0 / per_unit, inspects=reads.of_drawing))
     return tuple(found)
 
 

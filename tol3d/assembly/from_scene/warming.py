@@ -37,7 +37,9 @@ def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames
         if not expansions:
             continue
         draw = Scalar(spec.distribution.resolve(scene.files))
-        columns = effects.added(PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description))
+        columns = effects.added(
+            PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description, nominal="")
+        )
         for name, datums in drawing.parents():
             expansion = expansions.get(part_of(name), 0.0)
             if expansion == 0.0:

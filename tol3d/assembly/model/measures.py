@@ -47,6 +47,7 @@ class Reading:
         is_linear: True if the row adds no term.
         of_part: True for a measure of a single part, whether that is placed or not.
         worse: the worse end if there is no limit.
+        of_drawing: True if what is measured is judged against where its drawing has it.
         by_solids: True if `placing` names a SolidReader instead: values with codes, of the solids of two parts.
     """
 
@@ -57,6 +58,7 @@ class Reading:
     of_part: bool = False
     worse: Worse = "low"
     by_solids: bool = False
+    of_drawing: bool = False
 
     def lacking(self) -> Iterator[str]:
         """Import paths of its readings that cannot be imported, as error texts."""

@@ -166,6 +166,11 @@ class LobePitchSpec(OfDisc):
     kind: Literal["lobe_pitch"]
     each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: lobes are drawn at equal pitches."""
+        return ""
+
 
 class LobeProfileSpec(OfDisc):
     """A length: excess material of each lobe along the normal; each one's own deviation, on every disc."""
@@ -174,6 +179,11 @@ class LobeProfileSpec(OfDisc):
 
     kind: Literal["lobe_profile"]
     each: Literal["lobe"] = Field(default="lobe", description="lobe: every lobe deviates by itself")
+
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: a profile has one drawn form."""
+        return ""
 
 
 class PinCircleSpec(OfPinRing):
@@ -197,6 +207,11 @@ class PinPositionSpec(OfPinRing):
     kind: Literal["pin_position"]
     each: Literal["pin"] = Field(default="pin", description="pin: every pin deviates by itself")
     direction: Literal["radial", "tangential", "random"] = Field(description="radial, tangential or random")
+
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: pins are drawn at their places."""
+        return ""
 
 
 class PinRadiusSpec(OfPinRing):

@@ -143,7 +143,8 @@ def acting_in(
     """A tolerance that acts in a link alone; `turning` is the part of it with which the deviation turns."""
     spec: Any = scene.tolerances[name]
     unit: Any = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"][0]
-    return Contributor(name, spec.kind, LinkDeviation(link, turning), draw, unit, spec.description, least)
+    nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
+    return Contributor(name, spec.kind, LinkDeviation(link, turning), draw, unit, spec.description, least, nominal)
 
 
 # shafts that carry its parts ------------------------------------------------------------------------

@@ -28,6 +28,7 @@ class Contributor:
         description: the scene's own words.
         least: smallest physical deviation [mm, rad or K], such as 0 for a clearance; draws below it are kept
             as they come, and counted.
+        nominal: word of a drawing for what moves its mean; "" where it has nothing to be moved.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Contributor:
     unit: Unit
     description: str = ""
     least: float | None = None
+    nominal: str = ""
 
     @property
     def columns(self) -> tuple[str, ...]:

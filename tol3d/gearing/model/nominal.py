@@ -75,6 +75,7 @@ class Nominal:
             unit=spec.unit,
             description=spec.description,
             least=meaning.least,
+            nominal=spec.nominal,
         )
 
     def _warming(self, name: str, spec: TemperatureSpec) -> Contributor:

@@ -135,7 +135,10 @@ class OpenChainSpec(StatedMoveSpec):
     def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
         """Turns of the joints, which are not drawn; then flanks of those that nothing loads in some pose."""
         hidden = Scalar(Constant(0.0))
-        turns = (PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"]) for joint in self.joints)
+        turns = (
+            PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"], nominal="")
+            for joint in self.joints
+        )
         words = "the end of its play at which {} lies, for nothing loads it"
         free = (
             PlainContributor(flank_name(joint), FLANK, Scalar(EitherSide()), "1", 1.0, words.format(joint))

@@ -46,7 +46,7 @@ class InspectedPositionSpec(InspectedSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "position", f"{PLACING}:position", f"{TORSORS}:position", of_part=True, worse="high"
+        "position", f"{PLACING}:position", f"{TORSORS}:position", of_part=True, worse="high", of_drawing=True
     )
 
     kind: Literal["inspected_position"]
@@ -76,7 +76,7 @@ class InspectedOrientationSpec(InspectedSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "orientation", f"{PLACING}:orientation", f"{TORSORS}:orientation", of_part=True, worse="high"
+        "orientation", f"{PLACING}:orientation", f"{TORSORS}:orientation", of_part=True, worse="high", of_drawing=True
     )
 
     kind: Literal["inspected_orientation"]
@@ -98,7 +98,7 @@ class InspectedFlatnessSpec(FeatureMeasureSpec):
     """Flatness of 4 or more `points` of one part: the distance of two parallel planes that contain them."""
 
     reads: ClassVar[Reading] = Reading(
-        "flatness", f"{PLACING}:flatness", f"{TORSORS}:flatness", of_part=True, worse="high"
+        "flatness", f"{PLACING}:flatness", f"{TORSORS}:flatness", of_part=True, worse="high", of_drawing=True
     )
 
     kind: Literal["inspected_flatness"]
@@ -137,7 +137,7 @@ class InspectedPatternSpec(FeatureMeasureSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "pattern", "tol3d.assembly.placing.measuring:pattern", f"{TORSORS}:pattern", worse="high"
+        "pattern", "tol3d.assembly.placing.measuring:pattern", f"{TORSORS}:pattern", worse="high", of_drawing=True
     )
 
     kind: Literal["inspected_pattern"]
@@ -174,7 +174,12 @@ class InspectedSetSpec(FeatureMeasureSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "set", f"{INSPECTED_SETS[0]}:inspected_set", f"{INSPECTED_SETS[1]}:inspected_set", of_part=True, worse="high"
+        "set",
+        f"{INSPECTED_SETS[0]}:inspected_set",
+        f"{INSPECTED_SETS[1]}:inspected_set",
+        of_part=True,
+        worse="high",
+        of_drawing=True,
     )
 
     kind: Literal["inspected_set"]
@@ -225,7 +230,7 @@ class InspectedTogetherSpec(FeatureMeasureSpec):
     """
 
     reads: ClassVar[Reading] = Reading(
-        "together", f"{PLACING}:together", f"{TORSORS}:together", of_part=True, worse="high"
+        "together", f"{PLACING}:together", f"{TORSORS}:together", of_part=True, worse="high", of_drawing=True
     )
 
     kind: Literal["inspected_together"]

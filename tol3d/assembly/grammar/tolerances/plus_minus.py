@@ -34,6 +34,11 @@ class PlusMinusSpec(FeatureTolerance, ToleranceSpec):
     def named_datums(self) -> tuple[DatumSpec, ...]:
         return self.datums or ()
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: where the feature is drawn."""
+        return "position"
+
 
 ENVELOPED: Final = ("cylinder", "slot")
 """Kinds of feature whose form an envelope bounds: their surfaces are opposed."""
@@ -59,6 +64,11 @@ class SizeSpec(FeatureTolerance, ToleranceSpec):
         "default: as the scene's `standard` and `envelope` say",
     )
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: the diameter or width."""
+        return "size"
+
     @model_validator(mode="after")
     def _refuse_limits_out_of_order(self) -> Self:
         if self.limits is not None and not self.limits[0].internal < self.limits[1].internal:
@@ -74,6 +84,11 @@ class LocatorSpec(ToleranceSpec):
     kind: Literal["locator"]
     of: Name = Field(description="the move")
     pair: str = Field(description="which of its pairs: primary 1 .. 3, secondary 1, 2, tertiary 1, or 1 .. 6")
+
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: where the locator stands."""
+        return "position"
 
     def references(self) -> tuple[Reference, ...]:
         """The move."""

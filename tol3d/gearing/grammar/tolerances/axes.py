@@ -37,6 +37,11 @@ class AxisInPlaneSpec(MeshToleranceSpec):
 
     kind: Literal["axis_in_plane"]
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: axes are drawn parallel."""
+        return ""
+
     def meaning(self, nominal: "Nominal") -> Meaning:
         """The driven axis turns about y."""
         per_length = 1.0 if self.unit == "mrad" else 1.0 / nominal.smaller_face_width(self.of)
@@ -52,6 +57,11 @@ class AxisOutOfPlaneSpec(MeshToleranceSpec):
     dimensions: ClassVar[tuple[Dimension, ...]] = ("length", "angle")
 
     kind: Literal["axis_out_of_plane"]
+
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: axes are drawn parallel."""
+        return ""
 
     def meaning(self, nominal: "Nominal") -> Meaning:
         """The driven axis turns about x."""

@@ -87,6 +87,12 @@ class BearingClearanceSpec(GearToleranceSpec):
     applies_to: ClassVar[tuple[type[Entry], ...]] = (GearSpec, BearingSpec)
 
     kind: Literal["bearing_clearance"]
+
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: a class of clearance."""
+        return "clearance"
+
     of: Name = Field(description="the gear that the bearing carries, or a bearing")
     mesh: Name | None = Field(
         default=None,

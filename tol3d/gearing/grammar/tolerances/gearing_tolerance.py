@@ -136,6 +136,11 @@ class ReducerBacklashSpec(LinkToleranceSpec):
     kind: Literal["reducer_backlash"]
     of: Name = Field(description="the reducer")
 
+    @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: a reducer is bought."""
+        return ""
+
     def contradictions(self, parts: Mapping[str, PartSpec], moves: Mapping[str, MoveSpec]) -> Iterator[Contradiction]:
         """The reducer's own backlash would be a second one."""
         reducer = moves[self.of]

@@ -195,6 +195,13 @@ class ToothThicknessSpec(GearToleranceSpec):
         return self.measured.measure if isinstance(self.measured, MeasuredOverSpec) else None
 
     @property
+    def nominal(self) -> str:
+        """See ToleranceSpec: the allowances of the thickness, or what is measured."""
+        if isinstance(self.over, Span):
+            return "W_k"
+        return "E_sns and E_sni" if self.over is None else ""  # over pins: the arc is no multiple of it
+
+    @property
     def is_normal(self) -> bool:
         """True if its size is that along the normals of the flanks."""
         return self.measured == "normal" or isinstance(self.over, Span)
