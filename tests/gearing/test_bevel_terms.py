@@ -1,6 +1,5 @@
 """Shifts of bevel gears' apexes along the pitch line, against vectors in the world; gears unequal, axes not square."""
 
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray

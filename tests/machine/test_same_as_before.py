@@ -174,3 +174,17 @@ def test_the_closed_form_has_the_means_of_all_bores(tmp_path: Path) -> None:
         value = float(method.answers(trials, (measure,)).values[measure.name][0, 0])
         assert form.mean == pytest.approx(value, abs=within), name
     assert abs(form.mean - form.nominal) > 5e-3
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_housing_without_a_tolerance_of_its_own_leaves_the_gears_theirs(method: str, tmp_path: Path) -> None:
+    """No column moves its bores: nothing of the assembly is drawn."""
+    housed = gearbox_of(housed_scene(tolerances=THICK), tmp_path)
+    plain = system_of(plain_scene(tolerances=THICK), tmp_path, "plain")
+    mine = {"thickness": spread(9) - 0.045}
+    both(housed, plain, method, mine, mine)
+    for own, its in zip(housed.measures, plain.measures, strict=True):
+        form, expected = housed.closed_form(own), plain.closed_form(its)
+        assert form is not None
+        assert expected is not None
+        assert (form.mean, form.sigma) == pytest.approx((expected.mean, expected.sigma), rel=1e-12)

@@ -111,7 +111,8 @@ def _leaning(model: Model, measure: GearMeasure) -> set[str]:
 
 def _leaning_bores(system: Joined) -> set[str]:
     """The displacements of the bores of shafts that contributors of the assembly lean."""
-    first, last = (system.displacing.reshape(-1, 2, 2, system.displacing.shape[1])[:, k] for k in range(2))
+    ends = system.displacing.reshape(len(system.bores.shafts), 2, 2, system.displacing.shape[1])
+    first, last = (ends[:, k] for k in range(2))
     leans = (np.abs(last - first) > LEVEL).any(axis=(1, 2))
     return {own.name for own, lean in zip(system.displacements, np.repeat(leans, 2), strict=True) if lean}
 

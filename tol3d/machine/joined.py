@@ -202,7 +202,9 @@ class Joined:
     @cached_property
     def displacing(self) -> Array:
         """Displacements of the bores per deviation of the assembly's contributors, (shafts * 4, columns)."""
-        found = np.array([own.coefficients for own in self._slopes]).reshape(-1, self.bores.assembly.width)
+        found = np.zeros((len(self._slopes), self.bores.assembly.width))
+        for row, own in zip(found, self._slopes, strict=True):
+            row[:] = own.coefficients
         return np.where(np.abs(found) < NOTHING, 0.0, found)
 
     @cached_property

@@ -80,12 +80,17 @@ def _of(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> DatumSeats:
     alignment = aligned(ties, seats, IDENTITY)
     taking = {datums[tie] for tie in range(len(ties)) if tie not in alignment.idle}
     for k, datum in enumerate(frame.datums):
-        if k not in taking and datum not in frame.later:  # which take from the room of the gauges
-            raise InputError(
-                f"datum frame {frame.name}: {'-'.join(datum.features)} takes no freedom: datums before it hold all "
-                "that it could take; leave it out"
-            )
+        if k not in taking:
+            _refuse_idle(frame, datum)
     return DatumSeats(frame, alignment, nominal, tuple(datums), patterns)
+
+
+def _refuse_idle(frame: DatumFrame, datum: Datum) -> None:
+    """Refuse a datum that takes no freedom; later ones take from the room of the gauges."""
+    if datum not in frame.later:
+        raise InputError(
+            f"{_name(frame, datum)} takes no freedom: datums before it hold all that it could take; leave it out"
+        )
 
 
 def _refuse_few_targets(frame: DatumFrame) -> None:
@@ -153,6 +158,8 @@ def _patterns(frame: DatumFrame, nominal: Mapping[str, ActualFeature]) -> dict[i
             asked = list(_asked(first, nominal.__getitem__, nominal, found))
             ties, seats = [tie for _, tie, _ in asked], [seat for _, _, seat in asked]
             found[k] = pattern(_name(frame, datum), ties, seats, [nominal[name] for name in datum.features])
+            if not found[k].freedoms.shape[1]:
+                _refuse_idle(frame, datum)
     return found
 
 

@@ -27,7 +27,6 @@ from tol3d.assembly.placing.poses import (
     rotated_back,
 )
 from tol3d.assembly.placing.world import World
-from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 ROUNDS: Final = 20
@@ -174,7 +173,7 @@ def engaging(move: Engage, nominal: World) -> Engaging:
         nominal: the world before it without deviations, the part at its nominal pose.
 
     Raises:
-        InputError: see `mating`; or nothing is free where pins engage.
+        InputError: see `mating`, `floats_of`.
     """
     mate = mating(Mate(move.name, move.part, move.relations), nominal)
     start, _ = mate.poses(nominal, mate.seats(nominal), nominal.poses[move.part])
@@ -201,10 +200,8 @@ def engaging(move: Engage, nominal: World) -> Engaging:
     arms = (at - middle)[:, None]
     whole = np.concatenate([np.array(ways), np.cross(arms, np.array(ways)) / reach], axis=2)  # (cones, 2, 6)
     free = _free(mate, nominal, start, middle, reach)
-    _, sizes, right = np.linalg.svd((whole @ free).reshape(-1, free.shape[1]), full_matrices=True)
+    _, sizes, right = np.linalg.svd((whole @ free).reshape(2 * len(whole), free.shape[1]), full_matrices=True)
     freedoms = free @ right[: int(np.sum(sizes > SEEN))].T
-    if not freedoms.shape[1]:
-        raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
     rows = np.ascontiguousarray(np.concatenate([whole @ freedoms, _bolt_rows(move, world, at)], axis=2))
     origin = rotated_back(start.turn, column(middle) - start.shift)[:, 0]
     relations = kept_of(mate, nominal, reach)

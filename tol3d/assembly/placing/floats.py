@@ -105,15 +105,17 @@ def floats_of(move: Engage, world: World, freedoms: Array, rows: Array, middle: 
         InputError: the part has no play along the direction.
     """
     floating, along, push = move.floating, np.zeros(3), None
+    turn = np.ascontiguousarray(world.poses[move.part].turn[:, :, 0])
     if floating.kind == "toward":
         assert floating.along is not None
         along = np.ascontiguousarray(world.poses[world.part_of(floating.at)].turn[:, :, 0] @ floating.along)
         arm = world.placed(floating.at).origin[:, 0] - middle
         push = np.concatenate([along, np.cross(arm, along) / reach]) @ freedoms
-        if np.abs(push).max() < PART:
+        if np.abs(push).max(initial=0.0) < PART:
             raise InputError(f"moves.{move.name}: {floating.at} does not move along its direction: it is held there")
+    if not freedoms.shape[1]:  # relations hold the part: it has no place to float to
+        return Floats(move, freedoms, along, np.zeros(0), turn)
     discs = discs_of(move, rows) if floating.kind == "random" and floating.by_pairs else None
-    turn = np.ascontiguousarray(world.poses[move.part].turn[:, :, 0])
     return Floats(move, freedoms, along, push, turn, discs)
 
 

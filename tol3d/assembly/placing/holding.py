@@ -238,7 +238,8 @@ def _asked(assembly: Assembly, plan: Placing, middle: Array) -> Iterator[Asked]:
         case Engage() as move:
             assert isinstance(plan, Engaging)
             yield from _related(assembly, move.relations, middle)
-            rows = plan.rows.reshape(-1, plan.freedoms.shape[1]) @ plan.freedoms.T
+            count = plan.freedoms.shape[1]  # beside them, those of bolts
+            rows = plan.rows[..., :count].reshape(2 * len(plan.rows), count) @ plan.freedoms.T
             rows = np.hstack([rows[:, :3], plan.reach * rows[:, 3:]])
             words = ", ".join(own.name for own in move.engagements)
             yield Asked(words, _about(rows, plan.middle - middle), is_room=True)

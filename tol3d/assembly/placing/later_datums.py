@@ -157,7 +157,7 @@ def later_datums(frame: DatumFrame, nominal: Sequence[ActualFeature], seen: Seen
         count = len(taken)
         for ask in _asks(datum, own, seen.reach):
             rows = ask.rows(seen)
-            _, sizes, right = np.linalg.svd((rows @ left).reshape(-1, left.shape[1]))
+            _, sizes, right = np.linalg.svd((rows @ left).reshape(2 * len(rows), left.shape[1]))
             rank = int(np.sum(sizes > SEEN))
             if rank:
                 taken.append(Taken(ask, rows, left, right[:rank].T @ right[:rank]))

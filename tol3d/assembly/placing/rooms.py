@@ -218,7 +218,7 @@ def lain(
     Args:
         place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
         parts: how many of the freedoms, the first, are the part's; the others are of its bolts, and are centred as long
-            as the part is.
+            as the part is, of a part that relations hold to the end.
         push: (freedoms,).
         strength: largest amount of it; 0 for the centred pose.
         before: of the cones that decided at the pose before, multipliers and in which programme, 0 for none (cones,);
@@ -234,7 +234,7 @@ def lain(
     while True:
         reduced(rows, basis, size, seen)
         count = seeing(seen, used, done, size)
-        if count == 0 or not moves_part(basis, parts, size):
+        if count == 0 or (parts > 0 and not moves_part(basis, parts, size)):
             if pushes > 0:
                 return True, slack, which, left
             slack, which = least_slack(place, q)

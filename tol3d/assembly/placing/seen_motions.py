@@ -138,7 +138,7 @@ def seen_motions(ties: Sequence[Tie], seats: Sequence[Seat], nominal: Sequence[A
     places = [(end, sides) for own in nominal for end in own.ends for sides in sides_of(own)]
     ways = np.array([_rows_of(end, sides, middle, reach) for end, sides in places])
     free = _left(ties, seats, middle, reach)
-    _, sizes, right = np.linalg.svd((ways @ free).reshape(-1, free.shape[1]), full_matrices=True)
+    _, sizes, right = np.linalg.svd((ways @ free).reshape(2 * len(ways), free.shape[1]), full_matrices=True)
     rank = int(np.sum(sizes > SEEN))
     freedoms = free @ right[:rank].T
     motions = _least_motions(freedoms, free @ right[rank:].T)

@@ -88,7 +88,7 @@ def refined(cones: Cones, q: Array, free: Array, decided: Mask) -> Array:
         closed = np.eye(len(free))[:, :, None] - free
         sees = (np.abs(rows).max(axis=(1, 2)) > LOST) & ~decided[:, going]
         any_left = sees.any(axis=0)
-        if cones.bolt_of:
+        if cones.bolt_of and cones.parts:  # of a part that is held, bolts alone are centred
             any_left &= np.abs(free[: cones.parts, :, going]).max(axis=(0, 1)) > LOST
         going, own, rows, sees = going[any_left], own.of(any_left), rows[..., any_left], sees[:, any_left]
         if not len(going):

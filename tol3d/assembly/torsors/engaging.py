@@ -11,7 +11,6 @@ from tol3d.assembly.torsors.mating import freedoms_after
 from tol3d.assembly.torsors.room import Room
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
 from tol3d.assembly.torsors.world import World
-from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 SEEN = 1e-6
@@ -27,7 +26,7 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
         whither: direction of its freedoms in which it is pushed to the limit; default by its float.
 
     Raises:
-        InputError: as `mated`; nothing is free where its pins engage.
+        InputError: as `mated`.
     """
     relations = freedoms_after(Mate(move.name, move.part, move.relations), world)
     left, rest = relations.left, relations.rest()
@@ -51,14 +50,12 @@ def engaged(move: Engage, world: World, whither: Array | None = None) -> World:
             bolt_of.append(-1 if own.bolt is None else bolts)
         bolts += own.bolt is not None
     whole = np.array(ways)
-    _, strengths, right = np.linalg.svd((whole @ free).reshape(-1, free.shape[1]))
+    _, strengths, right = np.linalg.svd((whole @ free).reshape(2 * len(whole), free.shape[1]))
     free = free @ right[: int(np.sum(strengths > SEEN))].T
-    if not free.shape[1]:
-        raise InputError(f"moves.{move.name}: its relations leave nothing free where its pins engage: take a mate")
     forms = without_rounding(np.concatenate([np.concatenate(offsets), np.array(clearances), _drawn(move, world)]))
     push = _push(move, world) @ to_torsor @ free if move.floating.kind == "toward" else np.zeros(free.shape[1])
-    floating = move.floating
-    if whither is not None:
+    floating = move.floating if free.shape[1] else Floating("centred")  # held by its relations it floats nowhere
+    if whither is not None and free.shape[1]:
         push, floating = whither, Floating("toward" if np.abs(whither).max() > SEEN else "centred")
     push = push / max(float(np.linalg.norm(push)), 1e-300)
     seen = np.concatenate([whole @ free, np.zeros((len(whole), 2, 4 * bolts))], axis=2)

@@ -95,7 +95,7 @@ def gauges_room(
         for end in _ends(feature):
             ways.append(_directions(feature) @ shift_at(feature.frame[:3, :3] @ end + feature.frame[:3, 3]) @ to_torsor)
     whole = np.array(ways) @ free
-    _, strengths, right = np.linalg.svd(whole.reshape(-1, free.shape[1]))
+    _, strengths, right = np.linalg.svd(whole.reshape(2 * len(whole), free.shape[1]))
     seen = right[: int(np.sum(strengths > SEEN))].T
     motions = to_torsor @ _least(free @ seen, free @ right[seen.shape[1] :].T, reach)
     after = later_datums(later, rest, motions, reach, name) if later else None

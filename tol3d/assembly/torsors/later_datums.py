@@ -192,7 +192,7 @@ def later_datums(
         count = len(asks)
         for equations, corners in _asked(datum, feature, reach):
             rows = equations @ motions
-            _, sizes, right = np.linalg.svd((rows @ left).reshape(-1, left.shape[1]))
+            _, sizes, right = np.linalg.svd((rows @ left).reshape(2 * len(rows), left.shape[1]))
             rank = int(np.sum(sizes > SEEN))
             if rank:
                 lacks = np.concatenate([*(equations @ (torsor - rest)), corners @ (torsor - rest)])

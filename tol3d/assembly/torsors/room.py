@@ -265,6 +265,10 @@ class Room:
     def values(self, read: Array) -> Array:
         """(freedoms + 1, trials) [mm]."""
         places = len(self.rows)
+        if not self.rows.shape[2]:  # held by relations: at its one pose
+            offsets = read[: 2 * places].reshape(places, 2, -1)
+            lengths = np.hypot(offsets[:, 0], offsets[:, 1])
+            return np.asarray((read[2 * places : 3 * places] - lengths).min(axis=0)[None])
         cones = Cones(read[: 2 * places].reshape(places, 2, -1), read[2 * places : 3 * places], self.rows, self.bolt_of)
         q = centred(cones)
         slack = cones.slack(q)
