@@ -14,6 +14,7 @@ from tol3d.analyses.changes import Change, change_of, changed, factor_of
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_if import what_if
+from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
 from tol3d.distributions import Uniform
 from tol3d.scene.edit import write_scene
 from tol3d.simulate import load, simulation_of
@@ -181,3 +182,16 @@ def test_one_copy_alone_is_refused_with_the_name_of_the_line(tmp_path: Path, tol
     code, _, told = tol3d("what-if", str(tmp_path / "assembly.yaml"), "--factor", "thickness of ring 3=0.5")
     assert code == 2
     assert "expected 'thickness', one line of the scene" in told
+
+
+def test_advice_changes_lines_not_copies(tmp_path: Path) -> None:
+    """Of three rings alike, on one of which nothing depends: sigma √(8² + 2 · 5²); one nominal, by half for each."""
+    scene = LIKE.replace("OWN", "").replace("to: ring 3.top", "to: ring 2.top").replace("29.96", "19.96")
+    response = response_of(simulation_of(scene_of(scene.replace("30.05", "20.05"), tmp_path)), analytic=True)
+    found = changes_of(response, ChangesQuestion("gap", builds=2000)).measures["gap"]
+    steps = {(own.steps[0].contributor, own.steps[0].change is None): own for own in found.proposals}
+    assert {name for name, _ in steps} <= {"thickness", "floor"}
+    half = steps["thickness", True].after.sigma
+    assert half == pytest.approx(math.sqrt(FLOOR**2 + 2 * (RING / 2) ** 2), rel=4 / math.sqrt(2 * 2000))
+    moved = steps["thickness", False].steps[0]
+    assert moved.change == pytest.approx((5.0 - 2 * 5.0) / 2, abs=1e-6)  # to the middle of -40 and 50, from 10 um

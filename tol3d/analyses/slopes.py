@@ -144,8 +144,9 @@ def levers_of(response: Response, slopes: Array, steadiness: Array) -> list[Leve
         own, columns = known[names[0]], np.concatenate([_columns(response, name) for name in names])
         if own.unit == "1" or not all(_has_nominal(known[name], response.draws[name]) for name in names):
             continue
-        slope, steady = float(slopes[columns].sum()), float(steadiness[columns].min())
-        if steady >= STEADY and slope != 0.0:
+        acting = columns[slopes[columns] != 0.0]
+        slope = float(slopes[acting].sum())
+        if slope != 0.0 and float(steadiness[acting].min()) >= STEADY:
             found.append(Lever(line, slope, nominal_of(own), own.unit, own.per_unit))
     return sorted(found, key=lambda each: (each.unit != "um", each.unit, -abs(each.slope) * each.per_unit, each.line))
 
