@@ -89,6 +89,15 @@ def test_tooth_mesh_shows_in_the_spectrum_and_not_in_the_scatter() -> None:
     assert arcsec(math.sqrt(found.fit.variance)) == pytest.approx(0.5 * math.hypot(1, 27 / 48), rel=0.02)
 
 
+@pytest.mark.parametrize(("samples", "warned"), [(130, True), (100, True), (216, False)])
+def test_rows_too_far_apart_for_tooth_mesh_are_warned_of(samples: int, warned: bool) -> None:
+    """4.8 rows a tooth of 27, 3.7, and eight: only of the last is the 5″ of tooth mesh in the ends of the backlash."""
+    found = identified_by(REFERENCE, replace(ENCODERS, samples=samples, tooth_mesh=5 * ARCSEC))
+    words = [own for own in found.warnings if "rows a tooth of the driver: too few to tell tooth mesh" in own]
+    assert [own.split()[4] for own in words] == ([f"{samples / 27:.1f}"] if warned else [])
+    assert bool(found.fit.terms.teeth) is not warned
+
+
 def test_torques_are_extrapolated_to_none() -> None:
     rig = Rig(samples=180, torques=(1.0, 2.0, 3.0), repeats=3, winding=20 * ARCSEC, turns=4)
     found = identified_by(REFERENCE, rig)

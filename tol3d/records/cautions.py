@@ -188,7 +188,7 @@ def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
                 f"({settings.encoder_error / ARCSEC:g}″, --encoder-error): do both sides share its zero? Pitches "
                 "that deviate once per turn look alike"
             )
-    words += _teeth_warnings(found)
+    words += [*_sparse_rows(found), *_teeth_warnings(found)]
     if found.fit.low_orders > 1.0:
         words.append(
             f"what is left at low orders is {found.fit.low_orders:.1f} times as strong as white noise, "
@@ -196,6 +196,23 @@ def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
         )
     words += [*_stray_rows(found), *_torque_warnings(found), *_drift_warnings(found, settings)]
     return (*words, *_closure_warnings(found, settings))
+
+
+def _sparse_rows(found: Identified) -> Iterator[str]:
+    """A warning of rows too far apart for tooth mesh, which is then no part of the fit."""
+    if found.fit.terms.teeth:
+        return
+    measured = found.fit.measured
+    a_tooth = {
+        side: measured.count([side]) / (measured.pair.driver_teeth * measured.turned[side])
+        for side in found.fit.terms.sides
+    }
+    side = min(a_tooth, key=a_tooth.__getitem__)
+    yield (
+        f"the {side} side has {a_tooth[side]:.1f} rows a tooth of the driver: too few to tell tooth mesh, which j_min, "
+        "j_max and j_0 and their intervals therefore leave out: each may lie off by what it is on both sides together; "
+        "measure more than 5 rows a tooth"
+    )
 
 
 def _teeth_warnings(found: Identified) -> Iterator[str]:

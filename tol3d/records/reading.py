@@ -143,17 +143,19 @@ def passes_of(pair: RigPair, path: Path, blocks: Iterable[Block], senses: Senses
 
 def _refuse_counter(path: Path, block: Block) -> None:
     """Raise where `repeat` numbers rows, not passes, or is no count; also where a torque is beyond any machine's."""
-    where = f"{path}:{line_of(path, block.first)}"
     if block.torque is not None and (largest := float(np.abs(block.torque).max(initial=0.0))) > LARGEST_TORQUE:
+        where = f"{path}:{line_of(path, block.first)}"
         raise InputError(f"{where}: column 'torque': expected at most 1e9 N m, got {largest:g} N m; check its unit")
     if block.repeat is None:
         return
     if len(wrong := block.repeat[(block.repeat < 0) | (block.repeat != np.rint(block.repeat))]):
+        where = f"{path}:{line_of(path, block.first)}"
         raise InputError(
             f"{where}: column 'repeat': expected whole numbers from 0, which count passes, got {wrong[0]:g}"
         )
     stretches = 1 + int(np.count_nonzero(np.diff(block.repeat)))
     if stretches > 1 and len(block.repeat) < LEAST_ROWS * stretches:
+        where = f"{path}:{line_of(path, block.first)}"
         raise InputError(
             f"{where}: column 'repeat': expected one number for all rows of a pass, got "
             f"{stretches} numbers in the {len(block.repeat)} rows from here; leave out a column that counts rows"
