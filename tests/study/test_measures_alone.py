@@ -25,7 +25,7 @@ def read(scene: Scene, names: Mapping[str, MeasureEntry]) -> dict[tuple[str, str
     """Values of measures by both methods, in a scene that has them alone."""
     simulation = simulation_of(scene.model_copy(update={"measures": dict(names), "published": {}}))
     system, trials = simulation.system, drawn(simulation, 0, COUNT)
-    found = {}
+    found = dict[tuple[str, str], Array]()
     for method in ("exact", "analytic"):
         if method in system.methods:
             answers = system.method(method, system.materials(method)).answers(trials, system.measures)
