@@ -4,7 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from tol3d.simulate import Overrides, run_scene
+from tol3d.analyses.effects import effects
+from tol3d.analyses.rare import rare_event
+from tol3d.analyses.response import response_of
+from tol3d.errors import InputError
+from tol3d.simulate import Overrides, load, run_scene, simulation_of
 
 SCENE = """
 scene: bare
@@ -33,3 +37,13 @@ def test_a_run_without_contributors_has_the_nominal_value_in_every_trial(tmp_pat
     assert own["geometric"]["mean"] == pytest.approx(1000 * (x * x + y * y + z * z) ** 0.5, abs=1e-6)
     assert own["geometric"]["sigma"] == pytest.approx(0.0, abs=1e-9)
     assert own["contributors"] == []
+
+
+def test_analyses_of_what_varies_refuse_a_scene_in_which_nothing_does(tmp_path: Path) -> None:
+    (tmp_path / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    response = response_of(simulation_of(load(tmp_path / "scene.yaml")))
+    words = "expected a scene with tolerances, got none: all its builds are the nominal one"
+    with pytest.raises(InputError, match=words):
+        effects(response)
+    with pytest.raises(InputError, match=words):
+        rare_event(response, "low", 1.0)

@@ -119,9 +119,11 @@ def effects(
         activity: progress callback.
 
     Raises:
-        InputError: the position is to be an input and there is none, or a base is no power of two.
+        InputError: the scene has no contributors, the position is to be an input and there is none, or a base is no
+            power of two.
     """
     system = response.simulation.system
+    response.refuse_no_contributors()
     if base is not None and (base < 2 or base & (base - 1)):
         raise InputError(f"expected a power of two pairs of builds, such as 4096, got {base}")
     if position and not system.streams:

@@ -102,8 +102,10 @@ def rare_event(
         activity: progress callback.
 
     Raises:
-        InputError: several measures, no such method, or a contributor without a smooth map from normals, by name.
+        InputError: no contributors, several measures, no such method, or a contributor without a smooth map from
+            normals, by name.
     """
+    response.refuse_no_contributors()
     if len(response.measures) != 1:
         raise InputError(f"expected one measure, got {', '.join(response.names)}")
     if method not in (*get_args(Method), "auto"):

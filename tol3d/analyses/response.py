@@ -144,6 +144,15 @@ class Response:
         """Columns of the deviations."""
         return component_count(self.simulation.system)
 
+    def refuse_no_contributors(self) -> None:
+        """Refuse a scene in which nothing varies.
+
+        Raises:
+            InputError: it has no contributor.
+        """
+        if not self.components:
+            raise InputError("expected a scene with tolerances, got none: all its builds are the nominal one")
+
     @cached_property
     def slices(self) -> Mapping[str, slice]:
         """Columns of each contributor."""
