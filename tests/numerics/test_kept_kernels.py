@@ -4,12 +4,15 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 import pytest
 from places import ROOT
 
 from tol3d.assembly.placing import common_opening
+from tol3d.numerics import compiled
 
 pytestmark = pytest.mark.slow
 
@@ -18,6 +21,7 @@ import sys
 sys.path[:0] = sys.argv[1:]
 import numpy as np
 from tol3d.assembly.placing import common_opening
+from tol3d.numerics import compiled
 assert all(common_opening.__file__.startswith(tree) for tree in sys.argv[1:])
 x, y = np.random.default_rng(1).normal(size=(2, 4, 50))
 openings, centres = np.empty(50), np.empty((2, 50))
@@ -52,6 +56,23 @@ def test_a_second_process_takes_the_kernels_of_the_first(filled: tuple[Path, str
     assert found(cache) == first
     # what it had compiled anew it would have written anew
     assert kept(cache) == before
+
+
+def test_folders_that_killed_compilers_left_are_cleared_and_no_other_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    ages = {"tol3d-kernel-killed": 7200.0, "tol3d-kernel-in-use": 60.0, "other-kernel": 7200.0}
+    for name, age in ages.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "kernel.nbi").write_text("")
+        os.utime(tmp_path / name, (time.time() - age,) * 2)
+    (tmp_path / "tol3d-kernel-link").symlink_to(tmp_path / "other-kernel")
+    compiled._clear_left_folders.cache_clear()
+    compiled._clear_left_folders()
+    left = {path.name for path in tmp_path.iterdir()}
+    assert left == {"tol3d-kernel-in-use", "other-kernel", "tol3d-kernel-link"}
+    assert (tmp_path / "other-kernel" / "kernel.nbi").exists()
 
 
 def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(filled: tuple[Path, str], tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tol3d import Run, run_scene
+from tol3d import Overrides, Run, run_scene
 
 
 @pytest.fixture(scope="module")
@@ -38,3 +38,14 @@ def test_each_share_of_the_summary_stands_in_its_row_and_column_of_the_matrix_an
     assert found == expected
     assert len({measure for _, _, measure in expected}) > 1
     assert len(rows) * (len(head) - 2) > len(expected)  # some act on some measures only: their cells are empty
+
+
+def test_no_name_of_a_scene_is_a_formula_in_the_tables_of_its_run(run: Run, tmp_path: Path) -> None:
+    scene, text = tmp_path / "scene.yaml", (run.path / "scene.yaml").read_text("utf-8")
+    scene.write_text(text.replace("  hole offset:", "  '=1+1':").replace("  flush:", "  '@flush':"), "utf-8")
+    hostile = run_scene(scene, overrides=Overrides(trials=20), out=tmp_path / "run")
+    assert {*hostile.summary["measures"]} == {"=1+1", "@flush"}
+    for name in ("contributors.csv", "correlations.csv"):
+        cells = {cell for row in rows_of(hostile.path / name) for cell in row}
+        assert {"'=1+1", "'@flush"} <= cells
+        assert not [cell for cell in cells if cell.startswith(("=", "@"))]

@@ -11,13 +11,17 @@ import hashlib
 import io
 import itertools
 import json
+import os
 import platform
+import shutil
+import stat
 import tempfile
 import threading
+import time
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -44,6 +48,8 @@ SETTINGS: Any = {"error_model": "numpy", "nogil": True, "forceinline": True, "fa
 PART_SETTINGS: Any = SETTINGS | {"nopython": True, "boundscheck": None}  # as numba's own decorators have them
 
 FULL, QUICK = 3, 2  # LLVM's levels of optimization
+NUMBAS_FOLDER = "tol3d-kernel-"  # begins the names of folders for temporary files
+LEFT_BEHIND = 3600.0  # s; such a folder is in use for as long as a kernel compiles, unless its process was killed
 LONGEST_WAIT = 150.0  # s, while another process compiles a kernel; the largest takes 20 s on a core of its own
 
 
@@ -253,6 +259,7 @@ class Kernel:
 
     def _compiled_now(self, signature: tuple[Any, ...]) -> Callable[..., None]:
         """Kernel compiled, and kept where that is possible."""
+        _clear_left_folders()
         with contextlib.ExitStack() as stack:
             try:
                 folder = stack.enter_context(_numbas_folder())
@@ -337,9 +344,20 @@ def _loading_only() -> Iterator[None]:
 def _numbas_folder() -> Iterator[Path]:
     """A private folder for numba's files while it is open."""
     config: Any = numba.config
-    with tempfile.TemporaryDirectory(prefix="tol3d-kernel-") as name:
+    with tempfile.TemporaryDirectory(prefix=NUMBAS_FOLDER) as name:
         before, config.CACHE_DIR = config.CACHE_DIR, name
         try:
             yield Path(name)
         finally:
             config.CACHE_DIR = before
+
+
+@cache
+def _clear_left_folders() -> None:
+    """Delete numba's folders that processes of this user left when they were killed; once a process."""
+    with contextlib.suppress(OSError):
+        for folder in Path(tempfile.gettempdir()).glob(f"{NUMBAS_FOLDER}*"):
+            found = folder.lstat()
+            own = not hasattr(os, "getuid") or found.st_uid == os.getuid()
+            if own and stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > LEFT_BEHIND:
+                shutil.rmtree(folder, ignore_errors=True)

@@ -1,7 +1,5 @@
 """Pictures of an identification: the backlash over the long period, and the residual of the fit."""
 
-import csv
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -15,6 +13,7 @@ from tol3d.records.fit import Fit
 from tol3d.records.pair import ARCSEC, TURN, Side
 from tol3d.records.spectrum import with_tooth_mesh
 from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, legend_below, new_figure, plain_axes, save_figure
+from tol3d.runs.csv_text import csv_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +33,13 @@ class BacklashCurve:
 
     def csv(self) -> str:
         """Comma-separated values in degrees and arc seconds; empty where nothing was measured."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
         columns = ("predicted", "lower 95 %", "upper 95 %", "measured")
-        writer.writerow(["phi1 [deg]", *(f"{name} [arcsec]" for name in columns)])
+        rows = [["phi1 [deg]", *(f"{name} [arcsec]" for name in columns)]]
         for at, own, wide, seen in zip(self.phi1, self.predicted, self.half_width, self.measured, strict=True):
             ends = (own, own - wide, own + wide)
             measured = "" if np.isnan(seen) else f"{seen / ARCSEC:.6f}"
-            writer.writerow([f"{np.degrees(at):.6f}", *(f"{value / ARCSEC:.6f}" for value in ends), measured])
-        return stream.getvalue()
+            rows.append([f"{np.degrees(at):.6f}", *(f"{value / ARCSEC:.6f}" for value in ends), measured])
+        return csv_text(rows)
 
 
 def curve_of(found: Identified) -> BacklashCurve:

@@ -1,11 +1,11 @@
 """Output of a command as plain data: lines of text and tables. `sheet.py` lays it out for a terminal."""
 
-import csv
-import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING
+
+from tol3d.runs.csv_text import csv_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -96,14 +96,11 @@ class Table:
 
     def csv(self) -> str:
         """Comma-separated values: texts as they are shown, numbers with all their digits; nothing for one not known."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
         rows = self.rows if self.further is None else [*self.rows, *self.further.rows()]
         units = [[row.unit] for row in rows] if any(row.unit for row in rows) else [[]] * len(rows)
-        writer.writerow([self.corner, *(["unit"] if any(units) else []), *(heading.text for heading in self.headings)])
-        for row, unit in zip(rows, units, strict=True):
-            writer.writerow([row.label.strip(), *unit, *map(_csv_cell, row.cells)])
-        return stream.getvalue()
+        head = [self.corner, *(["unit"] if any(units) else []), *(heading.text for heading in self.headings)]
+        cells = ([row.label.strip(), *unit, *map(_csv_cell, row.cells)] for row, unit in zip(rows, units, strict=True))
+        return csv_text([head, *cells])
 
     def __rich__(self) -> "RenderableType":
         return _rendered(self)

@@ -1,7 +1,5 @@
 """Tables of a report as files for other programs: numbers with all their digits, their units in the headings."""
 
-import csv
-import io
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -15,11 +13,8 @@ from tol3d.report.page import Heading, Shown, Table
 from tol3d.report.report_sections import ReportSection, section_tables
 from tol3d.report.workbook import Cell, Sheet, workbook
 from tol3d.runs.atomic_write import write_whole
+from tol3d.runs.csv_text import csv_text
 
-BEGINS_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r")
-"""A cell of CSV that begins so is run by some spreadsheets."""
-HARMLESS: Final = re.compile(r"[-+]?[\d.,]+( ?[%°′″µa-zA-Z]+)?")
-"""A signed number, with its unit or without."""
 LONGEST_FILE_NAME: Final = 60
 UNIT: Final = "unit"
 OWN_FILE: Final = re.compile(r"\d{2,}-[a-z0-9-]+\.csv")
@@ -60,11 +55,7 @@ class Grid:
 
     def csv(self) -> str:
         """Comma-separated values, of which no cell is a formula."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        for row in (self.headings, *self.rows):
-            writer.writerow(["" if own is None else _unformulated(own) for own in row])
-        return stream.getvalue()
+        return csv_text((self.headings, *self.rows))
 
 
 def require_room_for_tables(folder: Path, *, force: bool) -> None:
@@ -163,12 +154,6 @@ def _value(cell: str, heading: Heading) -> Cell:
         return cell.value
     text = cell.strip()
     return None if text == NOTHING and not heading.words else text
-
-
-def _unformulated(own: Cell) -> Cell:
-    if isinstance(own, str) and own.startswith(BEGINS_FORMULA) and not HARMLESS.fullmatch(own):
-        return f"'{own}"
-    return own
 
 
 def _file_name(name: str) -> str:

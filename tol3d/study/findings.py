@@ -1,13 +1,12 @@
 """Findings of a study, and those of its witness."""
 
-import csv
-import io
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from threadpoolctl import threadpool_limits
 
 from tol3d.execution.watch import Activity
+from tol3d.runs.csv_text import csv_text
 from tol3d.runs.summary.run import Findings
 from tol3d.runs.summary.values import as_json
 from tol3d.study.joint import correlation_rows
@@ -73,7 +72,7 @@ def run_tables(simulation: Simulation, tally: Tally, found: Mapping[str, Any]) -
         CORRELATIONS: correlation_rows(simulation, tally.joint),
     }
     for name, rows in tables.items():
-        if text := _csv(rows):
+        if text := csv_text(rows):
             yield name, text
 
 
@@ -102,10 +101,3 @@ def contributor_rows(measures: Mapping[str, Mapping[str, Any]]) -> Iterator[list
     for key, words in SHARES.items():
         if any(others[key]):
             yield ["shares by", words, *("regression" if own is None else own["by"] for own in others[key])]
-
-
-def _csv(rows: Iterable[Sequence[Any]]) -> str:
-    """Comma-separated values, numbers with all their digits; nothing for one not known."""
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(rows)
-    return stream.getvalue()

@@ -1,7 +1,5 @@
 """The workspace of a loop as a picture: the tilts that its output reaches, and the condition numbers on the way."""
 
-import csv
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +17,7 @@ from tol3d.linkage.loop import ClosedLoop
 from tol3d.linkage.workspace import InputGrid, Workspace, input_grid_of, workspace_of
 from tol3d.report.canvas import save_figure
 from tol3d.report.polar_map import plane_map, polar_map
+from tol3d.runs.csv_text import csv_text
 from tol3d.scene.nearest import hint
 from tol3d.study.simulation import Simulation
 from tol3d.system.method import ANALYTIC_METHOD
@@ -73,13 +72,13 @@ class WorkspaceMap:
 
     def csv(self) -> str:
         """Azimuth, tilt, inputs and value of each place."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["azimuth [deg]", "tilt [deg]", self.words])
-        for k, azimuth in enumerate(np.degrees(self.workspace.azimuths)):
-            for tilt, value in zip(np.degrees(self.workspace.tilts[k]), self.values[k], strict=True):
-                writer.writerow([f"{azimuth:.10g}", f"{tilt:.10g}", f"{value:.10g}"])
-        return stream.getvalue()
+        places = (
+            (azimuth, tilt, value)
+            for k, azimuth in enumerate(np.degrees(self.workspace.azimuths))
+            for tilt, value in zip(np.degrees(self.workspace.tilts[k]), self.values[k], strict=True)
+        )
+        rows = ([f"{number:.10g}" for number in place] for place in places)
+        return csv_text([["azimuth [deg]", "tilt [deg]", self.words], *rows])
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,14 +118,12 @@ class InputMap:
 
     def csv(self) -> str:
         """Inputs and condition number of each place."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow([*(words for words, _ in self._places), "condition number"])
+        rows = [[*(words for words, _ in self._places), "condition number"]]
         places = [values for _, values in self._places]
         for place, value in np.ndenumerate(self.grid.conditions):
             own = [f"{values[k]:.10g}" for values, k in zip(places, place, strict=True)]
-            writer.writerow([*own, "" if np.isnan(value) else f"{value:.10g}"])
-        return stream.getvalue()
+            rows.append([*own, "" if np.isnan(value) else f"{value:.10g}"])
+        return csv_text(rows)
 
 
 def workspace_map(
