@@ -26,8 +26,10 @@ LEAST_DRAWS: Final = 40
 FLAT: Final = 0.25
 """Share of the draws that positions get alike; the others by how likely they fail."""
 REFINEMENTS: Final = 3
-POOR: Final = 0.08
-"""Effective draws, as a share of all, below which draws follow the limit's curvatures."""
+POOR, POOR_AMONG_PLACES = 0.3, 0.08
+"""Effective draws, as a share of all, below which draws follow the limit's curvatures: at one position, at several."""
+MORE, MORE_MINUTES = 4, 0.2
+"""Times as many draws where so few of them count after all, if they take no longer."""
 APART: Final = 0.02
 """Share of the failures that plain draws may find apart from the design points."""
 MOST_APART: Final = 4
@@ -77,26 +79,29 @@ def importance_sampled(
     if first is None or FREQUENT < first < 1 - FREQUENT:
         return _plain(state, places, draws, generator, no_point=first is None), places
     notes: list[str] = []
-    spent = 0
-    for _ in range(REFINEMENTS + 1):
+    spent, poor = 0, (POOR if places.count == 1 else POOR_AMONG_PLACES) * draws
+    for k in range(REFINEMENTS + 2):  # the last one may follow the curvatures at all points that were found
         found = _sampled(state, places, draws, generator)
         spent += len(found.weights)
         apart = found.apart & ~places.beyond[found.places]
         total = float(_by_place(found, places, found.weights).mean())
         far = float(_by_place(found, places, np.where(apart, found.weights, 0.0)).mean())
         rows = np.flatnonzero(apart)
-        if far > APART * total:
+        if far > APART * total and k < REFINEMENTS:
             rows = rows[np.argsort(np.linalg.norm(found.normals[rows], axis=1))][:MOST_APART]
             more = with_more(state, places, found.normals[rows], found.places[rows])
             if sum(map(len, more.points)) > sum(map(len, places.points)):
                 places = more
                 continue
-        if effective(found.weights) >= POOR * draws or places.shapes is not None:
+        if effective(found.weights) >= poor or places.shapes is not None:
             break
         places = shaped(state, places)
         if not any(len(own.axes) for each in places.shapes or () for own in each):
             break
-    if far > APART * total and effective(found.weights[apart]) < FEW:
+    if places.count == 1 and effective(found.weights) < poor and MORE * draws * state.response.minutes < MORE_MINUTES:
+        found = _sampled(state, places, MORE * draws, generator)
+        spent += len(found.weights)
+    elif far > APART * total and effective(found.weights[apart]) < FEW:
         notes.append(
             f"{100 * far / total:.0f} % of the failures lie apart from the design points, found by few draws: others "
             "of the kind may be missing"

@@ -26,6 +26,8 @@ CHOSEN: Final = 64
 """Positions chosen among those that were screened."""
 DEFENCE: Final = 0.15
 """Share of them that is chosen alike."""
+CURVED_BUILDS: Final = 4000
+"""Builds for the curvatures at all design points together."""
 FEWEST_PLACES, FEWEST_STARTS = 5, 3
 MOST_MINUTES: Final = 0.01
 """Processor minutes for one step of a walk from all positions: where builds take long there are fewer."""
@@ -114,9 +116,10 @@ def with_more(state: LimitState, places: Places, ends: Array, where: NDArray[np.
 
 
 def shaped(state: LimitState, places: Places) -> Places:
-    """Places whose draws follow the curvatures."""
+    """Places whose draws follow the curvatures at all design points; where these take long, at the nearest of each."""
+    every = sum(map(len, places.points)) * len(state.acting) ** 2 <= CURVED_BUILDS
     shapes = [
-        [Shape.curved(state, own) if k == 0 else Shape.plain(own) for k, own in enumerate(each)]
+        [Shape.curved(state, own) if every or k == 0 else Shape.plain(own) for k, own in enumerate(each)]
         for each in places.points
     ]
     return replace(places, shapes=shapes)
