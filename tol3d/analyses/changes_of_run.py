@@ -1,7 +1,7 @@
 """Recommended changes below the verdict of a run: as `tol3d changes` simulates them, with fewer builds.
 
-They take a tenth of what the run took at most, by the stated cost of a build, or a second; where that is too little for
-builds that can judge a change, nothing is proposed.
+They take a tenth of what the run took at most, by the stated cost of a build, or half a second; where that is too
+little for builds that can judge a change, nothing is proposed.
 """
 
 from dataclasses import replace
@@ -22,8 +22,8 @@ MOST_BUILDS: Final = 1000
 """For each change."""
 SHARE: Final = 0.1
 """Of what the run took."""
-SECONDS: Final = 1.0
-"""For all measures, of a run that took less than ten; by the method's stated cost of a build."""
+SECONDS: Final = 0.5
+"""For all measures, of a run that took less than five; by the method's stated cost of a build."""
 
 
 def not_ok(run: Run, accepted: Accepted | None = None) -> list[str]:

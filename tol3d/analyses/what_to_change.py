@@ -34,6 +34,8 @@ AIM: Final = 1.33
 SECONDS: Final = 20.0
 """Seconds of builds for a measure, by the method's stated cost of one: a result must not depend on the clock."""
 MOST_ROWS: Final = 16
+ROWS: Final = 0.25
+"""Fraction of the seconds for slopes."""
 MOST_SLOPES: Final = 1600
 """Builds at which slopes are taken: so many, or more where there are so few contributors."""
 MOST_BUILDS: Final = 5000
@@ -61,8 +63,10 @@ SHARE_OF_PLAY: Final = "1"
 """Unit of what is no tolerance: where a part lies in its play."""
 USELESS: Final = 1e-3
 """Fraction of the steepest slope; a mean is not moved by a flatter one."""
-BESIDE: Final = 200
-"""Builds of measures without limits, beside a change."""
+BESIDE: Final = 50
+"""Builds of measures without limits, beside a change; more where these take no longer than the measure itself."""
+TINY: Final = 1e-12
+"""Minutes."""
 SEEN: Final = 0.1
 """Fraction of sigma, by which the mean of another measure moves if it is told; of a Ppk as much."""
 
@@ -247,7 +251,7 @@ class Effort:
     def of(cls, response: Response, question: ChangesQuestion) -> "Effort":
         """By what a build takes, as the method says, so that it is the same on every machine."""
         cost = 60.0 * response.minutes or 1e-9
-        rows = int(question.seconds / cost / max(BATCHES * response.components, 1))
+        rows = int(ROWS * question.seconds / cost / max(BATCHES * response.components, 1))
         quick = int(question.seconds / cost / (TRIED + STEPS * LEVERS + TOGETHER + 1))
         builds = question.builds or min(max(quick, FEWEST_BUILDS), question.most_builds)
         most = max(MOST_SLOPES // max(response.components, 1), MOST_ROWS)
@@ -523,11 +527,12 @@ class _Asked:
     def others(self) -> list[tuple[Response, Array]]:
         """Other measures, with limits and without, each with builds as they are."""
         found = []
-        for limits, count in ((True, len(self.deviations)), (False, BESIDE)):
+        for limits in (True, False):
             others = [own for own in self.whole.measures if own.name != self.measure.name]
             if names := [own.name for own in others if (limits_of(own) != (None, None)) == limits]:
-                response = self.whole.of(*names)
-                found.append((response, self.built(response, self.deviations[:count])))
+                response, count = self.whole.of(*names), len(self.deviations)
+                share = 1.0 if limits else self.response.minutes / max(response.minutes, self.response.minutes, TINY)
+                found.append((response, self.built(response, self.deviations[: max(int(share * count), BESIDE)])))
         return found
 
     def steps(self, change: _Change) -> Iterator[Step]:
