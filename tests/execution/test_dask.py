@@ -196,32 +196,6 @@ def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster: Cluster, tmp_path:
     assert_same_run(alone, resumed)
 
 
-@pytest.mark.slow
-def test_a_run_whose_last_worker_is_lost_says_so_and_goes_on_later(
-    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    address, workers = cluster
-    monkeypatch.setattr(execution_module, "ANSWER_S", 2.0)
-    study, told = STUDIES["analytic"], list[int]()
-
-    def kill_all(count: int) -> None:
-        told.append(count)
-        if len(told) == 10:
-            for worker in workers:
-                os.kill(worker.pid, signal.SIGKILL)
-
-    def resumed(execution: Execution) -> Run:
-        return run_scene(
-            SPUR_PAIR, overrides=study, out=tmp_path / "run", execution=execution, watch=Watch(progress=kill_all)
-        )
-
-    with pytest.raises(InputError, match=r"its workers are gone; .*the same command resumes the run"):
-        resumed(Execution(scheduler=address))
-    whole = resumed(Execution(resume=True))
-    assert whole.summary["timing"]["resumed_trials"] >= 9 * BLOCK
-    assert sum(told) >= of_kind(int, study.trials)
-
-
 def _scheduler_pid(address: str) -> int:
     from distributed import Client
 
