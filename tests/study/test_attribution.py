@@ -13,8 +13,11 @@ from printing import printed
 from scipy import integrate, stats
 
 from tol3d import Run, run_scene
+from tol3d.distributions.base import Distribution
 from tol3d.distributions.normal import Normal
+from tol3d.machine.either_side import EitherSide
 from tol3d.report.bars import shown_names
+from tol3d.report.column import unexplained_words
 from tol3d.report.heat_map import percents_of
 from tol3d.report.html.document import report_html
 from tol3d.report.html.pareto_chart import pareto_chart
@@ -23,7 +26,7 @@ from tol3d.report.table import Detail, run_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.study import attribution
 from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
+from tol3d.study.draws import drawn, redrawn
 from tol3d.study.summary import study_summary
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.system.plain import PlainMeasure, PlainSystem
@@ -32,7 +35,7 @@ Array = NDArray[np.float64]
 SURE = 5.0  # standard errors
 
 
-def measured(value: Callable[[Array], Array], laws: Sequence[Normal], trials: int) -> MeasureSummary:
+def measured(value: Callable[[Array], Array], laws: Sequence[Distribution], trials: int) -> MeasureSummary:
     """A study of one number [um] that is a function of deviations (n, contributors) [mm]."""
     plain = formula(lambda rows, _: value(rows), laws).simulation
     assert isinstance(plain.system, PlainSystem)
@@ -139,6 +142,57 @@ def test_few_trials_take_high_low_mean_two_builds_a_contributor(trials: int) -> 
     expected = {f"x{k}": 100 * own / sum(squares) for k, own in enumerate(squares)}
     assert geometric(measure) == pytest.approx(expected, rel=1e-3)
     assert all(own.geometric_percent_se is None for own in measure.contributors)
+
+
+# two-valued contributors ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("alone", [0.0, 0.02])
+@pytest.mark.parametrize("trials", [50, 400])
+def test_a_product_of_two_sides_names_both(alone: float, trials: int) -> None:
+    """k s1 s2 + a s1 + c z, s of -1 or 1: variance k² + a² + (c sigma)², total effects k² + a², k² and (c sigma)².
+
+    High–low–mean sees a and c alone: s is 0 in the mean. Of n pairs a share of 2 m / n, m the pairs in which s turns
+    over, each in one of two: standard error 1 / sqrt(n).
+    """
+    k, c, sigma = 0.3, 0.5, 0.02
+    laws: list[Distribution] = [Normal(0.01, sigma), EitherSide(), EitherSide()]
+    measure = measured(lambda x: k * x[:, 1] * x[:, 2] + alone * x[:, 1] + c * x[:, 0], laws, trials)
+    assert measure.shares_by is not None
+    own = measure.shares_by["geometric"]
+    assert own.by == "total effects"
+    # of r² of three columns about 0: chi² of 3 degrees of freedom over the trials, less its mean
+    assert own.explained_percent is not None
+    assert own.explained_percent < 100 * 17.0 / trials  # once in 2000
+    found = geometric(measure)
+    pairs = 16
+    for name in ("x1", "x2"):
+        assert 100 - 100 * 3.0 / math.sqrt(pairs) < found[name] <= 100.0
+    assert found["x0"] < 5.0  # truly 0.1 %
+
+
+def test_draws_of_two_values_turn_over_in_half_of_the_pairs() -> None:
+    """The first binary digits of n Sobol' points are one of n - 1 rows: of 60 some would be alike, pair by pair."""
+    simulation = formula(lambda rows, _: rows.sum(axis=1), [EitherSide() for _ in range(60)]).simulation
+    names = [own.name for own in simulation.system.contributors]
+    for count in (16, 64, 256):
+        before, after = (redrawn(simulation, count, some).deviations for some in ((), names))
+        turned = (before != after).sum(axis=0)
+        assert np.abs(turned - count / 2).max() < SURE * math.sqrt(count) / 2, count
+        assert abs(turned.mean() - count / 2) < SURE * math.sqrt(count / 60) / 2
+
+
+def test_a_short_run_of_many_contributors_says_how_little_its_regression_explains() -> None:
+    """A product of two of 14: 100 builds are 6 pairs of each, too few, and high–low–mean sees the scraps alone."""
+    laws: list[Distribution] = [EitherSide(), EitherSide(), *(Normal(0.0, 0.01) for _ in range(12))]
+    measure = measured(lambda x: x[:, 0] * x[:, 1] + x[:, 2:].sum(axis=1), laws, 120)
+    assert measure.shares_by is not None
+    own = measure.shares_by["geometric"]
+    assert own.by == "regression"
+    assert own.explained_percent is not None
+    assert own.explained_percent < 100 * 36.0 / 120  # chi² of 14, once in 1000
+    words = f"not attributed {100 - own.explained_percent:.0f} %; by regression"
+    assert unexplained_words(measure) == words
 
 
 # what a regression explains -------------------------------------------------------------------------------------------

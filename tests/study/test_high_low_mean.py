@@ -15,7 +15,7 @@ from tol3d.distributions.uniform import Uniform
 from tol3d.study import high_low_mean
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
-from tol3d.study.high_low_mean import high_low_mean_percents, to_first_order
+from tol3d.study.high_low_mean import high_low_mean_percents, high_low_mean_ranges, to_first_order
 from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
@@ -126,7 +126,7 @@ def test_no_build_is_asked_for_at_ends_that_are_not_known(mean_seats: bool) -> N
     def read(rows: np.ndarray, measures: object) -> dict[str, np.ndarray]:
         return {measure.name: values(rows)}
 
-    assert set(high_low_mean_percents(system, [measure], read)[measure.name].values()) == {None}
+    assert set(high_low_mean_ranges(system, [measure], read)[measure.name].values()) == {None}
     linear = first_order(Simulation(system, Study()), [measure], read)[measure.name]
     assert math.isnan(linear.mean) is not mean_seats
     assert np.isnan(linear.ends).all()
@@ -164,16 +164,18 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
         rows.append(len(builds))
         return Evaluation(system, method).values(builds, measures)
 
-    exact = high_low_mean_percents(system, system.measures, read)
+    exact = high_low_mean_ranges(system, system.measures, read)
     built = sum(rows)
     monkeypatch.setattr(high_low_mean, "MOST_ENDS", 0)
     monkeypatch.setattr(high_low_mean, "MOST_EXACT", 1)
     rows.clear()
-    found = high_low_mean_percents(system, system.measures, read)
+    found = high_low_mean_ranges(system, system.measures, read)
     assert to_first_order(system, system.measures) == 4
     assert sum(rows) <= built - 2 * 3  # both ends of three zones, where they differ by measure for each
-    for name, own in exact.items():
-        assert found[name] == {each: pytest.approx(share, rel=0.01, abs=1e-6) for each, share in own.items()}
+    for name, ranges in exact.items():
+        own = high_low_mean_percents(ranges)
+        shares = high_low_mean_percents(found[name])
+        assert shares == {each: pytest.approx(share, rel=0.01, abs=1e-6) for each, share in own.items()}
         assert sum(share > 0.1 for share in own.values() if share is not None) > 1
 
 
@@ -191,6 +193,8 @@ def test_ranges_are_counted_from_the_mean_build_wherever_that_is() -> None:
     def values(rows: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
         return {"value": own.values(rows, own.positions(len(rows), "rest")).values[:, 0]}
 
-    found = high_low_mean_percents(own.simulation.system, own.measures, values)["value"]
-    total = 1.0 + 36.0 + 24.0**2
-    assert found == pytest.approx({"x0": 100 / total, "x1": 3600 / total, "x2": 57600 / total}, rel=1e-9)
+    found = high_low_mean_ranges(own.simulation.system, own.measures, values)["value"]
+    assert found == pytest.approx({"x0": 1.0, "x1": 6.0, "x2": 24.0}, rel=1e-9)
+    squares = np.array([1.0, 36.0, 576.0])
+    shares = dict(zip(("x0", "x1", "x2"), 100 * squares / squares.sum(), strict=True))
+    assert high_low_mean_percents(found) == pytest.approx(shares, rel=1e-9)

@@ -15,10 +15,15 @@ HEADINGS: Mapping[Method, str] = {
     "geometric": "3D simulation",
 }
 NOT_ATTRIBUTED = "not attributed"
-SHARES_BY: Mapping[SharesBy, str] = {"total effects": "total effects", "high-low-mean": "high–low–mean"}
+SHARES_BY: Mapping[SharesBy, str] = {
+    "total effects": "total effects",
+    "high-low-mean": "high–low–mean",
+    "regression": "regression",
+}
 SHARES_BY_MEANS: Mapping[SharesBy, str] = {
     "total effects": "total effects, the variance by a contributor alone and in interactions, together more than 100 %",
     "high-low-mean": "high–low–mean, each contributor's squared range as a part of their sum",
+    "regression": "regression, of the little that it explains: the run has too few trials for total effects",
 }
 SHARES: Mapping[Method, str] = {"analytic": "analytic_percent", "geometric": "geometric_percent"}
 

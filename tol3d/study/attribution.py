@@ -3,7 +3,9 @@
 They are those of a regression where it explains EXPLAINED of the variance. Of the size of a vector, the worst of
 several poses or a product it explains little, and names what little it explains. Then total effects take its place
 where they need less than MOST_OF_RUN of the run's builds: builds in which one contributor is drawn again and all else
-stays. Otherwise it is high–low–mean, two builds a contributor.
+stays. Otherwise it is high–low–mean, two builds a contributor. That sees one contributor at a time: where what it sees
+is less than a sum of effects could vary by, a product makes up the rest, and fewer pairs of builds tell more. With too
+few even for those the regression's shares stay, and are said to be of what little it explains.
 
 Source of total effects: Jansen, Analysis of variance designs for model output, Comput. Phys. Commun. 117 (1999).
 """
@@ -19,10 +21,10 @@ import numpy as np
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.measure import SharesBy
 from tol3d.statistics import IndependentSums, independent_shares, shares
-from tol3d.study.acting import acting
+from tol3d.study.acting import AT_LEAST, acting
 from tol3d.study.draws import redrawn
 from tol3d.study.evaluation import Evaluation, batches
-from tol3d.study.high_low_mean import Percents, high_low_mean_percents
+from tol3d.study.high_low_mean import Ranges, high_low_mean_percents, high_low_mean_ranges
 from tol3d.study.regression import Sums
 from tol3d.study.regressors import regressor_groups
 from tol3d.study.sample import finite
@@ -47,7 +49,9 @@ LEAST_PAIRS: Final = 128
 TELLING_PAIRS: Final = 32
 """Pairs from which on they are taken where that which leads by high–low–mean has less than half of the largest."""
 FEWEST_PAIRS: Final = 8
-"""Pairs from which on they are taken where high–low–mean sees no effect at all."""
+"""Pairs from which on they are taken where high–low–mean sees too little."""
+SUM: Final = 4.0
+"""Sum of squared ranges over the variance: no sum of effects within their ranges has less (Popoviciu 1935)."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +62,13 @@ class Attribution:
         percents: of each acting contributor, with their standard errors.
         by: means by which they were found.
         explained: fraction of the variance that the regression explains, less what chance does; None where unknown.
+        lacks: whether that is too little for the regression's shares.
     """
 
     percents: Mapping[str, Percent]
     by: SharesBy
     explained: float | None
+    lacks: bool = False
 
 
 def by_regression(simulation: Simulation, measure: Measure, sums: Sums | None) -> Attribution:
@@ -90,13 +96,13 @@ class Attributed:
         simulation: that was run.
         evaluation: of the system by the method.
         trials: of the run.
-        alone: high–low–mean shares by measure, where the method's are known.
+        alone: high–low–mean ranges by measure, where the method's are known.
     """
 
     simulation: Simulation
     evaluation: Evaluation
     trials: int
-    alone: Mapping[str, Percents] | None = None
+    alone: Mapping[str, Ranges] | None = None
 
     def of(self, regressed: Mapping[str, Sums]) -> Mapping[str, Attribution]:
         """Attributions by measure.
@@ -112,35 +118,46 @@ class Attributed:
             return found
         ends = self.alone
         if ends is None:
-            ends = high_low_mean_percents(system, lacking, self.evaluation.values)
-        effects = self._total_effects(lacking, {own.name: regressed[own.name].target_sigma for own in lacking})
+            ends = high_low_mean_ranges(system, lacking, self.evaluation.values)
+        sigmas = {own.name: regressed[own.name].target_sigma for own in lacking}
+        alone = {
+            own.name: {name: ends.get(own.name, {}).get(name) for name in found[own.name].percents} for own in lacking
+        }
+        unseen = {name for name, own in alone.items() if not _adds_up(own, sigmas[name])}
+        effects = self._total_effects(lacking, sigmas, AT_LEAST if unseen else 0)
         for measure in lacking:
-            own, names = found[measure.name], found[measure.name].percents
+            own, seen = replace(found[measure.name], lacks=True), measure.name not in unseen
             pairs, known = effects.get(measure.name, (0, {}))
-            high_low = {name: share for name in names if (share := ends.get(measure.name, {}).get(name)) is not None}
-            seen = len(high_low) == len(names) and any(high_low.values())
+            high_low = {
+                name: share for name, share in high_low_mean_percents(alone[measure.name]).items() if share is not None
+            }
             largest = max((share or 0.0 for share, _ in known.values()), default=0.0)
             misled = seen and known and 2 * (known[max(high_low, key=high_low.__getitem__)][0] or 0.0) < largest
             least = LEAST_PAIRS if not misled else TELLING_PAIRS
             if known and pairs >= (least if seen else FEWEST_PAIRS):
-                found[measure.name] = replace(own, percents=known, by="total effects")
-            elif seen:
-                whole = sum(high_low.values())
-                percents = {name: (100 * share / whole, None) for name, share in high_low.items()}
-                found[measure.name] = replace(own, percents=percents, by="high-low-mean")
+                own = replace(own, percents=known, by="total effects")
+            elif seen or (own.explained is None and any(high_low.values())):
+                percents = {name: (share, None) for name, share in high_low.items()}
+                own = replace(own, percents=percents, by="high-low-mean")
+            found[measure.name] = own
         return found
 
     def _total_effects(
-        self, measures: Sequence[Measure], sigmas: Mapping[str, float]
+        self, measures: Sequence[Measure], sigmas: Mapping[str, float], at_least: int
     ) -> Mapping[str, tuple[int, Mapping[str, Percent]]]:
         """By measure the least number of pairs of builds of a contributor that could be assembled, and the shares.
 
         Nothing where contributors are correlated: they have no total effects of their own.
+
+        Args:
+            measures: which.
+            sigmas: of each.
+            at_least: builds that may be made of however short a run.
         """
         system = self.simulation.system
         acts = {own.name: [each.name for each in acting(self.simulation, own)] for own in measures}
         names = [own.name for own in system.contributors if any(own.name in each for each in acts.values())]
-        room = min(int(MOST_OF_RUN * self.trials) // (len(names) + 1), MOST_PAIRS)
+        room = min(max(int(MOST_OF_RUN * self.trials), at_least) // (len(names) + 1), MOST_PAIRS)
         if self.simulation.copula.blocks or room < FEWEST_PAIRS:
             return {}
         count = 2 ** (room.bit_length() - 1)
@@ -198,6 +215,12 @@ def _lacks(sums: Sums, measure: Measure, found: Attribution) -> bool:
     """True if a regression explains too little of what a measure varies by, or has too few trials to tell."""
     varies = sums.count > 1 and sums.target_sigma > RESOLVED * measure.per_internal
     return varies and (found.explained is None or found.explained < EXPLAINED)
+
+
+def _adds_up(ranges: Ranges, sigma: float) -> bool:
+    """True if a sum of effects within known ranges could vary as much as a measure does."""
+    known = [own for own in ranges.values() if own is not None]
+    return len(known) == len(ranges) and any(known) and sum(own**2 for own in known) >= SUM * sigma**2
 
 
 def _of_variance(steps: Mapping[str, Array], variance: float) -> tuple[int, Mapping[str, Percent]]:

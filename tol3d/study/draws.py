@@ -8,6 +8,7 @@ trial's by themselves.
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from tol3d.system.dependent import Dependent, in_draw_order
 from tol3d.system.stated import component_count, component_slices
 from tol3d.system.system import StreamKey, System
 from tol3d.system.trials import Trials
+
+EPSILON: Final = 2.0**-53
+"""Least uniform number of a turned dimension."""
 
 MOST_EVEN = 4096  # dimensions of Sobol' points; of more they cost more than builds
 MANY_STREAMS = 256  # from here on compiling what draws them pays
@@ -60,6 +64,9 @@ def drawn_ones(simulation: Simulation, trials: Sequence[int]) -> Trials:
 def redrawn(simulation: Simulation, count: int, names: Collection[str]) -> Trials:
     """Trials of Sobol' points, of random ones in very many dimensions, with other draws of some contributors.
 
+    Other draws are those without them, turned by a further dimension. By itself that has its first binary digit from
+    one of count - 1 rows: of a law with two values it would often give the same ones in all trials, or none of them.
+
     Args:
         simulation: whose seed they have.
         count: of trials; a power of two.
@@ -72,9 +79,13 @@ def redrawn(simulation: Simulation, count: int, names: Collection[str]) -> Trial
 
     def uniforms(key: StreamKey) -> Array:
         stream, other = streams[key], key[0] in names
-        if even:
-            return sampler.uniforms(replace(stream, dimension=stream.dimension + other * len(streams)), 0, count)
-        return sampler.uniforms(stream, other * count, count)
+        if not even:
+            return sampler.uniforms(stream, other * count, count)
+        plain = sampler.uniforms(stream, 0, count)
+        if not other:
+            return plain
+        turn = sampler.uniforms(replace(stream, dimension=stream.dimension + len(streams)), 0, count)
+        return np.maximum((plain + turn) % 1.0, EPSILON)  # a law may have no value at 0
 
     positions = system.positions({key: uniforms(key) for key in system.streams})
     return Trials(_deviations(simulation, uniforms, count), positions)

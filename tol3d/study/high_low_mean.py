@@ -24,6 +24,7 @@ from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import System
 
+Ranges = Mapping[str, float | None]
 Percents = Mapping[str, float | None]
 
 MOST_ENDS: Final = 2**14
@@ -34,17 +35,24 @@ TOGETHER: Final = 4096
 """Builds for all measures at once; more are made for each measure those that it asks for."""
 
 
-def high_low_mean_percents(system: System, measures: Sequence[Measure], values: Values) -> Mapping[str, Percents]:
-    """Shares [%] of contributors: the square of each one's range (largest less smallest of three states) in their sum.
+def high_low_mean_ranges(system: System, measures: Sequence[Measure], values: Values) -> Mapping[str, Ranges]:
+    """Ranges of measures over each contributor: largest less smallest of three states.
 
     Args:
         system, measures: to build and to read: one number of each.
         values: measures of deviations; nan where a build cannot be assembled.
 
     Returns:
-        By measure percents by the contributor's name; None where a build cannot be assembled, 0 where nothing moves it.
+        By measure ranges by the contributor's name, in its unit; None where a build cannot be assembled.
     """
-    return of_alike(system, measures, lambda alike, turning: _percents_of(system, alike, turning, values))
+    return of_alike(system, measures, lambda alike, turning: _named_ranges(system, alike, turning, values))
+
+
+def high_low_mean_percents(ranges: Ranges) -> Percents:
+    """Shares [%] of contributors: the square of each one's range in their sum; 0 where nothing moves the measure."""
+    squares = {name: None if own is None else own**2 for name, own in ranges.items()}
+    total = sum(own for own in squares.values() if own is not None)
+    return {name: None if own is None else 100 * own / total if total > 0.0 else 0.0 for name, own in squares.items()}
 
 
 def to_first_order(system: System, measures: Sequence[Measure]) -> int:
@@ -66,14 +74,20 @@ def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_A
     return [_Alone(own, slices[own.name], turning[own.name], mean) for own in system.contributors]
 
 
-def _percents_of(
+def _named_ranges(
     system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
-) -> dict[str, Percents]:
-    """Shares of measures that share the mean build and the directions that turn at random."""
+) -> dict[str, Ranges]:
+    """Ranges of measures that share the mean build and the directions that turn at random."""
     mean = mean_deviations(system, measures[0].positions)
     found = _ranges_of(_alone(system, turning, mean), mean, measures, values)
     names = [contributor.name for contributor in system.contributors]
-    return {own.name: _percents(names, found.get(own.name)) for own in measures}
+    unknown: Ranges = dict.fromkeys(names)  # where a build beside the mean cannot be assembled
+    return {
+        own.name: dict(zip(names, its.tolist(), strict=True))
+        if (its := found.get(own.name)) is not None and not np.isnan(its).any()
+        else unknown
+        for own in measures
+    }
 
 
 def ranges(
@@ -86,7 +100,7 @@ def ranges(
         slices: their components.
         mean: deviations of the mean build (1, components).
         measures: one number of each.
-        values: see `high_low_mean_percents`.
+        values: see `high_low_mean_ranges`.
 
     Returns:
         By measure (contributors,) in its unit, nan where a build fails; no entry where the mean build fails.
@@ -324,11 +338,3 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
             own.known.setdefault(key, []).append((found, k))
     for own in asked:
         own.ask(name for name in known if name not in own.ends)
-
-
-def _percents(names: Sequence[str], ranges: Array | None) -> Percents:
-    if ranges is None or np.isnan(ranges).any():  # a build beside the mean cannot be assembled
-        return dict.fromkeys(names, None)
-    squares = [own**2 for own in ranges.tolist()]
-    total = sum(squares)
-    return {name: 100 * own / total if total > 0.0 else 0.0 for name, own in zip(names, squares, strict=True)}

@@ -22,7 +22,14 @@ from tol3d.study.attribution import Attributed, Attribution
 from tol3d.study.correlated import closed_form_of, correlation_warnings
 from tol3d.study.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
-from tol3d.study.high_low_mean import MOST_EXACT, Percents, high_low_mean_percents, to_first_order
+from tol3d.study.high_low_mean import (
+    MOST_EXACT,
+    Percents,
+    Ranges,
+    high_low_mean_percents,
+    high_low_mean_ranges,
+    to_first_order,
+)
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
 from tol3d.study.regressors import MOST_REGRESSED
@@ -51,8 +58,9 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
     study, mechanism = simulation.study, simulation.mechanism
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
     builds = _single_builds(simulation, method)
-    alone = high_low_mean_percents(simulation.system, single, Evaluation(simulation.system, method).values)
-    attributed = _attributed(simulation, method, tally, alone)
+    ranges = high_low_mean_ranges(simulation.system, single, Evaluation(simulation.system, method).values)
+    alone = {name: high_low_mean_percents(own) for name, own in ranges.items()}
+    attributed = _attributed(simulation, method, tally, ranges)
     return made(
         Findings,
         scene=simulation.system.name,
@@ -284,7 +292,7 @@ def _agreement(compared: Comparison, explanation: Explanation | None) -> Agreeme
 
 
 def _attributed(
-    simulation: Simulation, method: Method | None, tally: Tally, alone: Mapping[str, Percents]
+    simulation: Simulation, method: Method | None, tally: Tally, ranges: Mapping[str, Ranges]
 ) -> Mapping[str, Mapping[str, Attribution]]:
     """Shares of the variance by measure and method, but of closed forms, which know their own."""
     scalars = [measure for measure in simulation.system.measures if measure.name in tally.measures]
@@ -295,7 +303,7 @@ def _attributed(
     }
     leading = GEOMETRIC if method is not None else ANALYTIC
     by_method = {
-        name: Attributed(simulation, each, tally.trials, alone if name == leading else None).of(regressed[name])
+        name: Attributed(simulation, each, tally.trials, ranges if name == leading else None).of(regressed[name])
         for name, each in evaluations(simulation.system, method).items()
     }
     return {m.name: {name: found[m.name] for name, found in by_method.items() if m.name in found} for m in scalars}
@@ -330,7 +338,7 @@ def _shares_by(found: Mapping[str, Attribution]) -> dict[MethodName, Unexplained
             Unexplained, by=own.by, explained_percent=None if own.explained is None else max(100 * own.explained, 0.0)
         )
         for method, name in methods.items()
-        if (own := found.get(name)) is not None and own.by != "regression"
+        if (own := found.get(name)) is not None and own.lacks
     }
 
 
