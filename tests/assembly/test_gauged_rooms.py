@@ -250,4 +250,6 @@ def test_gauges_are_uniform_in_their_room(method: str) -> None:
         assert own.mean() == pytest.approx(its.mean(), abs=error + 2e-4)  # turns of 2e-3 on 0.1 mm
         assert own.std() == pytest.approx(its.std(), abs=error / np.sqrt(2))
     correlation = np.corrcoef(*expected)[0, 1]
-    assert np.corrcoef(*found)[0, 1] == pytest.approx(correlation, abs=4 * (1 - correlation**2) / np.sqrt(count) + 0.01)
+    assert np.corrcoef(found[0], found[1])[0, 1] == pytest.approx(
+        correlation, abs=4 * (1 - correlation**2) / np.sqrt(count) + 0.01
+    )

@@ -153,7 +153,7 @@ study: {{trials: 10}}
 
     def way(nominal: float) -> Array:
         shares = [1.0, nominal / 300, by, by * nominal / 100, 0.0]
-        return nominal + 1e-3 * np.array([1, 2, 3, 4, 0]) * np.array(shares)
+        return np.asarray(nominal + 1e-3 * np.array([1, 2, 3, 4, 0]) * np.array(shares))
 
     expected = {name: 3.0 + sense * way(at) for name, at in (("ahead", 12.0), ("home", 0.0), ("behind", -30.0))}
     expected["stroke"] = way(12.0) - way(-30.0)

@@ -199,11 +199,10 @@ def test_a_pin_off_the_middle_takes_the_larger_share_of_the_nearer_end() -> None
     )
     frame = np.eye(4)
     frame[2, 3] = -5.0
-    axis = HousedShaft(
-        "m", "axis", tuple(Bore("p.axis", k, np.array([0, 0, z])) for k, z in enumerate((-40.0, 10.0))), frame, "p"
-    )
-    ends = tuple(Bore("p.pin", k, np.array([*(30 * outwards[:2]), z])) for k, z in enumerate((-3.0, 7.0)))
-    pins = Pins("set", axis, (HousedShaft("m", "pin", ends, pose, "p"),))
+    first, second = (Bore("p.axis", k, np.array([0, 0, z])) for k, z in enumerate((-40.0, 10.0)))
+    axis = HousedShaft("m", "axis", (first, second), frame, "p")
+    low, high = (Bore("p.pin", k, np.array([*(30 * outwards[:2]), z])) for k, z in enumerate((-3.0, 7.0)))
+    pins = Pins("set", axis, (HousedShaft("m", "pin", (low, high), pose, "p"),))
     found = {own.contributor: np.array(own.matrix) for own in pins.moved()}
     turned = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
     for k, share in enumerate((0.16, 0.84)):

@@ -98,17 +98,14 @@ def implausible_shafts(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
 def implausible_angles(scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Axes that lean, and reducers that turn freely, by more than some degrees."""
     for name, spec in scene.distributed.items():
-        is_play = isinstance(spec, ReducerBacklashSpec)
-        if not is_play and not isinstance(spec, AxisInPlaneSpec | AxisOutOfPlaneSpec | ShaftAngleSpec):
+        if not isinstance(spec, ReducerBacklashSpec | AxisInPlaneSpec | AxisOutOfPlaneSpec | ShaftAngleSpec):
             continue
         far = larger_end(spec.distribution.resolve(scene.files))
         if spec.unit == "um" or abs(far) <= WIDEST_ANGLE + ROUNDING:
             continue
-        of = "free turn" if is_play else "lean of an axis"
-        yield (
-            ("tolerances", name, "distribution"),
-            f"expected a {of} of at most 5°, got {angle_text(far)}; check the unit",
-        )
+        of = "free turn" if isinstance(spec, ReducerBacklashSpec) else "lean of an axis"
+        words = f"expected a {of} of at most 5°, got {angle_text(far)}; check the unit"
+        yield ("tolerances", name, "distribution"), words
     for name, move in scene.of(ReducerSpec).items():
         if move.backlash is not None and move.backlash.internal > WIDEST_ANGLE + ROUNDING:
             words = f"expected a free turn of at most 5°, got {move.backlash}; check the unit"
