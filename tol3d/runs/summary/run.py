@@ -53,7 +53,7 @@ class StudySummary(Section):
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
     ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="requested basis of Ppk")
-    accept_ppk: Maybe[Annotated[float, Field(gt=0.0, lt=MOST_PPK)]] = Field(
+    accept_ppk: Maybe[Annotated[float, Field(gt=0.0, le=MOST_PPK)]] = Field(
         default=LEFT_OUT, description="Ppk that is asked of measures"
     )
 
