@@ -319,6 +319,61 @@ def test_a_difference_is_read_in_the_pose_of_both(tmp_path: Path) -> None:
         assert np.abs(found["d"]).max() > 0.1
 
 
+WITHOUT_TRAINS = """
+scene: arm without trains
+parts:
+  base: {kind: solid, features: {bore: {kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 60 mm}}}
+  link 1:
+    kind: solid
+    features:
+      pilot: {kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 30 mm}
+      bore: {kind: axis, at: [50 mm, 0 mm, 400 mm], axis: [0, 1, 0], length: 50 mm}
+  link 2:
+    kind: solid
+    placed: {at: [50 mm, 0 mm, 400 mm], z: [0, 1, 0], x: [1, 0, 0]}
+    features:
+      pilot: {kind: axis, at: [0 mm, 0 mm, 0 mm], axis: [0, 0, 1], length: 30 mm}
+      flange: {kind: plane, at: [500 mm, 0 mm, 0 mm], normal: [1, 0, 0], extent: [60 mm, 60 mm]}
+tolerances:
+  base off:
+    kind: plus_minus
+    of: base.bore
+    along: [1, 0, 0]
+    distribution: {kind: uniform, lower: -50 um, upper: 90 um}
+  link off:
+    kind: plus_minus
+    of: link 1.bore
+    along: [1, 0, 0]
+    distribution: {kind: uniform, lower: -20 um, upper: 70 um}
+moves:
+  stand: {kind: fix, part: base}
+  arm:
+    kind: open_chain
+    joints:
+      j1: {between: [base.bore, link 1.pilot]}
+      j2: {between: [link 1.bore, link 2.pilot]}
+    poses:
+      home: {j1: 0 deg, j2: 0 deg}
+      side: {j1: 100 deg, j2: -70 deg}
+      back: {j1: -150 deg, j2: 40 deg}
+measures:
+  worst: {kind: worst_position_error, of: link 2.flange, from: base}
+"""
+
+
+def test_the_worst_of_an_arm_without_trains_is_the_largest_over_poses(tmp_path: Path) -> None:
+    """A bore off by b, and one off by l on a link that stands at an angle: the size of b + l turned by that angle."""
+    system = system_of(WITHOUT_TRAINS, tmp_path)
+    slices, rng = component_slices(system), np.random.default_rng(5)
+    base, link = rng.uniform(-0.05, 0.09, SMALL), rng.uniform(-0.02, 0.07, SMALL)
+    deviations = np.zeros((SMALL, 2))
+    deviations[:, slices["base off"]], deviations[:, slices["link off"]] = base[:, None], link[:, None]
+    cosines = np.cos(np.radians([0.0, 100.0, -150.0]))[:, None]
+    sizes = np.sqrt(base**2 + link**2 + 2.0 * base * link * cosines).max(axis=0)
+    for method in ("exact", "analytic"):
+        assert answers(system, Trials(deviations, {}), method)["worst"] == pytest.approx(sizes, abs=1e-9), method
+
+
 def test_a_chain_on_a_chain_is_one_chain(tmp_path: Path) -> None:
     """The last joint as a chain of its own, which has another pose and lacks the first: it stands in its own first."""
     whole = arm_scene(measures=errors(), bores=False)

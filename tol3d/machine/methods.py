@@ -104,13 +104,12 @@ class MachineMethod:
         found = Answers(
             {name: values[name][:, None] for name in still}, details=shown, status=self._status(codes, still)
         )
-        if not reads_gears:
-            return self._with_poses(found, trials, [name for name in others if name not in still], Turned())
-        seen, failed = self._seen(trials, values, codes)
-        gears = Answers({})
-        if of_gears:
-            gears = self._without_axes(self.gears.answers(seen, of_gears), of_gears, failed)
-        turned = self._turned_by(seen, list(needed.values()), failed)
+        gears, turned = Answers({}), Turned()
+        if reads_gears:
+            seen, failed = self._seen(trials, values, codes)
+            if of_gears:
+                gears = self._without_axes(self.gears.answers(seen, of_gears), of_gears, failed)
+            turned = self._turned_by(seen, list(needed.values()), failed)
         found = self._with_poses(found, trials, [name for name in others if name not in still], turned)
         for measure in worst:
             found = _joined(found, self._worst(trials, measure, turned))
