@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from limit_states import Formula, Value
+from printing import printed
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
@@ -22,8 +23,10 @@ from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.tolerance_search import Question, Target
 from tol3d.analyses.what_if import what_if
 from tol3d.analyses.what_to_change import changes_of
+from tol3d.analyses.what_to_change_table import changes_lines
 from tol3d.distributions.normal import Normal
 from tol3d.errors import InputError
+from tol3d.report.page import page
 from tol3d.simulate import load
 from tol3d.study.acting import acting, looked_at
 from tol3d.study.overrides import simulation_of
@@ -164,9 +167,11 @@ def test_a_measure_on_which_nothing_acts_gets_a_sentence(tmp_path: Path) -> None
 def test_advice_on_a_measure_on_which_nothing_acts_names_no_tolerance(tmp_path: Path) -> None:
     own = "  d: {kind: distance, from: base.a, to: base.b, upper_limit: 0.9 mm}"
     simulation = scene(tmp_path, along("x", "[1, 0, 0]", "{kind: normal, sigma: 9 um, mean: 0 um}", "base.c"), "", own)
-    found = changes_of(response_of(simulation)).measures["d"]
-    assert found.now.out_ppm == 1e6
-    assert not found.proposals
+    found = changes_of(response_of(simulation))
+    assert found.measures["d"].now.out_ppm == 1e6
+    assert not found.measures["d"].proposals
+    said = " ".join(printed(page(*changes_lines(found, "scene")), 120).split())
+    assert said.endswith("no tolerance that acts on it can be changed: change the nominal geometry or the limit")
 
 
 def test_what_acts_alone_without_a_slope_has_the_whole_variance(tmp_path: Path) -> None:

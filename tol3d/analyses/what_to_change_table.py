@@ -218,6 +218,9 @@ def _brief(own: MeasureChanges, ppk: float) -> Iterator[str]:
         ]
         beside = "".join(f"; {_beside(other)}" for other in each.beside[:BRIEF_TOLD])
         yield f" {'or ' if k else ''}{' and '.join(steps)}: {_told(each.after)}{beside}"
+    if not own.tried:
+        yield " no tolerance that acts on it can be changed: change the nominal geometry or the limit"
+        return
     if not own.proposals:
         yield f" none of {counted(own.tried, 'change')} that were simulated helps without harm to another measure"
     if not any(each.reaches(ppk) for each in own.proposals):
