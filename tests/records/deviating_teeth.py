@@ -25,10 +25,12 @@ class ToothedUnit:
     Args:
         specimen: its eccentricities and play without deviating teeth.
         ahead: of each side by how far the flanks of driver and driven gear stand out on the line of action [mm].
+        before: pitches by which pairs of flanks of a side change before they otherwise would.
     """
 
     specimen: Specimen
     ahead: dict[Side, tuple[Array, Array]] = field(default_factory=dict)
+    before: dict[Side, float] = field(default_factory=dict)
 
     @property
     def pair(self) -> RigPair:
@@ -59,6 +61,7 @@ class ToothedUnit:
             return np.zeros_like(phi1)
         first, second = self.ahead[side]
         pitches = phi1 * self.pair.driver_teeth / (2 * math.pi) + (0.3 if side == "drive" else 0.8)
+        pitches += self.before.get(side, 0.0)
         latest = np.floor(pitches)
         candidates = []
         for back in range(math.ceil(CONTACT_RATIO)):
@@ -73,6 +76,12 @@ class ToothedUnit:
         count = a_tooth * self.pair.driver_teeth * self.pair.long_period_turns
         phi1 = (np.arange(count) + 0.5) * self.pair.long_period / count
         return phi1, self.driven_angle(phi1, "back") - self.driven_angle(phi1, "drive")
+
+    @property
+    def play_at_start(self) -> float:
+        """The backlash at phi1 = 0 [rad]."""
+        start = np.zeros(1)
+        return float((self.driven_angle(start, "back") - self.driven_angle(start, "drive"))[0])
 
     @property
     def teeth_close(self) -> float:

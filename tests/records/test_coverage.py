@@ -5,7 +5,7 @@ The truth is that of the simulated unit: its backlash in closed form (deviating_
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -65,9 +65,8 @@ def truth_of(unit: ToothedUnit, rig: Rig) -> dict[str, float]:
     constant = own.constant_part - unit.teeth_close
     play = constant * own.pair.driven_base_radius
     smooth = ToothedUnit(Specimen(own.pair, own.e1, own.theta1, own.e2, own.theta2, play))
-    start = np.zeros(1)
     found = {"e1": own.e1, "theta1": own.theta1, "e2": own.e2, "theta2": own.theta2, "jc": constant}
-    found["j0"] = float((unit.driven_angle(start, "back") - unit.driven_angle(start, "drive"))[0])
+    found["j0"] = unit.play_at_start
     for suffix, each in (("", unit), (" eccentric", smooth)):
         phi1, curve = each.curve()
         for name, sense in (("jmin", -1), ("jmax", 1)):
@@ -150,6 +149,41 @@ def test_intervals_hold_the_truth_of_other_classes(own: Class) -> None:
     """Thirty sets each."""
     inside = coverage(own, 30)
     assert min(inside.values()) >= fewest(30), inside
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("a_tooth", [3, 8])
+def test_ends_with_tooth_mesh_hold_the_truth_where_rows_are_far_apart(a_tooth: int) -> None:
+    """Five arc seconds of tooth mesh on either side: most of what ends reach lies between two rows.
+
+    The truth is the unit's closed form and the mesh, on 960 places a turn.
+    """
+    inside: Counter[str] = Counter()
+    for seed in range(24):
+        unit, rig = Class(0.0, samples=24 * a_tooth).unit(seed)
+        rig = replace(rig, tooth_mesh=5 * ARCSEC)
+        phi1, curve = unit.curve()
+        phi1, curve = np.append(phi1, 0.0), np.append(curve, unit.play_at_start)
+        phases = np.random.Generator(np.random.Philox(key=[rig.seed, 2])).uniform(0.0, 2 * math.pi, 6)
+        curve += rig.tooth_mesh * (np.sin(24 * phi1 + phases[5]) - np.sin(24 * phi1 + phases[4]))
+        figures = found_of(unit, rig).figures
+        for name, truth in (("jmin", curve.min()), ("jmax", curve.max()), ("j0", curve[-1])):
+            inside[name] += held(name, figures[name], float(truth), SHORT)
+    assert min(inside[name] for name in ("jmin", "jmax", "j0")) >= fewest(24), inside
+
+
+@pytest.mark.slow
+def test_the_first_backlash_holds_the_truth_where_teeth_step_beside_it() -> None:
+    """Pairs of flanks change within a row's distance of phi1 = 0: rows there may be of another pair than at 0."""
+    inside = 0
+    for seed in range(24):
+        unit, rig = Class(0.0015).unit(seed)
+        random = np.random.default_rng([seed, 1])
+        shift: dict[Side, float] = {"drive": 0.3, "back": 0.2}  # to where pairs change: 0.6 and 1 pitch
+        unit = replace(unit, before={side: own + random.uniform(-1, 1) / 15 for side, own in shift.items()})
+        figure = found_of(unit, rig).figures["j0"]
+        inside += held("j0", figure, unit.play_at_start, SHORT)
+    assert inside >= fewest(24)
 
 
 def test_the_measured_least_backlash_is_that_of_the_unit_and_not_of_a_smooth_curve() -> None:

@@ -89,13 +89,21 @@ def test_tooth_mesh_shows_in_the_spectrum_and_not_in_the_scatter() -> None:
     assert arcsec(math.sqrt(found.fit.variance)) == pytest.approx(0.5 * math.hypot(1, 27 / 48), rel=0.02)
 
 
-@pytest.mark.parametrize(("samples", "warned"), [(130, True), (100, True), (216, False)])
-def test_rows_too_far_apart_for_tooth_mesh_are_warned_of(samples: int, warned: bool) -> None:
-    """4.8 rows a tooth of 27, 3.7, and eight: only of the last is the 5″ of tooth mesh in the ends of the backlash."""
-    found = identified_by(REFERENCE, replace(ENCODERS, samples=samples, tooth_mesh=5 * ARCSEC))
-    words = [own for own in found.warnings if "rows a tooth of the driver: too few to tell tooth mesh" in own]
-    assert [own.split()[4] for own in words] == ([f"{samples / 27:.1f}"] if warned else [])
-    assert bool(found.fit.terms.teeth) is not warned
+@pytest.mark.parametrize(
+    ("samples", "orders", "words"),
+    [
+        (54, (), "2.0 rows a tooth of the driver: too few to tell tooth mesh"),
+        (81, (27,), "3.0 rows a tooth of the driver: tooth mesh is fitted once a tooth only"),
+        (100, (27, 54), "3.7 rows a tooth of the driver: tooth mesh is fitted once and twice a tooth only"),
+        (135, (27, 54), "5.0 rows a tooth of the driver: tooth mesh is fitted once and twice a tooth only"),
+        (216, (27, 54), ""),
+    ],
+)
+def test_rows_too_far_apart_for_tooth_mesh_are_warned_of(samples: int, orders: tuple[int, ...], words: str) -> None:
+    """Orders that rows tell apart are fitted; up to five rows a tooth, higher ones may be taken for them."""
+    found = identified_by(REFERENCE, replace(ENCODERS, turns=4.0, samples=samples, tooth_mesh=5 * ARCSEC))
+    assert found.fit.terms.teeth == orders
+    assert [words in own for own in found.warnings if "rows a tooth of the driver" in own] == [True] * bool(words)
 
 
 def test_torques_are_extrapolated_to_none() -> None:

@@ -15,6 +15,7 @@ from tol3d.records.fit import with_drift
 from tol3d.records.pair import ARCSEC, TURN, RigPair
 from tol3d.records.reading import Pass
 
+ROWS_A_TOOTH: Final = 5.0  # from more than which on tooth mesh and its second harmonic are told from higher orders
 LARGEST_CONDITION: Final = 10.0  # of the columns once per turn of either gear and the constant; 19 at one turn of 27/48
 OTHER_UNITS: Final = (("radians", "degrees", "deg", math.pi / 180), ("degrees", "radians", "rad", 180 / math.pi))
 """Mistaken units of angles: the unit read, the likely one, its symbol, and the factor that corrects them."""
@@ -85,10 +86,15 @@ def _neighbours(pair: RigPair, far: int = 2) -> list[tuple[int, int]]:
     return [(z1, z2) for z1, z2 in teeth if z1 > 2 and z2 > 2 and z1 * own[1] != z2 * own[0]]
 
 
-def condition_of(pair: RigPair, phi1: Array, rows: Array, twice: Sequence[int] = ()) -> float:
-    """Condition number of the columns once per turn of either gear, twice per turn of some, and the constant."""
+def condition_of(
+    pair: RigPair, phi1: Array, rows: Array, twice: Sequence[int] = (), teeth: Sequence[int] = ()
+) -> float:
+    """Condition number of the columns once per turn of either gear, twice per turn of some, and the constant.
+
+    `teeth` are orders of the driver besides, those of tooth mesh.
+    """
     turns = (phi1, pair.rate * phi1)
-    at = [*turns, *(2 * turns[gear - 1] for gear in twice)]
+    at = [*turns, *(2 * turns[gear - 1] for gear in twice), *(order * phi1 for order in teeth)]
     matrix = np.stack([*map(np.sin, at), *map(np.cos, at), np.ones_like(phi1)], axis=1)
     return float(np.linalg.cond(matrix * np.sqrt(rows)[:, None]))
 
@@ -199,19 +205,27 @@ def cautions(found: Identified, settings: Settings) -> tuple[str, ...]:
 
 
 def _sparse_rows(found: Identified) -> Iterator[str]:
-    """A warning of rows too far apart for tooth mesh, which is then no part of the fit."""
-    if found.fit.terms.teeth:
-        return
-    measured = found.fit.measured
-    a_tooth = {
-        side: measured.count([side]) / (measured.pair.driver_teeth * measured.turned[side])
-        for side in found.fit.terms.sides
+    """A warning of rows too far apart for all orders of tooth mesh that matter."""
+    measured, orders = found.fit.measured, len(found.fit.terms.teeth)
+    a_tooth = {  # steps from row to row: one fewer than rows in each pass
+        side: (measured.count([side]) - len(passes)) / (measured.pair.driver_teeth * measured.turned[side])
+        for side, passes in found.passes.items()
     }
     side = min(a_tooth, key=a_tooth.__getitem__)
+    if orders == 2 and round(a_tooth[side], 1) > ROWS_A_TOOTH:
+        return
+    if orders:
+        yield (
+            f"the {side} side has {a_tooth[side]:.1f} rows a tooth of the driver: tooth mesh is fitted "
+            f"{'once' if orders == 1 else 'once and twice'} a tooth only, and what it has of higher orders may be "
+            "taken for that: j_min, j_max and j_0 may lie off by as much on both sides together; measure more than "
+            f"{ROWS_A_TOOTH:g} rows a tooth, at places of a tooth that change from turn to turn"
+        )
+        return
     yield (
         f"the {side} side has {a_tooth[side]:.1f} rows a tooth of the driver: too few to tell tooth mesh, which j_min, "
         "j_max and j_0 and their intervals therefore leave out: each may lie off by what it is on both sides together; "
-        "measure more than 5 rows a tooth"
+        f"measure more than {ROWS_A_TOOTH:g} rows a tooth"
     )
 
 

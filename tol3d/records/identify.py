@@ -32,7 +32,6 @@ from tol3d.records.whole_backlash import ToothPart, tooth_part, whole_backlash
 
 Tell = Callable[[str], None]
 
-ROWS_A_TOOTH: Final = 5.0  # from which on tooth mesh and its second harmonic are fitted along
 RESET: Final = 1e-3 * ARCSEC  # of a backlash at the start that is zero because encoders were set to zero
 FAR: Final = 6.0  # standard deviations of a row, within which two of them are alike
 SAME_TORQUE: Final = 0.02  # of the largest torque; two levels nearer than that are one
@@ -117,16 +116,13 @@ def identified(pair: RigPair, sides: Mapping[Side, Iterable[Pass]], senses: Sens
 
 
 def _terms(measured: Measured, passes: Mapping[Side, tuple[Aligned, ...]], settings: Settings) -> Terms:
-    z1 = measured.pair.driver_teeth
-    dense = all(measured.count([side]) > ROWS_A_TOOTH * z1 * measured.turned[side] for side in passes)
     every = [own.torques for each in passes.values() for own in each]
     known = [torques for torques in every if torques is not None]
     ends = [end for torques in known for end in torques]
     wound = len(known) == len(every) and max(ends) - min(ends) > SAME_TORQUE * max(ends)
-    twice = told_apart_twice(
-        measured.pair, [(measured.points[side].phi1, measured.rows[side]) for side in measured.points]
-    )
-    return Terms(twice=twice, winding=wound, drift=settings.drift, teeth=(z1, 2 * z1) if dense else ())
+    sides = [(measured.points[side].phi1, measured.rows[side]) for side in measured.points]
+    twice, teeth = told_apart_twice(measured.pair, sides), told_apart_teeth(measured.pair, sides)
+    return Terms(twice=twice, winding=wound, drift=settings.drift, teeth=teeth)
 
 
 def told_apart_twice(pair: RigPair, sides: Sequence[tuple[Array, Array]]) -> tuple[int, ...]:
@@ -135,6 +131,20 @@ def told_apart_twice(pair: RigPair, sides: Sequence[tuple[Array, Array]]) -> tup
     for encoders in every:
         if all(condition_of(pair, phi1, rows, encoders) <= LARGEST_CONDITION for phi1, rows in sides):
             return encoders
+    return ()
+
+
+def told_apart_teeth(pair: RigPair, sides: Sequence[tuple[Array, Array]]) -> tuple[int, ...]:
+    """Orders of tooth mesh that the places and rows of each side tell from the other columns.
+
+    Three rows at the same places of each tooth tell the first one alone, which two do not; rows at other places of
+    other teeth tell both, however few.
+    """
+    z1 = pair.driver_teeth
+    every: tuple[tuple[int, ...], ...] = ((z1, 2 * z1), (z1,))
+    for orders in every:
+        if all(condition_of(pair, phi1, rows, teeth=orders) <= LARGEST_CONDITION for phi1, rows in sides):
+            return orders
     return ()
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.records.cautions import LARGEST_CONDITION, condition_of
-from tol3d.records.identify import ROWS_A_TOOTH, told_apart_twice
+from tol3d.records.identify import told_apart_teeth, told_apart_twice
 from tol3d.records.pair import TURN, RigPair, Side, Specimen, driven_angle
 from tol3d.records.prediction import BacklashModel, Figure, length_and_phase, quantile_of
 from tol3d.records.rig import Rig
@@ -68,9 +68,8 @@ def _plan(specimen: Specimen, rig: Rig, turns: float, *, drift: bool) -> RigPlan
     condition = condition_of(pair, phi1, np.ones_like(phi1))
     if condition > LARGEST_CONDITION:
         return RigPlan(turns, 2 * rows, condition, {})
-    z1 = pair.driver_teeth
-    teeth = (z1, 2 * z1) if min(rig.samples, MOST_POSITIONS) > ROWS_A_TOOTH * z1 else ()
-    twice = told_apart_twice(pair, [(phi1, np.ones_like(phi1))])
+    sides = [(phi1, np.ones_like(phi1))]
+    twice, teeth = told_apart_twice(pair, sides), told_apart_teeth(pair, sides)
     terms = Terms(twice=twice, drift=drift, teeth=teeth)
     normal = sum(_normal(specimen, terms, side, phi1) for side in SIDES) * (rows / len(phi1))
     covariance = np.asarray(np.linalg.inv(normal) * row_variance(pair, rig), dtype=np.float64)

@@ -21,6 +21,8 @@ from tol3d.records.terms import difference_columns
 
 MOST_CELLS_A_TOOTH: Final = 32  # of the driver
 FEWEST_CELLS_A_TOOTH: Final = 2
+PLACES_A_TOOTH: Final = 32  # at least, at which the curve is read for its ends: 0.1 % of tooth mesh may lie between
+BESIDE: Final = 2  # places, over which the filter spreads a step from tooth to tooth
 MOST_CELLS: Final = 2**15  # over the long period, where that leaves so many a tooth
 LONGEST_GAP: Final = 0.5  # of a tooth without rows, that counts as measured
 DRAWS: Final = 400  # curves; a half-width is known to 5 % by them
@@ -115,26 +117,43 @@ def whole_backlash(fit: Fit, model: BacklashModel, teeth: ToothPart) -> WholeBac
         model: the backlash of the eccentricities.
         teeth: the rest.
     """
-    mean = model.backlash(teeth.phi1) + teeth.mean
+    count = len(teeth.phi1)
+    finer = math.ceil(PLACES_A_TOOTH * fit.measured.pair.driver_teeth * fit.measured.pair.long_period_turns / count)
+    step = fit.measured.pair.long_period / (count * finer)
+    phi1: Array = np.asarray(np.arange(count * finer) * step, dtype=np.float64)
+    smooth: Array = model.backlash(phi1) + _mesh(fit, phi1)
+    left: Array = teeth.mean - _mesh(fit, teeth.phi1)
+    mean: Array = smooth + _between(left, finer)
     start: list[Array] = []
     ends: dict[int, list[Array]] = {-1: [], 1: []}
     places: dict[int, list[Array]] = {-1: [], 1: []}
-    for curves in _drawn(fit, model, teeth, mean):
+    for curves in _drawn(fit, model, teeth, phi1, mean):
         start.append(curves[:, 0])
         for sense in (-1, 1):
             at = np.argmax(sense * curves, axis=1)
-            places[sense].append(teeth.phi1[at])
+            places[sense].append(phi1[at])
             ends[sense].append(curves[np.arange(len(curves)), at])
-    found = [
-        _extreme(mean, teeth, sense, np.concatenate(ends[sense]), np.concatenate(places[sense])) for sense in (-1, 1)
-    ]
+    every_other = [smooth + np.roll(_between(left[k::2], 2 * finer), k * finer) for k in (0, 1)]
+    found = []
+    for sense in (-1, 1):
+        first, second = (float(np.max(sense * own)) for own in every_other)
+        further = abs(first - second)
+        drawn = np.concatenate(ends[sense]), np.concatenate(places[sense])
+        found.append(_extreme(phi1, mean, teeth, sense, *drawn, further))
     at_start = np.concatenate(start)
-    left = teeth.mean[[-1, 0, 1]] - _mesh(fit, teeth.phi1[[-1, 0, 1]])
-    beside = float(np.abs(left[[0, 2]] - left[1]).max()) / 2  # by how much teeth may move it between two places
+    around = left[np.arange(-BESIDE, BESIDE + 1)]  # rows of the first place may lie beyond a step of the teeth
+    beside = float(np.abs(around - left[0]).max())
     own = Figure(float(mean[0]), float(np.quantile(np.abs(at_start - mean[0]), CONFIDENCE)) + beside)
     if model.anchored is not None:
         own = Figure(float(mean[0]), model.anchored)
     return WholeBacklash(own, found[0], found[1], teeth.covered)
+
+
+def _between(values: Array, finer: int) -> Array:
+    """Values (..., n) at evenly spaced places of a period, and on straight lines between them: (..., n finer)."""
+    step = np.arange(finer) / finer
+    own, following = values[..., None], np.roll(values, -1, axis=-1)[..., None]
+    return np.asarray((own + (following - own) * step).reshape(*values.shape[:-1], -1))
 
 
 def _cells(fit: Fit) -> int:
@@ -151,7 +170,7 @@ def _noise(fit: Fit) -> float:
     """Standard deviation of a row, by the median difference of neighbours: teeth step seldom.
 
     From neighbour to neighbour, and from each to the middle of both its neighbours, which slopes do not move; teeth add
-    to either.
+    to either. Residuals of a fit of n rows are smaller than their noise by the root of its freedom over n.
     """
     steps, bends = [], []
     for side in fit.terms.sides:
@@ -161,7 +180,8 @@ def _noise(fit: Fit) -> float:
         steps.append(np.abs(np.diff(left)) / np.sqrt(one[1:] + one[:-1]))
         bend = left[1:-1] - (left[2:] + left[:-2]) / 2
         bends.append(np.abs(bend) / np.sqrt(one[1:-1] + (one[2:] + one[:-2]) / 4))
-    return min(float(np.median(np.concatenate(own))) for own in (steps, bends)) / MEDIAN
+    scatter = min(float(np.median(np.concatenate(own))) for own in (steps, bends)) / MEDIAN
+    return scatter * math.sqrt(fit.measured.count(fit.terms.sides) / max(fit.freedom, 1.0))
 
 
 def _bridged(seen: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
@@ -203,21 +223,24 @@ def _rates(fit: Fit, phi1: Array) -> Array:
     return difference_columns(pair, fit.terms, phi1, pair.rate * phi1 + ahead)
 
 
-def _drawn(fit: Fit, model: BacklashModel, teeth: ToothPart, mean: Array) -> Iterator[Array]:
-    """Curves that the rows leave possible, (some, n), each beside one as far on the other side of the mean."""
+def _drawn(fit: Fit, model: BacklashModel, teeth: ToothPart, phi1: Array, mean: Array) -> Iterator[Array]:
+    """Curves that the rows leave possible, (some, n), each beside one as far on the other side of the mean.
+
+    Places phi1 are those of the teeth's part, or some times as many.
+    """
     random = np.random.Generator(np.random.Philox(SEED))
-    rates, count = _rates(fit, teeth.phi1), len(mean)
+    rates, count, finer = _rates(fit, phi1), len(teeth.phi1), len(phi1) // len(teeth.phi1)
+    seen = np.repeat(teeth.measured, finer)
     rooted = [_root(own) for own in (fit.unscaled * teeth.noise**2, fit.told_apart)]
-    some = max(1, AT_ONCE // count)
+    some = max(1, AT_ONCE // len(phi1))
     for first in range(0, DRAWS // 2, some):
         own = min(some, DRAWS // 2 - first)
         noise = np.fft.rfft(random.standard_normal((own, count)))
         draw = random.standard_normal((own, len(fit.values)))
-        parts = [
-            (draw @ root) @ rates.T + np.fft.irfft(noise * np.sqrt(strength), count)
-            for root, strength in zip(rooted, (teeth.known, teeth.unknown), strict=True)
-        ]
-        beside = np.where(teeth.measured, *parts)
+        fitted = [(draw @ root) @ rates.T for root in rooted[: 1 if teeth.covered else 2]]
+        rest = [np.fft.irfft(noise * np.sqrt(strength), count) for strength in (teeth.known, teeth.unknown)]
+        beside = fitted[0] if teeth.covered else np.where(seen, *fitted)
+        beside = beside + _between(np.where(teeth.measured, *rest), finer)
         if model.anchored is not None:
             beside += model.anchored / model.quantile * random.standard_normal((own, 1)) - beside[:, :1]
         for sign in (1.0, -1.0):
@@ -230,23 +253,25 @@ def _root(covariance: Array) -> Array:
     return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)) @ vectors.T)
 
 
-def _extreme(mean: Array, teeth: ToothPart, sense: int, ends: Array, places: Array) -> Extreme:
+def _extreme(
+    phi1: Array, mean: Array, teeth: ToothPart, sense: int, ends: Array, places: Array, further: float
+) -> Extreme:
     """An end of what was measured, with as much on either side as drawn ones lie off; or the middle of drawn ones.
 
     Drawn ends lie further out than the measured one by as much as noise may have driven that one out. Where not all
     was measured, the interval reaches from drawn ends to that of the mean: real teeth come again, drawn ones do not.
-    Between two places the curve may go further, by about what places of even and of odd number differ by.
+    Between two places of the teeth's part the curve may go `further`: by about what it differs by, if that is read at
+    places of even or of odd number alone.
     """
     tail, own = (1.0 - CONFIDENCE) / 2, sense * float(np.max(sense * mean))
     low, high = np.quantile(ends, [tail, 1.0 - tail]).tolist()
     if teeth.covered:
         off = float(np.quantile(np.abs(ends - own), CONFIDENCE))
         low, high = own - off, own + off
-    further = abs(float(np.max(sense * mean[::2]) - np.max(sense * mean[1::2])))
     low, high = min(low, own) - further, max(high, own) + further
-    at, period = float(teeth.phi1[np.argmax(sense * mean)]), float(teeth.phi1[1]) * len(mean)
+    at, period = float(phi1[np.argmax(sense * mean)]), float(phi1[1]) * len(mean)
     apart = np.abs(np.mod(places - at + period / 2, period) - period / 2)
     may_be = sense * mean >= sense * own - (high - low)  # other places, whose interval of that width reaches the end's
-    elsewhere = np.abs(np.mod(teeth.phi1[may_be] - at + period / 2, period) - period / 2)
+    elsewhere = np.abs(np.mod(phi1[may_be] - at + period / 2, period) - period / 2)
     wide = max(float(np.quantile(apart, CONFIDENCE)), float(elsewhere.max())) + float(teeth.phi1[1])
     return Extreme(Figure((low + high) / 2, (high - low) / 2), Figure(at, min(wide, period / 2)))
