@@ -198,13 +198,13 @@ def test_positions_over_the_room_as_linear_programmes_find_them(kept: list[str],
 @pytest.mark.parametrize(("kept", "at"), FRAMES, ids=lambda own: "|".join(own) or "none")
 @pytest.mark.parametrize("kind", ["centred", "random"])
 def test_both_methods_differ_by_second_order(kept: list[str], at: list[str], kind: str) -> None:
-    """A tenth of the deviations and of the room leaves a hundredth."""
+    """A tenth of the deviations and of the room leaves a hundredth; a random float multiplies it sweep by sweep."""
     _, bare = gauged(kept, at, None)
     drawn_of, off = slice(bare.width, bare.width + 7), np.random.default_rng(5).normal(0.0, 0.01, (12, bare.width))
     rng = np.random.default_rng(6)
     rays = rng.uniform(-1.0, 1.0, (12, 7))
     left = []
-    for factor in (1.0, 0.1):
+    for factor in (0.1, 0.01):
         floating = Floating("random", drawn_of) if kind == "random" else Floating("centred")
         _, assembly = gauged(kept, at, floating, factor * ROOM)
         assembly = replace(assembly, width=bare.width + 7)
@@ -216,7 +216,7 @@ def test_both_methods_differ_by_second_order(kept: list[str], at: list[str], kin
             linear = torsors.values(assembly, rows, [name])[name]
             largest = max(largest, float(np.abs(exact - linear).max()))
         left.append(largest)
-    assert left[0] < 5e-3  # a turn of 0.2 / 10 on 0.2 mm
+    assert left[0] < (2e-4 if kind == "random" else 5e-5)  # a turn of 0.02 / 10 on 0.02 mm
     assert left[1] < 1.5e-2 * left[0] + 1e-9
 
 

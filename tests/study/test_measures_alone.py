@@ -23,7 +23,8 @@ ROUNDING = 1e-9
 
 def read(scene: Scene, names: Mapping[str, MeasureEntry]) -> dict[tuple[str, str], Array]:
     """Values of measures by both methods, in a scene that has them alone."""
-    simulation = simulation_of(scene.model_copy(update={"measures": dict(names), "published": {}}))
+    study = scene.study.model_copy(update={"witness": 0})
+    simulation = simulation_of(scene.model_copy(update={"measures": dict(names), "published": {}, "study": study}))
     system, trials = simulation.system, drawn(simulation, 0, COUNT)
     found = dict[tuple[str, str], Array]()
     for method in ("exact", "analytic"):

@@ -80,7 +80,6 @@ def run(
     """Simulate a scene: analytic model and 3D simulation side by side."""
     _refuse(force and resume, "--resume continues the run that --force would replace; leave out one of them")
     _refuse(workers is not None and scheduler is not None, "--scheduler has its own workers; leave out --workers")
-    asked = accepted_of(accept, accept_ppk)
     _refuse(quiet and verbose, "--quiet says less and --verbose more; leave out one of them")
     _refuse(no_picture and pictures is not None, "--no-picture draws nothing; leave out --pictures")
     wanted = None if no_picture else pictures.value if pictures else "worst"
@@ -89,6 +88,7 @@ def run(
     from tol3d.numerics.seldom import load_when_used
 
     load_when_used()
+    asked = accepted_of(accept, accept_ppk)
 
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report

@@ -13,7 +13,7 @@ from typing import Final, Protocol, runtime_checkable
 from tol3d.scene import Scene
 from tol3d.scene.place import Place
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Remembered
+from tol3d.system.remembered import Remembered
 
 TOP: Final = Place(1, 1)
 

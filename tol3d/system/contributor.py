@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
 
 from tol3d.distributions import DeviationLaw
-from tol3d.system.draw import Draw, Remembered
+from tol3d.system.draw import Draw
+from tol3d.system.remembered import Remembered
 
 
 class Contributor(Protocol):

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.system.draw import Draw, Remembered
+from tol3d.system.draw import Draw
 from tol3d.system.faults import UnfitError
+from tol3d.system.remembered import Remembered
 
 Given = Mapping[str, Array]
 """Components (components, trials) [mm, rad or K] of the contributors that a draw reads, by their names."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
+from tol3d.system.remembered import Remembered
 
 Values = Callable[[Array], Array]
 """A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
@@ -50,19 +51,6 @@ class Draw(Protocol):
     def ends(self, values: Values, *, turning: bool) -> Array:
         """Both ends of the deviation (2, components), in the direction in which a measure changes most."""
         ...
-
-
-_FOUND: dict[tuple[type, type], bool] = {}
-
-
-class Remembered(type(Protocol)):  # type: ignore[misc]  # what Protocol is made by
-    """Makes protocols that look at each type once: Python's own `isinstance` takes 30 us, and draws are asked often."""
-
-    def __instancecheck__(cls, instance: object) -> bool:
-        key = (cls, type(instance))
-        if key not in _FOUND:
-            _FOUND[key] = bool(super().__instancecheck__(instance))
-        return _FOUND[key]
 
 
 @runtime_checkable

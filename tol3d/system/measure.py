@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Literal, Protocol, runtime_checkable
 
-from tol3d.system.draw import Remembered
 from tol3d.system.pooled_statistic import PooledStatistic
 from tol3d.system.positions import Positions, Take
+from tol3d.system.remembered import Remembered
 from tol3d.system.spectrum import Spectrum
 
 Worse = Literal["low", "high"]

@@ -11,8 +11,9 @@ from tol3d.distributions import Distribution
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import Draw, Remembered
+from tol3d.system.draw import Draw
 from tol3d.system.normals import groups_of
+from tol3d.system.remembered import Remembered
 
 
 @runtime_checkable

@@ -15,8 +15,9 @@ import numpy as np
 
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.numerics.arrays import Array
-from tol3d.system.draw import Ball, Draw, Each, Planar, Remembered, Scalar
+from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
 from tol3d.system.each_planar import EachOwn
+from tol3d.system.remembered import Remembered
 
 
 @runtime_checkable

@@ -23,7 +23,6 @@ from tol3d.runs.summary.values import (
     Sentence,
     Sha256,
 )
-from tol3d.statistics.limits import MOST_PPK
 from tol3d.strict import refused
 from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.outcome import SEATED
@@ -53,7 +52,7 @@ class StudySummary(Section):
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
     ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="requested basis of Ppk")
-    accept_ppk: Maybe[Annotated[float, Field(gt=0.0, le=MOST_PPK)]] = Field(
+    accept_ppk: Maybe[Annotated[float, Field(gt=0.0)]] = Field(
         default=LEFT_OUT, description="Ppk that is asked of measures"
     )
 
