@@ -43,7 +43,7 @@ def ends_alone(contributor: Ended, slopes: Array, *, turning: bool) -> Array:
         return np.full((2, len(slopes)), np.nan)
     if isinstance(contributor.draw, Each):
         return np.stack([np.where(slopes > 0.0, law.low, law.high), np.where(slopes > 0.0, law.high, law.low)])
-    ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)
+    ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)[:2]
     return ends if float(ends[0] @ slopes) <= float(ends[1] @ slopes) else ends[::-1]
 
 

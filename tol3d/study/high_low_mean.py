@@ -1,7 +1,8 @@
 """High-low-mean shares: one contributor at its ends, the others at their means, as 3DCS ranks contributors.
 
 They stand beside shares of the variance because published tables mix the two senses. A length in a random
-direction acts along the direction in which it changes the measure most.
+direction acts along the direction in which it changes the measure most; where the measure changes alike to both sides,
+as the size of a vector does, the range is the root of the sum of squares over directions across each other.
 
 All ends of all contributors are built in one batch for all measures. Which way a draw acts may follow from values that
 it asks for: what it asks is noted, answered with that of all others, and handed to it when it is asked again. Where it
@@ -197,7 +198,12 @@ class _Ranges:
     def _take(self, own: "_Alone", name: str) -> None:
         """Take the range between ends that were built."""
         if (states := own.of(name)) is not None:
-            self.by_measure[name][self.places[own.contributor.name]] = np.ptp([self.middle[name], *states])
+            self.by_measure[name][self.places[own.contributor.name]] = _range(self.middle[name], states)
+
+
+def _range(middle: float, states: Array) -> float:
+    """Largest less smallest of three states, over pairs of ends (2 pairs,)."""
+    return math.hypot(*(float(np.ptp([middle, *pair])) for pair in states.reshape(-1, 2)))
 
 
 class _NotKnownError(Exception):
@@ -264,7 +270,7 @@ class _Alone:
             return math.nan
         rows, found = self.read_at[name]
         to_sides, *_ = np.linalg.lstsq(self._sides(rows), found - middle)
-        return float(np.ptp([0.0, *(self._sides(ends) @ to_sides)]))
+        return _range(0.0, self._sides(ends) @ to_sides)
 
     def _sides(self, rows: Array) -> Array:
         off = rows - self.mean[0, self.columns]

@@ -1,8 +1,8 @@
 """Draws: how the components of a deviation come from uniforms, and where their ends lie."""
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -12,9 +12,7 @@ from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 from tol3d.system.remembered import Remembered
-
-Values = Callable[[Array], Array]
-"""A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
+from tol3d.system.steepest import Values, along, steepest_ends
 
 
 class Draw(Protocol):
@@ -49,7 +47,10 @@ class Draw(Protocol):
         ...
 
     def ends(self, values: Values, *, turning: bool) -> Array:
-        """Both ends of the deviation (2, components), in the direction in which a measure changes most."""
+        """Both ends of the deviation (2, components), in the direction in which a measure changes most.
+
+        Of a measure that changes alike to both sides, pairs of ends in other directions follow (2 pairs, components).
+        """
         ...
 
 
@@ -184,10 +185,7 @@ class Planar:
         law = self.distribution
         if self.direction is not None and not turning:
             return np.outer([law.low, law.high], [math.cos(self.direction), math.sin(self.direction)])
-        east, west, north, south = values(law.radius * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]))
-        steepest = math.atan2(north - south, east - west)
-        along = law.radius * np.array([math.cos(steepest), math.sin(steepest)])
-        return np.stack([along, -along])
+        return steepest_ends(values, np.zeros(2), np.full(2, law.radius), partial(along, law.radius))
 
 
 @dataclass(frozen=True)
@@ -218,11 +216,7 @@ class Ball:
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: both ends of the radius along the steepest direction."""
         radius = self.distribution.radius
-        found = values(radius * np.concatenate([np.eye(3), -np.eye(3)]))
-        slope = found[:3] - found[3:]
-        size = float(np.sqrt((slope * slope).sum()))
-        along = radius * (slope / size if size > 0.0 else np.array([1.0, 0.0, 0.0]))
-        return np.stack([along, -along])
+        return steepest_ends(values, np.zeros(3), np.full(3, radius), partial(along, radius))
 
 
 @dataclass(frozen=True)

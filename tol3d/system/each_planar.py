@@ -2,14 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 
 from tol3d.distributions import Distribution
 from tol3d.numerics.arrays import Array
-from tol3d.system.draw import Planar, Values
+from tol3d.system.draw import Planar
 from tol3d.system.normals import Group, groups_of, shifted
+from tol3d.system.steepest import Values, along, steepest_ends
 
 
 class EachOwn:
@@ -82,9 +84,5 @@ class EachPlanar(EachOwn):
         law, count = self.distribution, len(self.names)
         if self.direction is not None and not turning:
             return np.tile(self.each.ends(values, turning=False), (1, count))
-        alone = law.radius * np.concatenate([np.eye(2 * count), -np.eye(2 * count)])
-        found = values(alone)
-        slopes = found[: 2 * count] - found[2 * count :]
-        size = float(np.sqrt((slopes * slopes).sum()))
-        along = law.radius * (slopes / size if size > 0.0 else np.eye(2 * count)[0])
-        return np.stack([along, -along])
+        steps = np.full(2 * count, law.radius)
+        return steepest_ends(values, np.zeros(2 * count), steps, partial(along, law.radius))

@@ -14,8 +14,8 @@ from tol3d.distributions import Distribution, Uniform
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, Given
-from tol3d.system.draw import Values
 from tol3d.system.normals import Group, scalars
+from tol3d.system.steepest import Values
 
 Law = Literal["disc", "interval", "room"]
 

@@ -14,8 +14,9 @@ from tol3d.distributions import Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Given
-from tol3d.system.draw import Draw, Values
+from tol3d.system.draw import Draw
 from tol3d.system.normals import scalars
+from tol3d.system.steepest import Values
 
 
 @dataclass(frozen=True)

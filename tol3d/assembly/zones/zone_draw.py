@@ -17,8 +17,9 @@ from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.system.contributor import Contributor
-from tol3d.system.draw import JointDraw, Values
+from tol3d.system.draw import JointDraw
 from tol3d.system.normals import Group, scalars
+from tol3d.system.steepest import Values, steepest_ends
 
 LEAST_STEP = 1e-9  # mm; of a gradient, where a zone of width 0 has no sigma
 
@@ -142,11 +143,7 @@ class ZoneDraw(ABC):
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: as far as the components reach along the measure's gradient, and against it."""
         steps = np.maximum(self.sigmas, LEAST_STEP)
-        found = values(self.mean_vector + np.concatenate([np.diag(steps), -np.diag(steps)]))
-        gradient = (found[: len(steps)] - found[len(steps) :]) / (2.0 * steps)
-        if not np.isfinite(gradient).all():  # its direction is unknown where builds beside the mean fail
-            return np.full((2, len(steps)), np.nan)
-        return np.stack([self.furthest(gradient), self.furthest(-gradient)])
+        return steepest_ends(values, self.mean_vector, steps, self.furthest)
 
 
 @dataclass(frozen=True)

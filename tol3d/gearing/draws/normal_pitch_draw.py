@@ -11,7 +11,7 @@ import scipy
 from tol3d.distributions import standard_normal
 from tol3d.gearing.draws.pitch_draw import PitchDraw, centred
 from tol3d.numerics.arrays import Array
-from tol3d.system.draw import Values
+from tol3d.system.steepest import Values
 
 END_SIGMAS = 3.0
 """Sigmas at the ends of a normal law."""

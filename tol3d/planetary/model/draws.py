@@ -24,8 +24,9 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
-from tol3d.system.draw import Draw, Each, Planar, Scalar, Values
+from tol3d.system.draw import Draw, Each, Planar, Scalar
 from tol3d.system.each_planar import EachOwn, EachPlanar, parts_of
+from tol3d.system.steepest import Values, steepest_ends
 
 
 @dataclass(frozen=True)
@@ -75,9 +76,7 @@ class EachZone(EachOwn):
         All bores at their worst ends at once would be far rarer than the end of one.
         """
         steps, mean = np.maximum(np.sqrt(np.diagonal(self.covariance)), LEAST_STEP), np.array(self.mean(turning=False))
-        found = values(mean + np.concatenate([np.diag(steps), -np.diag(steps)]))
-        slopes = (found[: len(steps)] - found[len(steps) :]) / (2 * steps)
-        return np.stack([self._reach(slopes), self._reach(-slopes)])
+        return steepest_ends(values, mean, steps, self._reach)
 
     def _reach(self, slopes: Array) -> Array:
         """Reach of all components along slopes, each as large a part of its own reach as its slopes are of all."""
