@@ -21,7 +21,7 @@ MOST_MEASURES: Final = 3
 MOST_BUILDS: Final = 1000
 """For each change."""
 SHARE: Final = 0.1
-"""Of what the run took."""
+"""Part of the time that the run took."""
 SECONDS: Final = 0.5
 """For all measures, of a run that took less than five; by the method's stated cost of a build."""
 

@@ -234,7 +234,7 @@ def asked(response: Response, deviations: Array, positions: Mapping[str, Array])
 
 
 def beyond(response: Response, values: Array) -> NDArray[np.bool_]:
-    """Which values (n, measures) are beyond a limit of their measures, or are none."""
+    """Flags of values (n, measures) that are beyond a limit of their measures, or are none."""
     fails = ~np.isfinite(values)
     for k, own in enumerate(response.measures):
         with np.errstate(invalid="ignore"):

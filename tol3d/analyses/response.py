@@ -176,7 +176,7 @@ class Response:
 
     @property
     def copula(self) -> Copula:
-        """Which contributors are correlated; of the normals of each block the first mixes into the others."""
+        """Correlated contributors; of the normals of each block the first mixes into the others."""
         return self.simulation.copula
 
     # what is built ----------------------------------------------------------------------------------

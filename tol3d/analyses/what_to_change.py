@@ -326,7 +326,7 @@ class _Asked:
 
     @cached_property
     def now(self) -> Array:
-        """Of the measure, as it is."""
+        """Samples of the measure as it is."""
         return self.built(self.response, self.deviations)[:, 0]
 
     def changes(self) -> MeasureChanges:
@@ -383,7 +383,7 @@ class _Asked:
 
     @cached_property
     def shift(self) -> float:
-        """How far the mean lies from the middle of both limits, or from where the Ppk is what is asked for."""
+        """Distance of the mean from the middle of both limits, or from where the Ppk is what is asked for."""
         good = self.now[~np.isnan(self.now)]
         if len(good) < 2:
             return 0.0

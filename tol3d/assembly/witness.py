@@ -128,7 +128,7 @@ def _bodies(start: Feature, end: Feature) -> tuple["_Body", "_Body"]:
 
 
 def _over(pair: tuple[Feature, Feature], line: Array, plane: Array) -> Surface:
-    """What of the axis of a cylinder is over a plane, from the frames of both (4, 4)."""
+    """The part of a cylinder's axis that is over a plane, from the frames of both (4, 4)."""
     shape, flat = (own.shape for own in pair)
     assert isinstance(shape, Axis)
     assert isinstance(flat, Plane | RoundPlane)

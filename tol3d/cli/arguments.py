@@ -110,7 +110,7 @@ def accepted_ppk(text: str | float) -> float:
 
 
 def accepted_of(share: float | None, ppk: float | None) -> "Accepted | None":
-    """What --accept or --accept-ppk asks of measures; None if neither is given."""
+    """Demand of --accept or --accept-ppk on measures; None if neither is given."""
     from tol3d.report.verdict import AcceptedPpk
 
     if share is not None and ppk is not None:

@@ -88,13 +88,13 @@ def leading_shares(measure: MeasureSummary) -> Column | None:
 
 
 def unexplained_of(measure: MeasureSummary, column: Column) -> Unexplained | None:
-    """What a column's shares are by, where a regression explains too little of the variance; else None."""
+    """Means by which a column's shares were found where a regression explains too little; else None."""
     by_method = measure.shares_by or {}
     return by_method.get(column.method) if column.method in ("analytic", "geometric") else None
 
 
 def unexplained_words(measure: MeasureSummary) -> str:
-    """What is not attributed, and by what the leading shares are instead; "" where a regression explains enough."""
+    """The share not attributed, and by what the leading ones are instead; "" where a regression explains enough."""
     leading = leading_shares(measure)
     unexplained = unexplained_of(measure, leading) if leading else None
     if unexplained is None:

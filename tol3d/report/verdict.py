@@ -72,14 +72,14 @@ Accepted = float | AcceptedPpk
 
 
 def accepted_in(run: RunSummary, given: Accepted | None = None) -> Accepted:
-    """What is asked of the measures of a run: as given, or what its study asks, or 0.27 % out of limits."""
+    """Demand on the measures of a run: as given, or its study's, or 0.27 % out of limits."""
     if given is not None:
         return given
     return ACCEPTED_PPM if run.study.accept_ppk is None else AcceptedPpk(run.study.accept_ppk)
 
 
 def accepted_text(accepted: Accepted, measures: Iterable[MeasureSummary] = ()) -> str:
-    """What is asked of measures: a share out of limits with the Ppk that it stands for, or a Ppk with its share.
+    """Words for a demand on measures: a share out of limits with the Ppk that it stands for, or a Ppk with its share.
 
     >>> accepted_text(2700.0), accepted_text(AcceptedPpk(1.33))
     ('0.27 % out of limits (Ppk 1.00 with two limits, 0.93 with one)', 'Ppk 1.33 (33 ppm beyond each limit)')

@@ -105,7 +105,7 @@ Trials = Annotated[
 
 
 class AcceptSpec(Strict):
-    """What is asked of measures with limits."""
+    """Demands on measures with limits."""
 
     ppk: float = Field(
         gt=0.0, lt=MOST_PPK, description="least Ppk, by the method that the verdict states, such as 1.33"

@@ -47,6 +47,6 @@ def steepest_ends(values: Values, mean: Array, steps: Array, furthest: Callable[
 
 
 def along(radius: float, slopes: Array) -> Array:
-    """Where a function with these slopes is largest in a ball about 0; on the first axis if it has none."""
+    """The point of a ball about 0 where a function with these slopes is largest; on the first axis if it has none."""
     size = float(np.sqrt((slopes * slopes).sum()))
     return radius * (slopes / size if size > 0.0 else np.eye(len(slopes))[0])

@@ -19,7 +19,7 @@ LONGEST, LONGEST_HEAD = 38, 26
 SIGN: Final = 6.2
 """Width of a sign of a name."""
 DARK: Final = 0.75
-"""Of the largest share; digits of cells beyond it have the colour of the paper, others a rim of it."""
+"""Part of the largest share; digits of cells beyond it have the colour of the paper, others a rim of it."""
 FEWEST: Final = 2
 """Measures of a matrix; of one the contributors' bars say all."""
 
