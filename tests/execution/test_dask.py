@@ -171,6 +171,34 @@ def test_one_worker_killed_in_mid_run_changes_no_bit(engine: str, cluster: Clust
 
 
 @pytest.mark.slow
+def test_a_run_whose_workers_are_all_lost_says_so_and_goes_on_later(
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(execution_module, "ANSWER_S", 1.0)
+    address, workers = cluster
+    told: list[int] = []
+
+    def kill_all(count: int) -> None:
+        told.append(count)
+        if len(told) == 10:
+            for worker in workers:
+                worker.kill()
+
+    with pytest.raises(InputError, match=r"its workers are gone; finished blocks are kept.*the same command resumes"):
+        run_scene(
+            SPUR_PAIR,
+            overrides=STUDIES["analytic"],
+            out=tmp_path / "run",
+            execution=Execution(scheduler=address),
+            watch=Watch(progress=kill_all),
+        )
+    resumed = run_scene(
+        SPUR_PAIR, overrides=STUDIES["analytic"], out=tmp_path / "run", execution=Execution(resume=True)
+    )
+    assert resumed.summary["timing"]["resumed_trials"] >= 9 * BLOCK
+
+
+@pytest.mark.slow
 def test_a_run_whose_scheduler_is_lost_goes_on_later(cluster: Cluster, tmp_path: Path) -> None:
     address, _ = cluster
     study = STUDIES["analytic"]

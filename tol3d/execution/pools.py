@@ -170,15 +170,17 @@ class _ByAWorker(Pending[T]):
     future: Any
 
     def result(self) -> T:
+        patience = ANSWER_S / 2
         while True:
             try:
-                found: T = self.future.result(timeout=None if self.future.done() else ANSWER_S / 2)
+                found: T = self.future.result(timeout=patience)  # a result that is ready can be lost with its worker
                 return found
             except TimeoutError:
-                if self.future.done():  # the call's own
+                if self.future.status == "error":  # the call's own
                     raise
             if not self.client.nthreads():
                 self._await_a_worker()
+            patience *= 2  # a large result over a slow network
 
     def cancel(self) -> None:
         self.future.cancel()
