@@ -8,7 +8,8 @@ from places import SCENES
 from scipy.linalg import null_space
 from scipy.stats import ortho_group
 
-from tol3d.assembly.placing.holding import Asked, held_by, in_words, taken
+from tol3d.assembly.placing.asked import Asked
+from tol3d.assembly.placing.holding import held_by, in_words, taken
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.assembly.system import AssemblySystem

@@ -14,7 +14,8 @@ from tol3d.assembly.model import Assembly, Fix, Measured, Move, Point, Rest, Wel
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.placing.plan import after
+from tol3d.assembly.placing.placer import Fixing
+from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.torsors import method as torsors
 
 Array = NDArray[np.float64]
@@ -136,11 +137,11 @@ def test_the_ends_of_a_rocking_are_placed_from_the_first_rest_on(monkeypatch: py
     one_by_one = [placing.values(model, row[None], ["seen"])["seen"][0][0] for row in trials]
     laid = []
 
-    def counted(move: Any, world: Any) -> Any:
-        laid.append(move)
-        return after(move, world)
+    def counted(placed: Any) -> Any:
+        return lambda own, world: laid.append(own) or placed(own, world)
 
-    monkeypatch.setattr(placing, "after", counted)
+    for kind in (Fixing, Resting):
+        monkeypatch.setattr(kind, "placed", counted(kind.placed))
     found, codes = placing.values(model, trials, ["seen"])["seen"]
     assert np.array_equal(found, one_by_one)
     assert not codes.any()

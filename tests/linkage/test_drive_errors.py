@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 from tol3d import Overrides, run_scene
 from tol3d.assembly.model.statuses import DOES_NOT_CLOSE, OK, OTHER_BRANCH
 from tol3d.assembly.torsors.world import World
+from tol3d.linkage import loop
 from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.loop import ClosedLoop
 from tol3d.simulate import load, simulation_of
@@ -191,19 +192,19 @@ def test_trials_against_two_equations_in_two_unknowns(sample: Sample, pose: str)
 def test_a_flipped_sign_in_one_method_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "drive.yaml"
     path.write_text(drive_text(error("along", "against: frame.axis, component: along, at: middle")), "utf-8")
-    right = ClosedLoop.displaced
+    right = loop.displaced
     made = assembled(path.read_text("utf-8"), tmp_path)
     columns = {own.name: column for own, column in made.slices}["zero of travel 2"]
 
-    def flipped(self: ClosedLoop, world: World) -> World:
-        found = right(self, world)
-        for part in self.parts:
+    def flipped(move: ClosedLoop, world: World) -> World:
+        found = right(move, world)
+        for part in move.parts:
             signs = np.ones(found.parts[part].shape[1])
             signs[columns] = -1.0
             found = found.with_part_at(part, found.parts[part] * signs)
         return found
 
-    monkeypatch.setattr(ClosedLoop, "displaced", flipped)
+    monkeypatch.setattr(loop, "displaced", flipped)
     found = run_scene(path, out=tmp_path / "run", overrides=Overrides(trials=2000)).summary["measures"]["along"]
     fault, *_ = found["agreement"]["explanation"]["faults"]
     assert fault.startswith("the two methods disagree on zero of travel 2: ")

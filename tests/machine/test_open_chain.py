@@ -25,6 +25,7 @@ from machine.housed import Array
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.machine import chain
 from tol3d.machine.chain import Chain
 from tol3d.machine.closed_form import with_joints
 from tol3d.machine.system import MachineSystem
@@ -183,8 +184,8 @@ def test_a_closed_form_adds_up_what_joints_and_bores_do(tmp_path: Path) -> None:
 def test_a_joint_that_turns_the_other_way_on_one_method_is_told(tmp_path: Path, monkeypatch: Any) -> None:
     from tol3d.assembly.torsors.torsor import cross_matrix
 
-    def turned_back(self: Chain, world: Any) -> Any:
-        for joint in self.joints:
+    def turned_back(move: Chain, world: Any) -> Any:
+        for joint in move.joints:
             at, z = world.origin(joint.axis), world.axis(joint.axis)
             sign = -1.0 if joint.name == "joint 3" else 1.0
             turned = world.columns.zeros(6)
@@ -194,7 +195,7 @@ def test_a_joint_that_turns_the_other_way_on_one_method_is_told(tmp_path: Path, 
             )
         return world
 
-    monkeypatch.setattr(Chain, "displaced", turned_back)
+    monkeypatch.setattr(chain, "displaced", turned_back)
     place = tmp_path / "arm.yaml"
     place.write_text(arm_scene(measures=errors()), "utf-8")
     run = run_scene(place, overrides=Overrides(trials=400), out=tmp_path / "run").summary

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -13,8 +13,9 @@ from tol3d import Overrides, SceneError, load_scene, run_scene
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
 from tol3d.assembly.grammar.moves import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import StatedMove
+from tol3d.assembly.model import Acts, Move
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Pose
 from tol3d.distributions import StatedDistribution
 from tol3d.kinds import all_kinds
@@ -31,18 +32,15 @@ RUNS_OUT = 0.04
 
 
 @dataclass(frozen=True, eq=False)
-class Jack(StatedMove):
+class Jack(Move):
     """A part on a screw that stands on a plane, raised along its normal."""
 
-    title: str
+    acts: ClassVar[Acts] = Acts("together", "carried by", f"{__name__}:raising", f"{__name__}:raised")
+
     part: str
     foot: str
     plane: str
     column: int
-
-    @property
-    def name(self) -> str:
-        return self.title
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -53,23 +51,31 @@ class Jack(StatedMove):
         return (part_of(self.plane),)
 
     @property
-    def pairs(self) -> Sequence[tuple[str, str]]:
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
         return [(self.foot, self.plane)]
 
-    def placing(self, nominal: Any) -> Any:
-        return self
+
+@dataclass(frozen=True, eq=False)
+class Raising(Placer):
+    move: Jack
 
     def placed(self, world: Any) -> Any:
         """As it lies nominally, risen along the plane's normal of the trial."""
-        raised = world.columns[self.column] * world.placed(self.plane).direction
-        own = Pose.of(world.assembly.part[self.part].pose)
-        codes = np.where(world.columns[self.column] > RUNS_OUT, NO_CONTACT, OK).astype(np.int8)
-        return world.with_part_at(self.part, Pose(own.turn, own.shift + raised)), codes
+        move, height = self.move, world.columns[self.move.column]
+        own = Pose.of(world.assembly.part[move.part].pose)
+        codes = np.where(height > RUNS_OUT, NO_CONTACT, OK).astype(np.int8)
+        raised = height * world.placed(move.plane).direction
+        return world.with_part_at(move.part, Pose(own.turn, own.shift + raised)), codes
 
-    def displaced(self, world: Any) -> Any:
-        torsor = world.columns.zeros(6)
-        torsor[:3, self.column] = world.axis(self.plane)
-        return world.with_part_at(self.part, torsor)
+
+def raising(move: Jack, nominal: Any) -> Raising:
+    return Raising(move)
+
+
+def raised(move: Jack, world: Any) -> Any:
+    torsor = world.columns.zeros(6)
+    torsor[:3, move.column] = world.axis(move.plane)
+    return world.with_part_at(move.part, torsor)
 
 
 class JackSpec(StatedMoveSpec):
@@ -94,7 +100,7 @@ class JackSpec(StatedMoveSpec):
     def contributors(self, name: str, scene: Scene) -> Sequence[PlainContributor]:
         return [PlainContributor(f"height of {name}", "jack", Scalar(self.height.resolve(scene.files)))]
 
-    def stated(self, name: str, understood: Any, touched: Any, drawn: Mapping[str, slice], pose: str) -> StatedMove:
+    def stated(self, name: str, understood: Any, touched: Any, drawn: Mapping[str, slice], pose: str) -> Move:
         return Jack(name, self.part, self.foot, self.on, drawn[f"height of {name}"].start)
 
 

@@ -11,7 +11,7 @@ from tol3d.assembly.from_scene import understood
 from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.methods import PlacingMethod
-from tol3d.assembly.model import Assembly, StatedMove
+from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, WITH_LOOPS
 from tol3d.assembly.system import AssemblySystem, assembly_system
 from tol3d.scene import Scene
@@ -238,7 +238,7 @@ class PosedMethod:
 
 def has_loops(assembly: Assembly) -> bool:
     """True if moves close loops, which then have statuses of their own."""
-    return any(isinstance(move, StatedMove) and move.closes_loops for move in assembly.moves)
+    return any(move.acts.closes_loops for move in assembly.moves)
 
 
 def _some(poses: Sequence[str]) -> Sequence[str]:

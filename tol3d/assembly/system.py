@@ -18,12 +18,11 @@ from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, PoseErrorSpec
 from tol3d.assembly.methods import PlacingMethod, TorsorMethod
-from tol3d.assembly.model import Assembly, Engage, Move
+from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely
 from tol3d.assembly.nominal_relations import misses
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.placing.world import SolidReader
 from tol3d.assembly.torsors import method as torsors
@@ -353,7 +352,7 @@ def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
             break  # the first with its cached properties
         poses = {**poses, **settled}
         made = meaning.at(poses, pose)
-        if not any(isinstance(move, Engage) and move.floating.kind == "toward" for move in made.assembly.moves):
+        if not any(move.is_pushed for move in made.assembly.moves):
             break
         made = _pushed_alike(made, drawn)
     return made
@@ -361,14 +360,11 @@ def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
 
 def _pushed_alike(settled: Meant, drawn: Meant) -> Meant:
     """The settled model, its parts pushed in the directions of the drawn one: a push does not turn itself."""
-    moves, second_order = list[Move](settled.assembly.moves), 0.0
-    for k, (move, own) in enumerate(zip(settled.assembly.moves, planned(drawn.assembly).moves, strict=True)):
-        if isinstance(move, Engage) and isinstance(own, Engaging) and move.floating.kind == "toward":
-            turn = settled.assembly.part[settled.assembly.features[move.floating.at].part].pose[:3, :3]
-            moves[k] = replace(move, floating=replace(move.floating, along=turn.T @ own.floats.along))
-            pose = settled.assembly.part[move.part].pose
-            gone = pose[:3, :3] @ own.origin + pose[:3, 3] - own.middle  # by the push, not from where it was drawn
-            second_order += float(np.linalg.norm(gone) * np.linalg.norm(pose[:3, :3] - own.floats.turn, 2))
+    moves, second_order = list(settled.assembly.moves), 0.0
+    for k, room in planned(drawn.assembly).rooms.items():
+        if room.move.is_pushed:
+            moves[k], gone = room.pushed_alike(moves[k], settled.assembly)
+            second_order += gone
     return replace(settled, assembly=replace(settled.assembly, moves=tuple(moves)), second_order=second_order)
 
 

@@ -134,7 +134,7 @@ def loop_of(
         for each in spec.pose_names
     }
     errors = _deviations(spec, kinematics, position, drawn)
-    return ClosedLoop(kinematics, position, inputs_of(spec), stations, plays, errors)
+    return ClosedLoop(name, kinematics, position, inputs_of(spec), stations, plays, errors)
 
 
 def _play(joint: str, room: ClearanceSpec | PlaySpec | None, drawn: Mapping[str, slice]) -> JointPlay | None:

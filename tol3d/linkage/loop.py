@@ -1,14 +1,16 @@
-"""Closed loops among the parts of an assembly, on both methods; see StatedMove."""
+"""Closed loops among the parts of an assembly, on both methods; see Move."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import StatedMove
+from tol3d.assembly.model import Acts, Move
 from tol3d.assembly.model.statuses import NO_BUILD, OK
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Codes, Pose
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.world import World as TorsorWorld
@@ -63,7 +65,7 @@ class LoopInput:
 
 
 @dataclass(frozen=True, eq=False)
-class ClosedLoop(StatedMove):
+class ClosedLoop(Move):
     """A loop in one of its poses.
 
     Args:
@@ -74,6 +76,16 @@ class ClosedLoop(StatedMove):
         plays: of joints, by their names.
         errors: of inputs, by their names.
     """
+
+    acts: ClassVar[Acts] = Acts(
+        "together",
+        "carried by",
+        f"{__name__}:closing",
+        f"{__name__}:displaced",
+        presents="tol3d.linkage.presenting.tables:loop_blocks",
+        workspace="tol3d.linkage.presenting.workspace_picture:workspace_map",
+        closes_loops=True,
+    )
 
     kinematics: Kinematics
     position: Position
@@ -88,33 +100,13 @@ class ClosedLoop(StatedMove):
         return self.kinematics.structure
 
     @property
-    def closes_loops(self) -> bool:
-        """See StatedMove."""
-        return True
-
-    @property
-    def tables(self) -> str:
-        """See StatedMove."""
-        return "tol3d.linkage.presenting.tables:loop_blocks"
-
-    @property
-    def workspace(self) -> str:
-        """See StatedMove."""
-        return "tol3d.linkage.presenting.workspace_picture:workspace_map"
-
-    @property
-    def name(self) -> str:
-        """See StatedMove."""
-        return self.structure.name
-
-    @property
     def parts(self) -> tuple[str, ...]:
-        """See StatedMove."""
+        """See Move."""
         return self.structure.bodies
 
     @property
     def carriers(self) -> tuple[str, ...]:
-        """See StatedMove."""
+        """See Move."""
         before = ((own.joint.of if own.reverse else own.joint.on) for own in self.structure.tree)
         return tuple(feature.partition(".")[0] for feature in before)
 
@@ -129,13 +121,13 @@ class ClosedLoop(StatedMove):
         return tuple(found)
 
     @property
-    def pairs(self) -> Sequence[tuple[str, str]]:
-        """See StatedMove."""
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        """See Move."""
         return self._pairs
 
     @property
     def words(self) -> str:
-        """See StatedMove."""
+        """See Move."""
         return ", ".join(own.joint.name for own in self.structure.steps)
 
     @cached_property
@@ -143,27 +135,24 @@ class ClosedLoop(StatedMove):
         """Plays by what they make of frames, to be compared."""
         return tuple((name, *play.told) for name, play in self.plays.items())
 
-    def placing(self, nominal: PlacedWorld) -> "Closing":
-        """See StatedMove."""
-        return Closing(self)
 
-    def displaced(self, world: TorsorWorld) -> TorsorWorld:
-        """See StatedMove."""
-        plays = {name: play.torsor(world.columns) for name, play in self.plays.items()}
-        inputs = {}
-        for name in self.structure.inputs:
-            row = world.columns.zeros(1)
-            for own in self.errors.get(name, ()):
-                row[0, own.column] += own.share
-            inputs[name] = row
-        found = Displaced(self.structure, plays, inputs).torsors(world)
-        for part, torsor in zip(self.structure.bodies, found, strict=True):
-            world = world.with_part_at(part, torsor)
-        return world
+def displaced(move: ClosedLoop, world: TorsorWorld) -> TorsorWorld:
+    """The world after a loop is closed, to first order."""
+    plays = {name: play.torsor(world.columns) for name, play in move.plays.items()}
+    inputs = {}
+    for name in move.structure.inputs:
+        row = world.columns.zeros(1)
+        for own in move.errors.get(name, ()):
+            row[0, own.column] += own.share
+        inputs[name] = row
+    found = Displaced(move.structure, plays, inputs).torsors(world)
+    for part, torsor in zip(move.structure.bodies, found, strict=True):
+        world = world.with_part_at(part, torsor)
+    return world
 
 
 @dataclass(frozen=True, eq=False)
-class Closing:
+class Closing(Placer):
     """A loop as it is closed in trials; see Placer."""
 
     move: ClosedLoop
@@ -244,3 +233,8 @@ class Closing:
             place, sense = own.given[name]
             found[:, place] += sense * error
         return found
+
+
+def closing(move: ClosedLoop, nominal: PlacedWorld) -> Closing:
+    """A loop as it is closed in trials."""
+    return Closing(move)

@@ -8,18 +8,18 @@ joint leaves free, which is a deviation like others.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from tol3d.assembly.model import StatedMove
-from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.model import Acts, Move
+from tol3d.assembly.placing.placer import ALL_OK, Placer
 from tol3d.assembly.placing.poses import Codes, Pose, about
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.torsor import cross_matrix
 from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.numerics.arrays import Array
 
-_MOVED: Codes = np.full(1, OK, dtype=np.int8)
 _Z = np.array([[0.0], [0.0], [1.0]])
 
 
@@ -49,16 +49,13 @@ class Joint:
 
 
 @dataclass(frozen=True, eq=False)
-class Chain(StatedMove):
+class Chain(Move):
     """A chain of links in one of its poses."""
 
-    title: str
+    acts: ClassVar[Acts] = Acts("together", "carried by", f"{__name__}:turning", f"{__name__}:displaced")
+
     joints: tuple[Joint, ...]
     carried: tuple[str, ...]
-
-    @property
-    def name(self) -> str:
-        return self.title
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -69,29 +66,27 @@ class Chain(StatedMove):
         return self.carried
 
     @property
-    def pairs(self) -> Sequence[tuple[str, str]]:
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
         return [(joint.seat, joint.axis) for joint in self.joints]
 
     @property
     def frames(self) -> Sequence[str]:
         return [joint.frame for joint in self.joints if joint.frame]
 
-    def placing(self, nominal: PlacedWorld) -> "Turning":
-        return Turning(self)
 
-    def displaced(self, world: TorsorWorld) -> TorsorWorld:
-        """See StatedMove: a turn about an axis where that is nominally; a motion of the seat moves the link back."""
-        for joint in self.joints:
-            at, z = world.origin(joint.axis), world.axis(joint.axis)
-            turned = world.columns.zeros(6)
-            turned[:3, joint.column], turned[3:, joint.column] = cross_matrix(at) @ z, z
-            own = world.frame_on_part(joint.frame, joint.part) if joint.frame else world.on_body(joint.seat, joint.part)
-            world = world.with_part_at(joint.part, world.placed(joint.axis) + turned - own)
-        return world
+def displaced(move: Chain, world: TorsorWorld) -> TorsorWorld:
+    """The world after links turn about axes where these are nominally; a motion of the seat moves the link back."""
+    for joint in move.joints:
+        at, z = world.origin(joint.axis), world.axis(joint.axis)
+        turned = world.columns.zeros(6)
+        turned[:3, joint.column], turned[3:, joint.column] = cross_matrix(at) @ z, z
+        own = world.frame_on_part(joint.frame, joint.part) if joint.frame else world.on_body(joint.seat, joint.part)
+        world = world.with_part_at(joint.part, world.placed(joint.axis) + turned - own)
+    return world
 
 
 @dataclass(frozen=True, eq=False)
-class Turning:
+class Turning(Placer):
     """A chain as it places its links; see Placer."""
 
     move: Chain
@@ -108,7 +103,7 @@ class Turning:
                 own = seat.pose @ Pose.of(self._nominal_seat(world, joint)).inverse
             pose = world.placed(joint.axis).pose @ turned @ Pose.of(joint.zero) @ own.inverse
             world = world.with_part_at(joint.part, pose)
-        return world, _MOVED
+        return world, ALL_OK
 
     @staticmethod
     def _nominal_seat(world: PlacedWorld, joint: Joint) -> Array:
@@ -117,6 +112,11 @@ class Turning:
         seat = assembly.features[joint.seat]
         part = np.linalg.inv(assembly.part[joint.part].pose) @ assembly.part[seat.part].pose
         return np.asarray(part @ seat.frame, dtype=np.float64)
+
+
+def turning(move: Chain, nominal: PlacedWorld) -> Turning:
+    """A chain as it places its links."""
+    return Turning(move)
 
 
 def turned_about_z(angle: float) -> Array:

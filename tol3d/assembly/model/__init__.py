@@ -7,27 +7,24 @@ from tol3d.assembly.model.assembly import Assembly, Part
 from tol3d.assembly.model.datum_frame import Datum, DatumFrame, Gauges
 from tol3d.assembly.model.feature import Axis, Cone, Contribution, Feature, Plane, Point, RoundPlane, Shape, Slot
 from tol3d.assembly.model.measures import Measured
+from tol3d.assembly.model.move import Acts, Move, PartMove
 from tol3d.assembly.model.moves import (
     BestFit,
-    Bolt,
     Contact,
-    Engage,
-    Engagement,
     Fit,
     Fix,
-    Floating,
     Locate,
     Mate,
-    Move,
     Pair,
     Relation,
     Rest,
     Touch,
     Weld,
 )
-from tol3d.assembly.model.stated_move import StatedMove
+from tol3d.assembly.model.play import Bolt, Engage, Engagement, Floating
 
 __all__ = [
+    "Acts",
     "Assembly",
     "Axis",
     "BestFit",
@@ -50,6 +47,7 @@ __all__ = [
     "Move",
     "Pair",
     "Part",
+    "PartMove",
     "Plane",
     "Point",
     "Relation",
@@ -57,7 +55,6 @@ __all__ = [
     "RoundPlane",
     "Shape",
     "Slot",
-    "StatedMove",
     "Touch",
     "Weld",
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tol3d.assembly.model.datum_frame import DatumFrame
 from tol3d.assembly.model.feature import Feature
 from tol3d.assembly.model.measures import Measured
-from tol3d.assembly.model.moves import Move
+from tol3d.assembly.model.move import Move
 from tol3d.numerics.arrays import Array
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tol3d.assembly.model.feature import Contribution
-from tol3d.assembly.model.moves import Floating
+from tol3d.assembly.model.play import Floating
 from tol3d.numerics.arrays import Array
 
 Modifier = Literal["mmc", "lmc"]

@@ -1,14 +1,16 @@
 """Moves: each places one body, a part and what is welded to it, against placed ones."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Final, Literal
-
-import numpy as np
+from dataclasses import dataclass
+from typing import ClassVar, Final, Literal
 
 from tol3d.assembly.model.feature import Axis, Contribution, Plane, Point, RoundPlane, Shape
-from tol3d.assembly.model.stated_move import StatedMove
+from tol3d.assembly.model.move import Acts, Move, PartMove
 from tol3d.numerics.arrays import Array
+
+PLACING: Final = "tol3d.assembly.placing"
+TORSORS: Final = "tol3d.assembly.torsors"
+"""Package of each method's code for the moves bundled with tol3d."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class Contact:
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
+class Touch(PartMove):
     """A part is laid against placed ones at its contacts, all at once, near its nominal pose.
 
     Freedoms that no contact decides stay nominal: the least turn, then the least shift of the middle of the part's
@@ -42,10 +44,18 @@ class Touch:
             in the nominal frame of the first target's part; a contact that would have to pull is lost. None: not asked.
     """
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts("touch", "touch on", f"{PLACING}.touching:touching", f"{TORSORS}.touching:touched")
+
     contacts: tuple[Contact, ...]
     pressed: Array | None = None
+
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return [(own.moving, own.target) for own in self.contacts]
+
+    @property
+    def words(self) -> str:
+        return f"{len(self.contacts)} contacts"
 
 
 def is_inner(shape: Shape) -> bool:
@@ -108,15 +118,22 @@ class Pair:
 
 
 @dataclass(frozen=True)
-class Fix:
+class Fix(PartMove):
     """The part stays at its nominal pose."""
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts("fixed", "fixed", f"{PLACING}.placer:fixing", f"{TORSORS}.world:fixed")
+
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return ()
+
+    @property
+    def holds(self) -> Sequence[tuple[str, str]]:
+        return [("all six", "as drawn")]
 
 
 @dataclass(frozen=True, eq=False)
-class Locate:
+class Locate(PartMove):
     """Six contacts of points on planes, met at once: three_two_one or six_plane.
 
     Args:
@@ -125,10 +142,20 @@ class Locate:
         points_on: which side the points ride on.
     """
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts(
+        "six contacts", "six contacts on", f"{PLACING}.locating:locating", f"{TORSORS}.mating:located"
+    )
+
     pairs: tuple[Pair, ...]
     points_on: PointsOn = "part"
+
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return [(own.moving, own.target) for own in self.pairs]
+
+    @property
+    def words(self) -> str:
+        return f"points ride on the {self.points_on}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +175,7 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class BestFit:
+class BestFit(PartMove):
     """The pose of least weighted squares of residuals, or of the least largest residual; finite, no scale.
 
     Freedoms without effect on residuals stay nominal: least rotation, then the least shift of the middle of the points.
@@ -159,10 +186,24 @@ class BestFit:
         criterion: "squares" or "minimax" (largest length of a fit's residual vector).
     """
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts(
+        "best fit", "best fit on", f"{PLACING}.best_fitting:best_fitting", f"{TORSORS}.best_fitting:fitted"
+    )
+
     fits: tuple[Fit, ...]
     criterion: Literal["squares", "minimax"] = "squares"
+
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return [(own.moving, own.target) for own in self.fits]
+
+    @property
+    def terms(self) -> int:
+        return 6 if self.criterion == "minimax" else 0
+
+    @property
+    def words(self) -> str:
+        return f"{len(self.fits)} points, {self.criterion}"
 
 
 @dataclass(frozen=True)
@@ -188,19 +229,27 @@ class Relation:
 
 
 @dataclass(frozen=True)
-class Mate:
+class Mate(PartMove):
     """Relations in order; each turns by the least rotation, about its moving origin in the trial where shifts are free.
 
     Freedoms that none takes stay as nominal.
     """
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts("mate", "mate on", f"{PLACING}.mating:mating", f"{TORSORS}.mating:mated")
+
     relations: tuple[Relation, ...]
+
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return [(own.moving, own.target) for own in self.relations]
+
+    @property
+    def words(self) -> str:
+        return ", ".join(f"{own.kind} {own.target}" for own in self.relations)
 
 
 @dataclass(frozen=True, eq=False)
-class Rest:
+class Rest(PartMove):
     """One-sided contacts of points on planes, without friction: the part goes as far along the force as they allow.
 
     Which contacts carry follows from the lever arms of the pose; where nominally some carry nothing the part rocks,
@@ -216,17 +265,33 @@ class Rest:
         relations: met first, as those of a mate, and kept.
     """
 
-    name: str
-    part: str
+    acts: ClassVar[Acts] = Acts(
+        "rest", "rest on", f"{PLACING}.resting:resting", f"{TORSORS}.resting:rested",
+        presents="tol3d.assembly.presenting.tables:rest_blocks", rocks=True,
+    )  # fmt: skip
+
     pairs: tuple[Pair, ...]
     force: Array
     at: Array
     points_on: PointsOn = "part"
     relations: tuple[Relation, ...] = ()
 
+    @property
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        related = [(own.moving, own.target) for own in self.relations]
+        return [*related, *((own.moving, own.target) for own in self.pairs)]
+
+    @property
+    def terms(self) -> int:
+        return 6
+
+    @property
+    def words(self) -> str:
+        return f"{len(self.pairs)} contacts, points ride on the {self.points_on}"
+
 
 @dataclass(frozen=True)
-class Weld:
+class Weld(Move):
     """Parts that are placed already become one body, which may be moved again.
 
     Args:
@@ -235,145 +300,27 @@ class Weld:
         others: what is welded to it.
     """
 
-    name: str
+    acts: ClassVar[Acts] = Acts("weld", "welded to", f"{PLACING}.placer:welding", f"{TORSORS}.world:welded")
+
     part: str
     others: tuple[str, ...]
 
-
-@dataclass(frozen=True, eq=False)
-class Bolt:
-    """A bolt that goes through two holes, loose in both.
-
-    Args:
-        diameter: nominal [mm].
-        size_by: contributions to it (1, components); positive is larger.
-        frame: nominally in the world (4, 4): z along it, the origin in the middle of all ends of its holes.
-        reach: distance from there to the farthest of these ends [mm], over which a tilt counts.
-    """
-
-    diameter: float
-    size_by: tuple[Contribution, ...]
-    frame: Array
-    reach: float
-
-
-@dataclass(frozen=True, eq=False)
-class Engagement:
-    """A pin in a hole, a pin in a slot or a tab in a slot; or two holes with a bolt through both.
-
-    Its offset at a place: how far the outer one's point lies from the inner one's, across the inner one's axis (both
-    components of a hole) or across its width (one of a slot). Its clearance: half of how much larger the inner one is.
-
-    Args:
-        inner, outer: names of the features: hole or slot, pin or tab.
-        places: where it engages, (places, 3) in the frame of the inner one: on a hole's axis, on a slot's plane.
-        outer_places: the same in the frame of the outer one.
-        bolt: through two holes, `inner` and `outer`, whose ends the places are, each hole's own. Its axis is a line;
-            the offset at a hole's end is how far it lies from the hole's axis, across that, where it passes the end.
-    """
-
-    inner: str
-    outer: str
-    places: Array
-    outer_places: Array
-    bolt: Bolt | None = None
+    @property
+    def parts(self) -> tuple[str, ...]:
+        return ()
 
     @property
-    def name(self) -> str:
-        """In words."""
-        return f"{self.outer} in {self.inner}" if self.bolt is None else f"bolt in {self.inner} and {self.outer}"
+    def feature_pairs(self) -> Sequence[tuple[str, str]]:
+        return ()
 
+    @property
+    def joined(self) -> tuple[str, ...]:
+        return (self.part, *self.others)
 
-SWEEPS: Final = 12
-"""Sweeps of a random float before the last: each leaves half of what sigmas are off or less, in up to five freedoms."""
-SWEEPS_OF_BOLTS: Final = 4
-"""The same of a part with bolts, where a chord takes a hundred times as long: sigmas are right to 1 %."""
+    @property
+    def words(self) -> str:
+        return ", ".join(self.others)
 
-
-@dataclass(frozen=True, eq=False)
-class Floating:
-    """Position of a part with play within its clearance.
-
-    - centred: where the least slack (clearance less offset) is largest; of several such poses that in which the least
-      of the others is, and so on.
-    - random, by_pairs: the first engagement anywhere in its disc (in the lens of both ends' discs), the second one
-      anywhere in what is left of its slot; each as often by area.
-    - random: anywhere in the room of its freedoms, each pose as often: shift at the middle of all places and turn times
-      their largest distance from it; of bolts, where each of them has a place. By Gibbs sampling: from the centred
-      pose, freedom by freedom, the part is drawn anew along the chord of the room, SWEEPS times over; the last sweep is
-      drawn as deviations, those before it follow from the last deviation.
-    - toward: where a point of the part goes farthest along a direction; what that leaves open is as centred as may be.
-
-    Args:
-        kind: its kind.
-        columns: of the draws: components of a unit disc (and of an interval -1 to 1), or a shift and a turn (6) of the
-            last sweep, each from -1 to 1, and the start of the sweeps before it; 0 for none: then a shift and a turn
-            are shares of the way from the centred pose to where the room ends.
-        by_pairs: see random.
-        at: the name of the feature, for `toward`.
-        along: (3,), of unit length, in the frame of its part, for `toward`.
-    """
-
-    kind: Literal["centred", "random", "toward"]
-    columns: slice = field(default_factory=lambda: slice(0, 0))
-    by_pairs: bool = False
-    at: str = ""
-    along: Array | None = None
-
-    def sweeps(self, drawn: Array, freedoms: Sequence[int], bolts: int) -> Array:
-        """Uniforms of a random float (sweeps * freedoms, n), sweep by sweep; all but the last sweep NaN for no start.
-
-        Those before the last sweep are SplitMix64's (Steele et al., OOPSLA 2014), seeded by the bits of the start.
-
-        Args:
-            drawn: a shift and a turn, and the start (7, n).
-            freedoms: which of the shift and the turn, in the order of the sweep.
-            bolts: number of them.
-        """
-        count = (SWEEPS_OF_BOLTS if bolts else SWEEPS) * len(freedoms)
-        start = np.ascontiguousarray(drawn[6])
-        places = np.arange(1, count + 1, dtype=np.uint64)[:, None]
-        mixed = start.view(np.uint64)[None] + places * np.uint64(0x9E3779B97F4A7C15)
-        mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        before = ((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(11)).astype(np.float64) * 2.0**-53
-        last = np.clip((1.0 + drawn[list(freedoms)]) / 2.0, 0.0, 1.0)  # slopes ask beyond its ends
-        return np.concatenate([np.where(start == 0.0, np.nan, before), last])
-
-
-@dataclass(frozen=True, eq=False)
-class Engage:
-    """Relations first, as of a mate; the freedoms that they leave are limited by clearances.
-
-    Args:
-        name, part: of the move, and what it places.
-        relations: in order.
-        engagements: all at once.
-        floating: where in its room the part lies.
-    """
-
-    name: str
-    part: str
-    relations: tuple[Relation, ...]
-    engagements: tuple[Engagement, ...]
-    floating: Floating
-
-
-Move = Fix | Locate | BestFit | Mate | Engage | Rest | Weld | Touch | StatedMove
-
-
-def pairs_of(move: Move) -> Sequence[tuple[str, str]]:
-    """The features by which a move places its part: moving and target; for play inner and outer."""
-    match move:
-        case Fix() | Weld():
-            return ()
-        case StatedMove():
-            return move.pairs
-        case BestFit():
-            return [(own.moving, own.target) for own in move.fits]
-        case Touch():
-            return [(own.moving, own.target) for own in move.contacts]
-    related = [] if isinstance(move, Locate) else [(own.moving, own.target) for own in move.relations]
-    if isinstance(move, Engage):
-        return [*related, *((own.inner, own.outer) for own in move.engagements)]
-    return related if isinstance(move, Mate) else [*related, *((own.moving, own.target) for own in move.pairs)]
+    @property
+    def holds(self) -> Sequence[tuple[str, str]]:
+        return [("all six", f"{', '.join(self.others)} with {self.part}")]

@@ -1,14 +1,16 @@
 """Parts that are fitted to points, by their residuals, trial by trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.model import BestFit
+from tol3d.assembly.model import Assembly, BestFit
 from tol3d.assembly.model.statuses import OK, SINGULAR
+from tol3d.assembly.placing.asked import Asked, frame_in_world, listed, point_rows
 from tol3d.assembly.placing.freedoms import free_motions, seen_steps
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
@@ -248,7 +250,7 @@ def least_largest(
 
 
 @dataclass(frozen=True, eq=False)
-class BestFitting:
+class BestFitting(Placer):
     """A best fit at its nominal points; solved in the world, with the middle of the part's points at 0.
 
     Args:
@@ -279,6 +281,14 @@ class BestFitting:
         fitted(points, targets, directions, self.weights, self.basis, self.start, self.reach, turn, shift, met)
         pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         return world.with_part_at(self.move.part, pose), np.where(met, OK, SINGULAR).astype(np.int8)
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """All points at once."""
+        rows = []
+        for fit in self.move.fits:
+            turn = assembly.part[assembly.features[fit.target].part].pose[:3, :3]
+            rows.append(point_rows(frame_in_world(assembly, fit.moving)[:3, 3] - middle, fit.directions @ turn.T))
+        yield Asked(f"fit of {listed([own.moving for own in self.move.fits])}", np.concatenate(rows))
 
 
 def best_fitting(move: BestFit, nominal: World) -> BestFitting:

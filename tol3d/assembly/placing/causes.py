@@ -1,10 +1,9 @@
 """Possible failures before a measure: datum frames and moves, each with those that it needs."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.model import Assembly, Engage, Measured, Move, StatedMove, Weld
-from tol3d.assembly.model.moves import pairs_of
+from tol3d.assembly.model import Assembly, Measured, Move
 from tol3d.errors import InputError
 
 Cause = str | int
@@ -48,46 +47,25 @@ class Causes:
 
     def after(self, index: int, move: Move) -> "Causes":
         """After a move."""
-        if isinstance(move, Weld):
-            for part in (move.part, *move.others):
-                self.of_part(part, f"moves.{move.name}")
-            body = frozenset[str]().union(*(self.bodies[part] for part in (move.part, *move.others)))
-            return Causes(self.assembly, self.placed, {**self.bodies, **dict.fromkeys(body, body)})
-        causes = frozenset([index]).union(*self._of_move(move))
-        if isinstance(move, StatedMove):
-            bodies = {other: causes for part in move.parts for other in self.bodies[part]}
-            return Causes(self.assembly, {**self.placed, **bodies}, self.bodies)
-        held = self.placed.get(move.part, frozenset())
-        placed = {part: causes | held | self.placed[part] for part in self.bodies[move.part] - {move.part}}
-        return Causes(self.assembly, {**self.placed, **placed, move.part: causes}, self.bodies)
+        for part in move.joined:
+            self.of_part(part, f"moves.{move.name}")
+        joined = frozenset[str]().union(*(self.bodies[part] for part in move.joined))
+        causes, placed = frozenset([index]).union(*self._of_move(move)), dict(self.placed)
+        for part in move.parts:
+            held = self.placed.get(part, frozenset())
+            placed |= {other: causes | held | self.placed[other] for other in self.bodies[part] - {part}}
+            placed[part] = causes
+        return Causes(self.assembly, placed, {**self.bodies, **dict.fromkeys(joined, joined)})
 
     def _of_move(self, move: Move) -> Iterable[frozenset[Cause]]:
-        if isinstance(move, StatedMove):
-            yield from map(self.of_frame, move.frames)
-            yield from self._of_stated(move)
-            return
-        for moving, target in self._pairs(move):
-            yield self.of_feature(moving) | self.of_feature(target)
-            yield self.of_part(self.assembly.features[target].part, f"moves.{move.name}")
-            own = self.assembly.features[moving].part
-            if own != move.part:
-                yield self.of_part(own, f"moves.{move.name}") | self.of_part(move.part, f"moves.{move.name}")
-
-    def _of_stated(self, move: StatedMove) -> Iterable[frozenset[Cause]]:
-        its = frozenset[str]().union(*(self.bodies[part] for part in move.parts))
-        for moving, target in move.pairs:
-            yield self.of_feature(moving) | self.of_feature(target)
-            if (part := self.assembly.features[target].part) not in its:
+        yield from map(self.of_frame, move.frames)
+        leader = {other: part for part in move.parts for other in self.bodies[part]}
+        for name in (each for pair in move.feature_pairs for each in pair):
+            yield self.of_feature(name)
+            part = self.assembly.features[name].part
+            if part not in move.parts:  # of another body, or welded to one that it places
                 yield self.of_part(part, f"moves.{move.name}")
-
-    def _pairs(self, move: Move) -> Sequence[tuple[str, str]]:
-        """See pairs_of; for engagements, the feature of the placed body and the other one."""
-        if not isinstance(move, Engage):
-            return pairs_of(move)
-        related, body = len(move.relations), self.bodies[move.part]
-        both = pairs_of(move)[related:]
-        engaged = [pair if self.assembly.features[pair[0]].part in body else pair[::-1] for pair in both]
-        return [*pairs_of(move)[:related], *engaged]
+                yield self.of_part(leader.get(part, part), f"moves.{move.name}")
 
     def before(self, move: Move) -> frozenset[Cause]:
         """Failures before a move, of all that it needs."""

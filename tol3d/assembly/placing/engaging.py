@@ -1,6 +1,6 @@
 """Parts that engage with play: offsets of pins, tabs, holes and slots, and poses in the clearance, trial by trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -8,14 +8,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Axis, Engage, Engagement, Mate
+from tol3d.assembly.model import Assembly, Axis, Engage, Engagement, Mate
 from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
+from tol3d.assembly.placing.asked import Asked, rows_about
 from tol3d.assembly.placing.engaged_places import at_places, engaged_arrays
 from tol3d.assembly.placing.engaged_poses import engaged_poses_found
 from tol3d.assembly.placing.floats import Floats, floats_of
 from tol3d.assembly.placing.mating import KeptRelations, Mating, kept_motions, kept_of, mating
+from tol3d.assembly.placing.placer import RoomPlacer
 from tol3d.assembly.placing.poses import (
     Codes,
     Pose,
@@ -42,7 +44,7 @@ SEEN: Final = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Engaging:
+class Engaging(RoomPlacer):
     """A move with play, as its features lie nominally.
 
     Args:
@@ -70,6 +72,32 @@ class Engaging:
     relations: KeptRelations
     undo: Array
     nudge: Array | None = None
+
+    @property
+    def motions(self) -> int:
+        return int(self.freedoms.shape[1])
+
+    @property
+    def words(self) -> str:
+        return f"{self.move.words}; {self.motions} freedoms, {self.move.floating.kind}"
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """Its relations, then what clearances limit."""
+        yield from self.mating.asked(assembly, middle)
+        rows = self.rows[..., : self.motions].reshape(2 * len(self.rows), self.motions) @ self.freedoms.T
+        rows = np.hstack([rows[:, :3], self.reach * rows[:, 3:]])
+        yield Asked(self.move.words, rows_about(rows, self.middle - middle), is_room=True)
+
+    def nudged(self, by: Array) -> "Engaging":
+        """The same with the part a step (freedoms,) from where relations lay it."""
+        return replace(self, nudge=by)
+
+    def pushed_alike(self, move: Engage, settled: Assembly) -> tuple[Engage, float]:
+        turn = settled.part[settled.features[move.floating.at].part].pose[:3, :3]
+        pose = settled.part[move.part].pose
+        gone = pose[:3, :3] @ self.origin + pose[:3, 3] - self.middle  # by the push, not from where it was drawn
+        second_order = float(np.linalg.norm(gone) * np.linalg.norm(pose[:3, :3] - self.floats.turn, 2))
+        return replace(move, floating=replace(move.floating, along=turn.T @ self.floats.along)), second_order
 
     def at_support_point(self, push: Array) -> "Engaging":
         """The move with the part pushed to the limit along a direction of its freedoms (freedoms,); centred along 0."""

@@ -6,53 +6,15 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import (
-    Assembly,
-    Axis,
-    BestFit,
-    Cone,
-    Datum,
-    DatumFrame,
-    Engage,
-    Feature,
-    Locate,
-    Mate,
-    Move,
-    Pair,
-    Plane,
-    Relation,
-    Rest,
-    RoundPlane,
-    StatedMove,
-    Touch,
-)
-from tol3d.assembly.placing import contact_equations
+from tol3d.assembly.model import Assembly, Axis, Cone, Datum, DatumFrame, Feature, Plane, RoundPlane
 from tol3d.assembly.placing.actual_feature import nominally
-from tol3d.assembly.placing.engaging import Engaging
-from tol3d.assembly.placing.mating import asked_of
-from tol3d.assembly.placing.plan import Placing
-from tol3d.assembly.placing.resting import Resting
+from tol3d.assembly.placing.asked import Asked, across, direction_rows, frame_in_world, point_rows
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.seen_motions import sides_of
-from tol3d.assembly.placing.touching import Touching
 from tol3d.numerics.arrays import Array
 
 HELD: Final = 1e-6
 """Part of a constraint that must act on the motions left, else earlier ones hold it: directions have some digits."""
-
-
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """Constraint by one feature, contact or relation, or by several at once.
-
-    Args:
-        words: its description.
-        rows: its change per shift of the reference point of motions, and per turn (rows, 6) [mm].
-        is_room: True if it takes no freedom but leaves a clearance.
-    """
-
-    words: str
-    rows: Array
-    is_room: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,12 +129,6 @@ def _numbers(vector: Array) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in vector.round(6) + 0.0) + ")"
 
 
-ORDER: Final = ("primary", "secondary", "tertiary")
-
-SAME: Final = 1e-6
-"""Sine of the angle between directions that are the same."""
-
-
 def held_by_datums(assembly: Assembly, frame: DatumFrame) -> Freedoms:
     """Freedoms taken by each datum of a frame, along the axes of its part."""
     asked = [Asked(_datum_name(datum), _of_datum(assembly, datum, k)) for k, datum in enumerate(frame.datums)]
@@ -194,155 +150,33 @@ def _of_datum(assembly: Assembly, datum: Datum, place: int) -> Array:
         line = features[-1].frame[:3, 3] - at
         return _line(at, line / np.linalg.norm(line))
     if isinstance(features[0].shape, Cone):
-        return np.concatenate([_line(at, z), _point(at, z[None])])
+        return np.concatenate([_line(at, z), point_rows(at, z[None])])
     if isinstance(features[0].shape, Axis):
         return _line(at, z)
     if not isinstance(features[0].shape, Plane | RoundPlane):
-        return _point(at, np.eye(3))
+        return point_rows(at, np.eye(3))
     if datum.simulator == "targets" and datum.targets is not None and place > 0:
-        return np.concatenate([_point(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])
-    return np.concatenate([_point(at, z[None]), _direction(z)])
+        return np.concatenate([point_rows(at + frame[:3, :3] @ target, z[None]) for target in datum.targets])
+    return np.concatenate([point_rows(at, z[None]), direction_rows(z)])
 
 
 def _of_places(feature: Feature) -> Iterator[Array]:
     """The rows of a feature of a pattern: of each of its places, along the directions in which that counts."""
     nominal = nominally(feature)
-    return (_point(end[:, 0], np.array(sides)) for end in nominal.ends for sides in sides_of(nominal))
+    return (point_rows(end[:, 0], np.array(sides)) for end in nominal.ends for sides in sides_of(nominal))
 
 
-def held_by(assembly: Assembly, plan: Placing) -> Freedoms:
-    """Freedoms taken by each step of a move, along the axes of the world; none if the part lies against nothing."""
-    move: Move = getattr(plan, "move", None) or plan  # type: ignore[assignment]  # a move that is its own plan
-    if isinstance(move, StatedMove):
-        raise TypeError(f"{move.name}: expected a move of one body")
-    part = move.part
-    middle = assembly.part[part].pose[:3, 3]
-    asked = list(_asked(assembly, plan, middle))
-    places = [_pose(assembly, own.name)[:3, 3] for own in assembly.part[part].features]
-    return taken(asked, middle, _reach(np.array(places) - middle))
-
-
-def _asked(assembly: Assembly, plan: Placing, middle: Array) -> Iterator[Asked]:
-    """Rows about a middle (3,) in the world."""
-    match getattr(plan, "move", plan):
-        case Locate() as move:
-            yield from _located(assembly, move, middle)
-        case BestFit() as move:
-            directions = []
-            for fit in move.fits:
-                turn = assembly.part[assembly.features[fit.target].part].pose[:3, :3]
-                directions.append(_point(_pose(assembly, fit.moving)[:3, 3] - middle, fit.directions @ turn.T))
-            yield Asked(f"fit of {_listed([own.moving for own in move.fits])}", np.concatenate(directions))
-        case Mate() as move:
-            yield from _related(assembly, move.relations, middle)
-        case Engage() as move:
-            assert isinstance(plan, Engaging)
-            yield from _related(assembly, move.relations, middle)
-            count = plan.freedoms.shape[1]  # beside them, those of bolts
-            rows = plan.rows[..., :count].reshape(2 * len(plan.rows), count) @ plan.freedoms.T
-            rows = np.hstack([rows[:, :3], plan.reach * rows[:, 3:]])
-            words = ", ".join(own.name for own in move.engagements)
-            yield Asked(words, _about(rows, plan.middle - middle), is_room=True)
-        case Rest() as move:
-            assert isinstance(plan, Resting)
-            yield from _related(assembly, move.relations, middle)
-            rows = np.hstack([plan.all_rows[:, 3:], plan.reach * plan.all_rows[:, :3]])
-            targets = dict.fromkeys(_touched(assembly, own.target) for own in move.pairs)
-            words = f"contacts with {_listed(list(targets))}, pressed on"
-            yield Asked(words, _about(rows, plan.origin[:, 0] - middle))
-        case Touch() as move:
-            assert isinstance(plan, Touching)
-            start = 0
-            for contact, kind in zip(move.contacts, plan.kinds, strict=True):
-                end = start + (2 if kind in contact_equations.TWO else 1)
-                words = f"{contact.moving} on {contact.target}"
-                yield Asked(words, _about(plan.rows[start:end], plan.origin[:, 0] - middle))
-                start = end
-
-
-def _located(assembly: Assembly, move: Locate, middle: Array) -> Iterator[Asked]:
-    """Contacts with one normal together."""
-    groups: list[list[tuple[Pair, Array]]] = []
-    for pair in move.pairs:
-        stays = pair.target if move.points_on == "part" else pair.moving
-        normal = assembly.part[assembly.features[stays].part].pose[:3, :3] @ pair.normal
-        if groups and np.linalg.norm(groups[-1][-1][1] - normal) < SAME:
-            groups[-1].append((pair, normal))
-        else:
-            groups.append([(pair, normal)])
-    in_order = [len(group) for group in groups] == [3, 2, 1]
-    first = 1
-    for k, group in enumerate(groups):
-        last = first + len(group) - 1
-        name = ORDER[k] if in_order else f"contact {first}" if first == last else f"contacts {first} to {last}"
-        points = [own.moving if move.points_on == "part" else own.target for own, _ in group]
-        rows = [
-            _point(_pose(assembly, at)[:3, 3] - middle, own[1][None]) for at, own in zip(points, group, strict=True)
-        ]
-        targets = dict.fromkeys(_touched(assembly, own.target) for own, _ in group)
-        moving = dict.fromkeys(_touched(assembly, own.moving) for own, _ in group)
-        yield Asked(f"{name}: {_listed(list(moving))} on {_listed(list(targets))}", np.concatenate(rows))
-        first = last + 1
-
-
-def _related(assembly: Assembly, relations: Sequence[Relation], middle: Array) -> Iterator[Asked]:
-    for own in relations:
-        asked = asked_of(own, assembly.features)
-        assert asked is not None  # others were refused before
-        held, turning = asked
-        moving, target = _pose(assembly, own.moving), _pose(assembly, own.target)
-        at, z = moving[:3, 3] - middle, target[:3, 2]
-        across = np.eye(3) if held == "all" else z[None] if held == "along" else _across(z)
-        rows = [_point(at, across)]
-        if turning == "direction":
-            rows.append(_direction(z))
-        elif turning == "level":
-            rows.append(np.hstack([np.zeros(3), np.cross(moving[:3, 2], z)])[None])
-        yield Asked(f"{own.kind}: {own.moving} on {own.target}", np.concatenate(rows))
-
-
-def _pose(assembly: Assembly, feature: str) -> Array:
-    """A feature's frame in the world (4, 4)."""
-    own = assembly.features[feature]
-    return np.asarray(assembly.part[own.part].pose @ own.frame)
-
-
-def _touched(assembly: Assembly, name: str) -> str:
-    """A feature, or the plane of which it is a point that another feature touches."""
-    return name if assembly.features[name].is_named else name.rpartition(" at ")[0] or name
-
-
-def _listed(names: Sequence[str]) -> str:
-    """Names of features; a common part is named once: "cover.A1, A2"."""
-    part = names[0].partition(".")[0]
-    if any(name.partition(".")[0] != part for name in names):
-        return ", ".join(names)
-    return ", ".join([names[0], *(name.partition(".")[2] for name in names[1:])])
-
-
-def _point(at: Array, directions: Array) -> Array:
-    """Rows of a point (3,) along directions (n, 3)."""
-    return np.hstack([directions, np.cross(at, directions)])
-
-
-def _direction(toward: Array) -> Array:
-    """Rows of a direction that stays."""
-    return np.hstack([np.zeros((2, 3)), _across(toward)])
+def held_by(assembly: Assembly, plan: Placer) -> Freedoms:
+    """Freedoms taken by each step of a move of one body, along the axes of the world; none where it lists none."""
+    part = assembly.part[plan.move.parts[0]]
+    middle = part.pose[:3, 3]
+    places = [frame_in_world(assembly, own.name)[:3, 3] for own in part.features]
+    return taken(list(plan.asked(assembly, middle)), middle, _reach(np.array(places).reshape(-1, 3) - middle))
 
 
 def _line(at: Array, direction: Array) -> Array:
     """Rows of a line that stays."""
-    return np.concatenate([_point(at, _across(direction)), _direction(direction)])
-
-
-def _across(direction: Array) -> Array:
-    """Two directions square to one (2, 3)."""
-    return np.asarray(np.linalg.svd(direction[None])[2][1:])
-
-
-def _about(rows: Array, off: Array) -> Array:
-    """Rows (n, 6) about another point, from which that of the given rows is offset by (3,)."""
-    return np.hstack([rows[:, :3], rows[:, 3:] + np.cross(off, rows[:, :3])])
+    return np.concatenate([point_rows(at, across(direction)), direction_rows(direction)])
 
 
 def _reach(places: Array) -> float:

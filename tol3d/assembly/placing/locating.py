@@ -1,15 +1,17 @@
 """Parts on six locators, 3-2-1 or six planes: poses by their contacts, trial by trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.model import Locate, Pair, Rest
+from tol3d.assembly.model import Assembly, Locate, Pair, Rest
 from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
+from tol3d.assembly.placing.asked import Asked, frame_in_world, listed, point_rows, touched
 from tol3d.assembly.placing.freedoms import free_motions, in_words
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
@@ -23,6 +25,10 @@ CHORDS: Final = 14
 NEWTONS: Final = 60
 MET: Final = 1e-13
 """Step [rad, and mm per mm of the points' reach] at which a trial is done: the next one would be even shorter."""
+
+ORDER: Final = ("primary", "secondary", "tertiary")
+SAME: Final = 1e-6
+"""Sine of the angle between directions that are the same."""
 
 
 @nested
@@ -124,7 +130,7 @@ def contacts_met(
 
 
 @dataclass(frozen=True, eq=False)
-class Locating:
+class Locating(Placer):
     """A move on six locators, with its nominal contacts.
 
     The part with the points is placed in the frame of the part with the planes: of the first target's part, or of the
@@ -162,6 +168,31 @@ class Locating:
         found = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         pose = world.poses[reference] @ (found if move.points_on == "part" else found.inverse)
         return world.with_part_at(move.part, pose), np.where(met, OK, SINGULAR).astype(np.int8)
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """Contacts with one normal together."""
+        move, groups = self.move, list[list[tuple[Pair, Array]]]()
+        for pair in move.pairs:
+            stays = pair.target if move.points_on == "part" else pair.moving
+            normal = assembly.part[assembly.features[stays].part].pose[:3, :3] @ pair.normal
+            if groups and np.linalg.norm(groups[-1][-1][1] - normal) < SAME:
+                groups[-1].append((pair, normal))
+            else:
+                groups.append([(pair, normal)])
+        in_order = [len(group) for group in groups] == [3, 2, 1]
+        first = 1
+        for k, group in enumerate(groups):
+            last = first + len(group) - 1
+            name = ORDER[k] if in_order else f"contact {first}" if first == last else f"contacts {first} to {last}"
+            points = [own.moving if move.points_on == "part" else own.target for own, _ in group]
+            rows = [
+                point_rows(frame_in_world(assembly, at)[:3, 3] - middle, own[1][None])
+                for at, own in zip(points, group, strict=True)
+            ]
+            targets = dict.fromkeys(touched(assembly, own.target) for own, _ in group)
+            moving = dict.fromkeys(touched(assembly, own.moving) for own, _ in group)
+            yield Asked(f"{name}: {listed(list(moving))} on {listed(list(targets))}", np.concatenate(rows))
+            first = last + 1
 
 
 def locating(move: Locate, nominal: World) -> Locating:

@@ -1,16 +1,18 @@
 """Mated parts: constraints by relations of two features, trial by trial."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from tol3d.assembly.model import Axis, Cone, Feature, Mate, Point, Relation, Rest
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Mate, Point, Relation, Rest
 from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
 from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
+from tol3d.assembly.placing.asked import Asked, across, direction_rows, frame_in_world, point_rows
 from tol3d.assembly.placing.freedoms import aligned
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
@@ -31,7 +33,7 @@ ASKED: Final[Mapping[tuple[str, str, str], tuple[Held, Turning]]] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Mating:
+class Mating(Placer):
     """A mate with the steps of its alignment.
 
     Args:
@@ -59,6 +61,22 @@ class Mating:
     def poses(self, world: World, seats: Sequence[Seat], start: Pose | None = None) -> tuple[Pose, Codes]:
         """Poses of the part from its nominal or another pose, with status codes (n,) or (1,)."""
         return self.alignment.poses(seats, start or Pose.of(world.assembly.part[self.move.part].pose))
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """Its relations, one by one."""
+        for own in self.move.relations:
+            asked = asked_of(own, assembly.features)
+            assert asked is not None  # others were refused before
+            held, turning = asked
+            moving, target = frame_in_world(assembly, own.moving), frame_in_world(assembly, own.target)
+            at, z = moving[:3, 3] - middle, target[:3, 2]
+            sides = np.eye(3) if held == "all" else z[None] if held == "along" else across(z)
+            rows = [point_rows(at, sides)]
+            if turning == "direction":
+                rows.append(direction_rows(z))
+            elif turning == "level":
+                rows.append(np.hstack([np.zeros(3), np.cross(moving[:3, 2], z)])[None])
+            yield Asked(f"{own.kind}: {own.moving} on {own.target}", np.concatenate(rows))
 
 
 def mating(move: Mate, nominal: World) -> Mating:

@@ -1,7 +1,7 @@
 """The exact method: poses of parts and values of measures, by finite poses, in blocks of trials."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.causes import Cause, ordered
-from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.measuring import may_lack, reading
-from tol3d.assembly.placing.plan import PlacingPlan, after, planned, world_before
+from tol3d.assembly.placing.placer import Placer, RockingPlacer, RoomPlacer
+from tol3d.assembly.placing.plan import PlacingPlan, planned, world_before
 from tol3d.assembly.placing.poses import Codes
-from tol3d.assembly.placing.resting import Resting
 from tol3d.assembly.placing.rocking import decided, over_poses, slope_of, varying
 from tol3d.assembly.placing.world import SolidReader, World
 from tol3d.numerics.arrays import Array
@@ -162,7 +161,7 @@ class _Block:
 def _placed(
     plan: PlacingPlan,
     deviations: Array,
-    instead: Mapping[int, Resting | Engaging] | None = None,
+    instead: Mapping[int, Placer] | None = None,
     otherwise: _Block | None = None,
     kept: dict[str, Any] | None = None,
 ) -> _Block:
@@ -184,7 +183,7 @@ def _placed(
         columns, codes = np.ascontiguousarray(deviations.T), dict[int, Codes]()
         worlds = [world_before(plan.assembly, plan.datum_seats, columns, plan.still, kept)]
     for index, move in enumerate(plan.moves[len(worlds) - 1 :], len(worlds) - 1):
-        world, codes[index] = after(instead.get(index, move) if instead else move, worlds[-1])
+        world, codes[index] = (instead.get(index, move) if instead else move).placed(worlds[-1])
         worlds.append(world)
     block = _Block(tuple(worlds), codes)
     for part, causes in plan.causes[-1].placed.items():
@@ -233,8 +232,7 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
     leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
     for index in plan.of_measures[name]:
-        move = plan.moves[index] if isinstance(index, int) else None
-        if isinstance(move, Resting) and isinstance(index, int):
+        if isinstance(index, int) and (move := plan.rocking.get(index)) is not None:
             carried = block.worlds[-1].loads[move.move.name]
             if (np.count_nonzero(carried, axis=0) < len(move.pull)).any():
                 slope = _slope(plan, name, index)
@@ -255,37 +253,32 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
 
 
 @lru_cache(maxsize=256)
-def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, Engaging]:
+def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, RoomPlacer]:
     """Moves with play, pushed to the least or largest value of a measure, by its nominal slopes."""
     sign = 1.0 if plan.assembly.measures[name].over_play == "largest" else -1.0
-    found, rest = dict[int, Engaging](), np.zeros((1, plan.assembly.width))
-    for index, move in enumerate(plan.moves):
-        if isinstance(move, Engaging):
-            read = []
-            for side in (1.0, -1.0):
-                nudged = [replace(move, nudge=side * own) for own in NUDGE * np.eye(move.freedoms.shape[1])]
-                blocks = [_placed(plan, rest, {index: own}) for own in nudged]
-                read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
-            slope = np.subtract(*np.array(read)) / (2 * NUDGE)
-            found[index] = move.at_support_point(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
+    found, rest = dict[int, RoomPlacer](), np.zeros((1, plan.assembly.width))
+    for index, move in plan.rooms.items():
+        read = []
+        for side in (1.0, -1.0):
+            nudged = [move.nudged(side * own) for own in NUDGE * np.eye(move.motions)]
+            blocks = [_placed(plan, rest, {index: own}) for own in nudged]
+            read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
+        slope = np.subtract(*np.array(read)) / (2 * NUDGE)
+        found[index] = move.at_support_point(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
     return found
 
 
 @lru_cache(maxsize=256)
 def _slope(plan: PlacingPlan, name: str, index: int) -> Array | None:
     """Change of a measure per motion of a part at rest."""
-    move = plan.moves[index]
-    assert isinstance(move, Resting)
 
-    def read(deviations: Array, instead: Mapping[int, Resting]) -> Array:
+    def read(deviations: Array, instead: Mapping[int, Placer]) -> Array:
         return _read(plan, _placed(plan, deviations, instead), name, plan.of_measures[name])[0]
 
-    return slope_of(plan.assembly.measures[name], index, move, read, plan.assembly.width)
+    return slope_of(plan.assembly.measures[name], index, plan.rocking[index], read, plan.assembly.width)
 
 
 @lru_cache(maxsize=256)
-def _leaning(plan: PlacingPlan, index: int, along: bytes) -> Resting:
+def _leaning(plan: PlacingPlan, index: int, along: bytes) -> RockingPlacer:
     """A rest that leans along some motion."""
-    move = plan.moves[index]
-    assert isinstance(move, Resting)
-    return move.leaning(np.frombuffer(along))
+    return plan.rocking[index].leaning(np.frombuffer(along))

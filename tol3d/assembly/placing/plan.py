@@ -4,38 +4,20 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
-from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.model import Assembly
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.best_fitting import BestFitting, best_fitting
 from tol3d.assembly.placing.causes import Cause, Causes, causes_of
 from tol3d.assembly.placing.datum_seats import DatumSeats, PartFeatures, datum_seats
-from tol3d.assembly.placing.engaging import Engaging, engaging
 from tol3d.assembly.placing.gauged_frames import with_gauges
-from tol3d.assembly.placing.locating import Locating, locating
-from tol3d.assembly.placing.mating import Mating, mating
-from tol3d.assembly.placing.poses import Codes, Pose
-from tol3d.assembly.placing.resting import Resting, resting
-from tol3d.assembly.placing.touching import Touching, touching
+from tol3d.assembly.placing.placer import Placer, RockingPlacer, RoomPlacer
+from tol3d.assembly.placing.poses import Pose
 from tol3d.assembly.placing.world import SolidReader, World
+from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
-
-
-class Placer(Protocol):
-    """A move of another mechanism, planned by its nominal geometry; frozen, compared by identity."""
-
-    def placed(self, world: World) -> tuple[World, Codes]:
-        """The world after it, and what became of it: codes (n,) or (1,) of tol3d.assembly.model.statuses."""
-        ...
-
-
-Placing = Fix | Weld | Locating | Mating | BestFitting | Resting | Touching | Engaging | Placer
-
-_MOVED: Codes = np.full(1, OK, dtype=np.int8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +35,20 @@ class PlacingPlan:
 
     assembly: Assembly
     datum_seats: Mapping[str, Mapping[str, DatumSeats]]
-    moves: tuple[Placing, ...]
+    moves: tuple[Placer, ...]
     causes: tuple[Causes, ...]
     solids: SolidReader | None = None
     still: Mapping[str, dict[str, ActualFeature]] = field(default_factory=lambda: defaultdict(dict))
+
+    @cached_property
+    def rooms(self) -> Mapping[int, RoomPlacer]:
+        """The moves that leave a part within clearances, by their places."""
+        return {k: own for k, own in enumerate(self.moves) if isinstance(own, RoomPlacer)}
+
+    @cached_property
+    def rocking(self) -> Mapping[int, RockingPlacer]:
+        """The moves on whose contacts a part may rock, by their places."""
+        return {k: own for k, own in enumerate(self.moves) if isinstance(own, RockingPlacer)}
 
     @cached_property
     def of_measures(self) -> Mapping[str, tuple[Cause, ...]]:
@@ -83,31 +75,11 @@ def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPla
     # before it is placed, a part is at its nominal pose
     world = world_before(assembly, seats, np.zeros((assembly.width, 1)))
     world = World(assembly, world.columns, world.own, {p.name: Pose.of(p.pose) for p in assembly.parts}, bodies)
-    moves: list[Placing] = []
+    moves: list[Placer] = []
     for move in assembly.moves:
-        moves.append(_planned(move, world))
-        world, _ = after(moves[-1], world)
+        moves.append(named(move.acts.placing)(move, world))
+        world, _ = moves[-1].placed(world)
     return PlacingPlan(assembly, seats, tuple(moves), tuple(causes), solids)
-
-
-def _planned(move: Move, nominal: World) -> Placing:
-    match move:
-        case Locate():
-            return locating(move, nominal)
-        case Mate():
-            return mating(move, nominal)
-        case BestFit():
-            return best_fitting(move, nominal)
-        case Rest():
-            return resting(move, nominal)
-        case Touch():
-            return touching(move, nominal)
-        case Engage():
-            return engaging(move, nominal)
-        case StatedMove():
-            return move.placing(nominal)
-        case Fix() | Weld():
-            return move
 
 
 def world_before(
@@ -127,14 +99,3 @@ def world_before(
         own[part.name] = kept[key] = known
     bodies = {part.name: frozenset([part.name]) for part in assembly.parts}
     return World(assembly, columns, own, {}, bodies, kept=kept)
-
-
-def after(move: Placing, world: World) -> tuple[World, Codes]:
-    """The world after a move, and status codes (n,) or (1,)."""
-    match move:
-        case Fix():
-            return world.with_part_at(move.part, Pose.of(world.assembly.part[move.part].pose)), _MOVED
-        case Weld():
-            return world.with_welded((move.part, *move.others)), _MOVED
-        case _:
-            return move.placed(world)

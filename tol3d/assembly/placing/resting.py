@@ -1,6 +1,6 @@
 """Parts at rest on one-sided contacts: nominal contacts, and the pose of each trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,13 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, nnls
 
-from tol3d.assembly.model import Pair, Rest
+from tol3d.assembly.model import Assembly, Pair, Rest
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_HELD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import total
+from tol3d.assembly.placing.asked import Asked, listed, rows_about, touched
 from tol3d.assembly.placing.balances import balances_found
 from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.locating import side_of
 from tol3d.assembly.placing.mating import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
+from tol3d.assembly.placing.placer import RockingPlacer
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, TIED, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
@@ -30,7 +32,7 @@ OUTCOMES: Codes = np.array([OK, NO_BUILD, SINGULAR, NOT_HELD, SINGULAR], dtype=n
 
 
 @dataclass(frozen=True, eq=False)
-class Resting:
+class Resting(RockingPlacer):
     """A rest with its nominal contacts; solved in the world, with the middle of the part's features at 0.
 
     Args:
@@ -66,6 +68,10 @@ class Resting:
     inverse: Array
     loads: Array
     nudge: Array | None = None
+
+    @property
+    def contacts(self) -> Sequence[tuple[str, str]]:
+        return [(own.moving, own.target) for own in self.move.pairs]
 
     def placed(self, world: World) -> tuple[World, Codes]:
         """The world after the move, and status codes (n,)."""
@@ -128,6 +134,15 @@ class Resting:
             for sign in (1.0, -1.0)
         ]
         return np.array(ends[0]), -np.array(ends[1])
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """Its relations, then its contacts all at once."""
+        if self.relations is not None:
+            yield from self.relations.mating.asked(assembly, middle)
+        rows = np.hstack([self.all_rows[:, 3:], self.reach * self.all_rows[:, :3]])
+        targets = dict.fromkeys(touched(assembly, own.target) for own in self.move.pairs)
+        words = f"contacts with {listed(list(targets))}, pressed on"
+        yield Asked(words, rows_about(rows, self.origin[:, 0] - middle))
 
     def leaning(self, along: Array) -> "Resting":
         """The same, pushed to the limit along a motion (motions,) where it may rock."""

@@ -10,13 +10,14 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Engage, Measured
+from tol3d.assembly.model import Assembly, Measured
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.model.measures import Rocking
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing.causes import Cause
+from tol3d.assembly.placing.placer import Placer, RockingPlacer
 from tol3d.assembly.placing.poses import Codes
-from tol3d.assembly.placing.resting import Resting, generic
+from tol3d.assembly.placing.resting import generic
 from tol3d.assembly.placing.world import World
 from tol3d.numerics.arrays import Array
 from tol3d.system.outcome import reason_column
@@ -30,11 +31,11 @@ KINK: Final = 1e-2
 NARROW: Final = 1e-9
 """mm or rad; what varies by less over all poses is unique."""
 
-Read = Callable[[Array, Mapping[int, Resting]], Array]
+Read = Callable[[Array, Mapping[int, Placer]], Array]
 """Values (n,) of a measure in some trials (n, width), with other moves for some by their places."""
 
 
-def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: int) -> Array | None:
+def slope_of(measured: Measured, index: int, move: RockingPlacer, read: Read, width: int) -> Array | None:
     """Nominal change of a measure per motion of a part at rest (motions,) [mm/mm]; None if it does not change.
 
     For a measure that is not smooth there, the slope is that of some motion.
@@ -50,7 +51,7 @@ def slope_of(measured: Measured, index: int, move: Resting, read: Read, width: i
     return slope if np.abs(slope).max() > DEPENDS else None
 
 
-def varying(slope: Array, move: Resting, carried: Array) -> NDArray[np.bool_]:
+def varying(slope: Array, move: RockingPlacer, carried: Array) -> NDArray[np.bool_]:
     """Flags of trials in which a measure changes with a motion that no load-carrying contact prevents (n,).
 
     Contacts without load in the nominal pose may carry it by the tilt that balances the force: that is one pose.
@@ -145,7 +146,7 @@ def _gauges(rooms: Sequence[GaugeRoom]) -> str:
 def _is_room(assembly: Assembly, cause: Cause) -> bool:
     """True if a cause is a clearance into which something may not fit."""
     if isinstance(cause, int):
-        return isinstance(assembly.moves[cause], Engage)
+        return assembly.moves[cause].acts.has_room
     return assembly.datum_frames[cause].gauges is not None
 
 

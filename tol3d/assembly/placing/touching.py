@@ -1,19 +1,21 @@
 """Parts placed against others by contacts of round features: poses by the contacts, trial by trial."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Contact, Touch
+from tol3d.assembly.model import Assembly, Contact, Touch
 from tol3d.assembly.model.moves import unfit_for_contact
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing import contact_equations
 from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.asked import Asked, rows_about
 from tol3d.assembly.placing.contact_equations import ALONG, CROSSING
 from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
+from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.placing.poses import Codes, Pose, column, cross, rotated
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, is_inside, kind_of, touching_distance
 from tol3d.assembly.placing.touches import lacking_at, touching_poses
@@ -39,7 +41,7 @@ KINDS: Final = {
 
 
 @dataclass(frozen=True, eq=False)
-class Touching:
+class Touching(Placer):
     """A touch with its nominal contacts; solved in the world, with the middle of the part's features at 0.
 
     Args:
@@ -82,6 +84,15 @@ class Touching:
         touching_poses(*contacts, *about, turn, shift, codes)
         pose = Pose(turn, shift + self.origin - rotated(turn, self.middle))
         return world.with_part_at(self.move.part, pose), codes
+
+    def asked(self, assembly: Assembly, middle: Array) -> Iterator[Asked]:
+        """Its contacts, one by one."""
+        start = 0
+        for contact, kind in zip(self.move.contacts, self.kinds, strict=True):
+            end = start + (2 if kind in contact_equations.TWO else 1)
+            words = f"{contact.moving} on {contact.target}"
+            yield Asked(words, rows_about(self.rows[start:end], self.origin[:, 0] - middle))
+            start = end
 
     def _force(self, world: World) -> Array:
         if self.move.pressed is None:

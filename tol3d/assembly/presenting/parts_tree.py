@@ -9,23 +9,11 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Final
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
-from tol3d.assembly.model.moves import pairs_of
+from tol3d.assembly.model import Assembly
 from tol3d.report.page import Branch
 
 DEEPEST: Final = 8  # levels of indentation
 ALIKE: Final = 4  # parts placed alike that share a line
-KINDS: Final[Mapping[type[Move], str]] = {
-    Fix: "fixed",
-    Locate: "six contacts on",
-    BestFit: "best fit on",
-    Mate: "mate on",
-    Engage: "play on",
-    Rest: "rest on",
-    Touch: "touch on",
-    Weld: "welded to",
-    StatedMove: "carried by",
-}
 
 
 @dataclass(frozen=True)
@@ -73,30 +61,27 @@ def parts_tree(assembly: Assembly, further: Sequence[Laid] = ()) -> tuple[Branch
 def _laid(assembly: Assembly) -> Iterator[Laid]:
     """Placements of parts by moves, in order; welded parts follow a part that is moved again."""
     before: dict[str, Laid] = {}
-    for part, kind, move, on in _steps(assembly):
-        own = Laid(part, KINDS[kind], move, on, before.get(part))
+    for part, words, move, on in _steps(assembly):
+        own = Laid(part, words, move, on, before.get(part))
         if own.before is None or own.before.move != move:  # a body that is moved again and again is welded once
             before[part] = own
     yield from before.values()
 
 
-def _steps(assembly: Assembly) -> Iterator[tuple[str, type[Move], str, tuple[str, ...]]]:
-    """Parts with the kind and name of the move that places them, and the parts below."""
-    welded: dict[str, tuple[str, str]] = {}
+def _steps(assembly: Assembly) -> Iterator[tuple[str, str, str, tuple[str, ...]]]:
+    """Parts with the words and the name of the move that places them, and the parts below."""
+    welded: dict[str, tuple[str, str, str, tuple[str, ...]]] = {}
     for move in assembly.moves:
-        if isinstance(move, Weld):
-            welded |= dict.fromkeys(move.others, (move.part, move.name))
-            continue
-        if isinstance(move, StatedMove):
-            for k, part in enumerate(move.parts):
-                yield part, StatedMove, move.name, (move.carriers[k],)
-            continue
-        body = [move.part]
-        for part in body:  # the loop extends it by parts welded to its parts
-            body += [other for other, (leader, _) in welded.items() if leader == part and other not in body]
-        named = dict.fromkeys(assembly.features[name].part for pair in pairs_of(move) for name in pair)
-        yield move.part, type(move), move.name, tuple(part for part in named if part not in body)
-        yield from ((part, Weld, welded[part][1], (welded[part][0],)) for part in body[1:])
+        for other in move.joined[1:]:
+            welded[other] = (other, move.acts.lies, move.name, move.joined[:1])
+        named = dict.fromkeys(assembly.features[name].part for pair in move.feature_pairs for name in pair)
+        for k, part in enumerate(move.parts):
+            body = [part]
+            for own in body:  # the loop extends it by parts welded to its parts
+                body += [other for other, (*_, (leader,)) in welded.items() if leader == own and other not in body]
+            on = move.carriers[k : k + 1] or tuple(other for other in named if other not in body)
+            yield part, move.acts.lies, move.name, on
+            yield from (welded[other] for other in body[1:])
 
 
 @dataclass(frozen=True)

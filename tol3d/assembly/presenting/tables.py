@@ -8,31 +8,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import (
-    Assembly,
-    Axis,
-    BestFit,
-    Cone,
-    Engage,
-    Feature,
-    Fix,
-    Locate,
-    Mate,
-    Move,
-    Plane,
-    Point,
-    Rest,
-    RoundPlane,
-    Slot,
-    StatedMove,
-    Touch,
-    Weld,
-)
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Move, Plane, Point, RoundPlane, Slot
 from tol3d.assembly.model.dimension import longer
-from tol3d.assembly.placing.engaging import Engaging
+from tol3d.assembly.placing.asked import touched
 from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
-from tol3d.assembly.placing.plan import Placing, planned
-from tol3d.assembly.placing.resting import Resting
+from tol3d.assembly.placing.placer import RockingPlacer
+from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError
@@ -65,18 +46,13 @@ def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
     """Freedoms held by moves, and those left."""
     rows: list[Row] = []
     for move, plan in zip(assembly.moves, planned(assembly).moves, strict=True):
-        match move:
-            case Fix():
-                rows.append(Row(move.name, ("all six", "as drawn")))
-            case Weld():
-                rows.append(Row(move.name, ("all six", f"{', '.join(move.others)} with {move.part}")))
-            case StatedMove():
-                rows += [Row(move.name, (f"all six of {part}", move.words)) for part in move.parts]
-            case Locate() | BestFit() | Mate() | Engage() | Rest() | Touch():
-                found = held_by(assembly, plan)
-                rows += [Row(move.name, (in_words(own), _by(own))) for own in found.taken]
-                if found.left.count:
-                    rows.append(Row(move.name, (_left(found), "left as drawn")))
+        found = held_by(assembly, plan) if len(move.parts) == 1 else None
+        if found is None or not found.taken:
+            rows += [Row(move.name, own) for own in move.holds]
+            continue
+        rows += [Row(move.name, (in_words(own), _by(own))) for own in found.taken]
+        if found.left.count:
+            rows.append(Row(move.name, (_left(found), "left as drawn")))
     words = [Heading(word, words=True) for word in ("freedoms", "held by")]
     table = Table("", words, rows)
     return (*titled("freedoms that moves hold, along the axes of the world", table), note(SIGNS))
@@ -118,8 +94,8 @@ def workspace(simulation: Simulation, measure: str | None, activity: Callable[[s
     assert isinstance(simulation.system, AssemblySystem)
     moves = simulation.system.assembly.moves
     for move in moves:
-        if isinstance(move, StatedMove) and move.workspace:
-            found: Map = at_path(move.workspace)(simulation, move.name, measure, activity)
+        if move.acts.workspace:
+            found: Map = at_path(move.acts.workspace)(simulation, move.name, measure, activity)
             return found
     raise InputError("expected a scene with a linkage (kind: close_loop), got none")
 
@@ -144,12 +120,17 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     words = [Heading(word, words=word != PLACE) for word in columns]
     features = titled("features, nominally in the world", Table("", words, rows))
     plans = planned(system.assembly).moves
-    moves = [Row(move.name, _move(move, plan)) for move, plan in zip(system.assembly.moves, plans, strict=True)]
+    moves = [Row(own.move.name, (own.move.acts.words, _of(own.move), own.words)) for own in plans]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
-    stated = (move for move in system.assembly.moves if isinstance(move, StatedMove) and move.tables)
-    others = (item for move in stated for item in at_path(move.tables)(move))
-    return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *_rests(system), *others)
+    presented = ((at_path(path), own) for own in plans if (path := own.move.acts.presents))
+    others = (item for presents, own in presented for item in presents(own, system.assembly))
+    return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *others)
+
+
+def _of(move: Move) -> str:
+    """Parts that a move places, or the body that it makes."""
+    return ", ".join(move.parts or move.joined[:1])
 
 
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
@@ -207,31 +188,15 @@ def _listed(numbers: NDArray[np.float64], between: str) -> str:
     return between.join(f"{number:g}" for number in numbers.round(4) + 0.0)
 
 
-def _rests(system: AssemblySystem) -> Sequence[PageItem]:
-    """Ranges of the force carried by each contact of parts at rest."""
-    blocks: list[PageItem] = []
-    for move in planned(system.assembly).moves:
-        if isinstance(move, Resting):
-            least, most = move.carries()
-            rows = [
-                Row(
-                    str(k),
-                    (
-                        _touched(system, own.moving),
-                        _touched(system, own.target),
-                        f"{100 * low:.0f} to {100 * high:.0f} %",
-                    ),
-                )
-                for k, (own, low, high) in enumerate(zip(move.move.pairs, least, most, strict=True), 1)
-            ]
-            words = [Heading(word, words=True) for word in ("of the part", "on", "carries of the force")]
-            blocks += titled(f"contacts of {move.move.name}, one-sided", Table("", words, rows))
-    return blocks
-
-
-def _touched(system: AssemblySystem, name: str) -> str:
-    """A feature, or the plane of which it is a point that another feature touches."""
-    return name if system.assembly.features[name].is_named else name.rpartition(" at ")[0] or name
+def rest_blocks(plan: RockingPlacer, assembly: Assembly) -> Sequence[PageItem]:
+    """Range of the force carried by each contact of a part at rest."""
+    least, most = plan.carries()
+    rows = [
+        Row(str(k), (touched(assembly, moving), touched(assembly, target), f"{100 * low:.0f} to {100 * high:.0f} %"))
+        for k, ((moving, target), low, high) in enumerate(zip(plan.contacts, least, most, strict=True), 1)
+    ]
+    words = [Heading(word, words=True) for word in ("of the part", "on", "carries of the force")]
+    return titled(f"contacts of {plan.move.name}, one-sided", Table("", words, rows))
 
 
 def _shape(feature: Feature) -> str:
@@ -280,30 +245,6 @@ def _direction(direction: NDArray[np.float64]) -> str:
 
 def _frame(feature: Feature) -> str:
     return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
-
-
-def _move(move: Move, plan: Placing) -> tuple[str, str, str]:
-    match move:
-        case Locate():
-            return "six contacts", move.part, f"points ride on the {move.points_on}"
-        case BestFit():
-            return "best fit", move.part, f"{len(move.fits)} points, {move.criterion}"
-        case Mate():
-            return "mate", move.part, ", ".join(f"{own.kind} {own.target}" for own in move.relations)
-        case Engage():
-            assert isinstance(plan, Engaging)
-            kind = move.floating.kind
-            names = ", ".join(own.name for own in move.engagements)
-            return "play", move.part, f"{names}; {plan.freedoms.shape[1]} freedoms, {kind}"
-        case Rest():
-            return "rest", move.part, f"{len(move.pairs)} contacts, points ride on the {move.points_on}"
-        case Touch():
-            return "touch", move.part, f"{len(move.contacts)} contacts"
-        case Weld():
-            return "weld", move.part, ", ".join(move.others)
-        case StatedMove():
-            return "together", ", ".join(move.parts), move.words
-    return "fixed", move.part, ""
 
 
 def law_blocks(laws: Mapping[str, str], sigmas: Mapping[str, float]) -> Sequence[PageItem]:

@@ -7,15 +7,15 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, BestFit, Engage, Measured, Rest
+from tol3d.assembly.model import Assembly, Measured
 from tol3d.assembly.torsors.columns import Columns, without_rounding
 from tol3d.assembly.torsors.measures import reading
-from tol3d.assembly.torsors.moves import after
 from tol3d.assembly.torsors.resting import OneSided, along_nothing
 from tol3d.assembly.torsors.terms import Ends, Form, Largest, Term
 from tol3d.assembly.torsors.torsor import ordered_product
 from tol3d.assembly.torsors.world import World
 from tol3d.errors import InputError
+from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
 
 STEP: Final = 1e-6
@@ -177,7 +177,7 @@ def displaced(assembly: Assembly, part: str, after: int) -> FirstOrder:
 def _played(name: str, measured: Measured, row: Array, first: World, unknowns: Mapping[int, slice]) -> Array:
     """A measure's row (columns,) at its least or largest over the play of parts."""
     sign = 1.0 if measured.over_play == "largest" else -1.0
-    plays = {index: own for index, own in unknowns.items() if isinstance(first.assembly.moves[index], Engage)}
+    plays = {index: own for index, own in unknowns.items() if first.assembly.moves[index].acts.has_room}
     whither = {index: sign * row[own.start : own.stop - 1] for index, own in plays.items()}
     return _row(name, measured, _moved(first, whither)[0])
 
@@ -186,8 +186,9 @@ def _moved(first: World, leaning: Mapping[int, Array]) -> tuple[list[World], dic
     """Worlds before the first move and after each, with the leaning of some rests; and the columns made by rests."""
     worlds, unknowns = [first], dict[int, slice]()
     for index, move in enumerate(first.assembly.moves):
-        worlds.append(after(move, worlds[-1], leaning.get(index)))
-        if isinstance(move, Rest | Engage):
+        act, leans = named(move.acts.torsors), move.acts.rocks or move.acts.has_room
+        worlds.append(act(move, worlds[-1], leaning.get(index)) if leans else act(move, worlds[-1]))
+        if leans:
             start, term = first.columns.terms[-1]
             unknowns[index] = slice(start, start + term.count)
     return worlds, unknowns
@@ -197,7 +198,7 @@ def _rocked(measured: Measured, row: Array, first: World, unknowns: Mapping[int,
     """A measure's row (columns,) at one end of the rocking range, or in the middle of both."""
     through = _through(row, first.columns.terms)
     moves = first.assembly.moves
-    weights = {index: through[own] for index, own in unknowns.items() if isinstance(moves[index], Rest)}
+    weights = {index: through[own] for index, own in unknowns.items() if moves[index].acts.rocks}
     for index, own in weights.items():
         if np.abs(own).max() < UNSEEN:  # no effect, or by a nonlinear term
             weights[index] = along_nothing(len(own))
@@ -238,20 +239,18 @@ def _reads(rows: Array) -> NDArray[np.bool_]:
 def _room(assembly: Assembly) -> int:
     """Upper bound for the number of columns of terms.
 
-    One for a datum, six for a minimax fit or a rest, seven for play, one for a linear reading, else ten. Datums of a
-    frame with gauges count twice, and the gauges have play.
+    One for a datum, those of moves, one for a linear reading, else ten. Datums of a frame with gauges count twice, and
+    the gauges have play.
 
     Moves are followed once, and twice more for each measure that is read at an end of the rocking range.
     """
     frames = assembly.datum_frames.values()
     datums = sum(len(own.datums) for own in frames)
     datums += sum(len(own.datums) + 7 for own in frames if own.gauges is not None)
-    fits = sum(isinstance(move, BestFit) and move.criterion == "minimax" for move in assembly.moves)
-    rests = sum(isinstance(move, Rest) for move in assembly.moves)
-    plays = sum(isinstance(move, Engage) for move in assembly.moves)
+    rests = any(move.acts.rocks for move in assembly.moves)
     played = sum(own.over_play is not None for own in assembly.measures.values())
     rocking = sum(own.rocking is not None for own in assembly.measures.values()) if rests else 0
-    moved = 6 * fits + 6 * rests + 7 * plays
+    moved = sum(move.terms for move in assembly.moves)
     return datums + moved * (1 + 2 * rocking + played) + sum(map(_readings, assembly.measures.values()))
 
 

@@ -13,13 +13,13 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
 
-def mated(move: Mate, world: World) -> Array:
-    """The torsor (6, columns) of a part by its relations.
+def mated(move: Mate, world: World) -> World:
+    """The world with a part by its relations.
 
     Raises:
         InputError: a relation takes nothing, or is not one of its two features.
     """
-    return freedoms_after(move, world).rest()
+    return world.with_part_at(move.part, freedoms_after(move, world).rest())
 
 
 def freedoms_after(move: Mate, world: World) -> Freedoms:
@@ -164,8 +164,8 @@ class _Pairing:
         return shape.diameter / 2.0, self._world.size(name) / 2.0
 
 
-def located(move: Locate, world: World) -> Array:
-    """The torsor (6, columns) of a part on six locators: rows (n, p x n) of each contact, solved together.
+def located(move: Locate, world: World) -> World:
+    """The world with a part on six locators: rows (n, p x n) of each contact, solved together.
 
     Raises:
         InputError: the contacts leave a freedom.
@@ -179,7 +179,7 @@ def located(move: Locate, world: World) -> Array:
             f"moves.{move.name}: its contacts leave {move.part} free: {freedom_in_words(freedoms.left)}; "
             "expected six that hold all six freedoms"
         )
-    return freedoms.torsor
+    return world.with_part_at(move.part, freedoms.torsor)
 
 
 def contact(pair: Pair, move: Locate | Rest, world: World) -> tuple[Array, Array]:

@@ -109,8 +109,8 @@ ALIKE = 1e-6
 """Least singular value of rows, lengths of about 1, that are independent."""
 
 
-def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
-    """The torsor (6, columns) of a part at rest; in the middle of its rocking range.
+def rested(move: Rest, world: World, leaning: Array | None = None) -> World:
+    """The world with a part at rest; in the middle of its rocking range.
 
     Args:
         move: the move.
@@ -151,7 +151,7 @@ def rested(move: Rest, world: World, leaning: Array | None = None) -> Array:
     back = np.linalg.pinv(matrix)
     freedoms.take(back @ rows, found + back @ before)
     freedoms.settle(np.mean([world.origin(pair.moving) for pair in move.pairs], axis=0))
-    return freedoms.rest()
+    return world.with_part_at(move.part, freedoms.rest())
 
 
 def along_nothing(count: int) -> Array:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from copy import copy
 
-from tol3d.assembly.model import Assembly
+from tol3d.assembly.model import Assembly, Fix, Weld
 from tol3d.assembly.torsors.columns import Columns
 from tol3d.assembly.torsors.features import PartTorsors
 from tol3d.assembly.torsors.torsor import seen_from
@@ -95,3 +95,13 @@ class World:
     def mating_size(self, feature: str) -> Array:
         """Deviation of the size of a feature that a fit sees, form included (columns,) [mm]."""
         return self.own[self.part_of(feature)].mating_size(feature)
+
+
+def fixed(move: Fix, world: World) -> World:
+    """The world with a part that stays where it is drawn."""
+    return world.with_part_at(move.part, world.columns.zeros(6))
+
+
+def welded(move: Weld, world: World) -> World:
+    """The world in which parts are one body."""
+    return world.with_welded(move.joined)

@@ -23,7 +23,7 @@ from tol3d.units import Quantity, refuse_dimension
 if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
     from tol3d.assembly.from_scene.features import TouchedPoints
-    from tol3d.assembly.model import StatedMove
+    from tol3d.assembly.model import Move
     from tol3d.scene import Scene
 
 READ_BY: Final = "tol3d.linkage.from_scene"
@@ -131,9 +131,9 @@ class CloseLoopSpec(StatedMoveSpec):
 
     def stated(
         self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
-    ) -> "StatedMove":
+    ) -> "Move":
         """See StatedMoveSpec."""
-        found: StatedMove = named(f"{READ_BY}:loop_of")(self, name, understood, touched, drawn, pose)
+        found: Move = named(f"{READ_BY}:loop_of")(self, name, understood, touched, drawn, pose)
         return found
 
     @model_validator(mode="after")

@@ -5,9 +5,10 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.model import Assembly
 from tol3d.errors import InputError
 from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
-from tol3d.linkage.loop import ClosedLoop, LoopInput
+from tol3d.linkage.loop import ClosedLoop, Closing, LoopInput
 from tol3d.linkage.structure import FREEDOMS
 from tol3d.linkage.workspace import range_of
 from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
@@ -24,8 +25,9 @@ CONDITION: Final = (
 )
 
 
-def loop_blocks(move: ClosedLoop) -> Sequence[PageItem]:
+def loop_blocks(plan: Closing, assembly: Assembly) -> Sequence[PageItem]:
     """Joints and freedoms, inputs, poses, and the relation of inputs and output."""
+    move = plan.move
     return (*_freedoms(move), *_poses(move), *_inverse(move), *_forward(move))
 
 

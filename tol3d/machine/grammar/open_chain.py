@@ -26,7 +26,7 @@ from tol3d.units import Of, Quantity
 if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
     from tol3d.assembly.from_scene.features import TouchedPoints
-    from tol3d.assembly.model import StatedMove
+    from tol3d.assembly.model import Move
     from tol3d.scene import Scene
 
 AXES: Final = ("axis", "cylinder")
@@ -148,8 +148,8 @@ class OpenChainSpec(StatedMoveSpec):
 
     def stated(
         self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
-    ) -> "StatedMove":
-        found: StatedMove = named(f"{READ_BY}:chain_of")(self, name, understood, drawn, pose)
+    ) -> "Move":
+        found: Move = named(f"{READ_BY}:chain_of")(self, name, understood, drawn, pose)
         return found
 
     @model_validator(mode="after")

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from tol3d.assembly.from_scene.assembly import Understood
     from tol3d.assembly.from_scene.features import TouchedPoints
     from tol3d.assembly.grammar.feature_name import FeatureName
-    from tol3d.assembly.model.stated_move import StatedMove
+    from tol3d.assembly.model import Move
     from tol3d.scene import Scene
     from tol3d.system.plain import PlainContributor
 
 
 class StatedMoveSpec(MoveSpec):
-    """A move of any mechanism that places one or several bodies and defines how; see StatedMove."""
+    """A move of any mechanism that places one or several bodies and defines how; see Move."""
 
     words: ClassVar[str] = "a move that places a part"
 
@@ -52,7 +52,7 @@ class StatedMoveSpec(MoveSpec):
     @abstractmethod
     def stated(
         self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: "Mapping[str, slice]", pose: str
-    ) -> "StatedMove":
+    ) -> "Move":
         """Model of the move.
 
         Args:

@@ -1,19 +1,14 @@
-"""Moves: the torsor of the part that each places."""
+"""Best fit: the torsor of a part by least squares of residuals, or by the least largest one."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from tol3d.assembly.model import BestFit, Contact, Engage, Fit, Fix, Locate, Mate, Move, Rest, StatedMove, Touch, Weld
-from tol3d.assembly.torsors.engaging import engaged
-from tol3d.assembly.torsors.freedoms import Freedoms, freedom_in_words
-from tol3d.assembly.torsors.mating import located, mated
-from tol3d.assembly.torsors.resting import rested
-from tol3d.assembly.torsors.surfaces import Surfaces
+from tol3d.assembly.model import BestFit, Fit
+from tol3d.assembly.torsors.freedoms import Freedoms
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import (
-    height_at,
     ordered_product,
     ordered_solution,
     ordered_sum,
@@ -21,49 +16,7 @@ from tol3d.assembly.torsors.torsor import (
     squared_lengths,
 )
 from tol3d.assembly.torsors.world import World
-from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-
-
-def touched(move: Touch, world: World) -> Array:
-    """The torsor (6, columns) of a part by its contacts; freedoms that none decides stay as nominal.
-
-    Raises:
-        InputError: a contact constrains what earlier ones hold, or two surfaces have no common normal.
-    """
-    points = [world.origin(name) for contact in move.contacts for name in (contact.moving, contact.target)]
-    freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
-    for contact in move.contacts:
-        rows, values = _asked(contact, move, world)
-        before = freedoms.left
-        if freedoms.take(rows, values) < len(rows):
-            free = f"{move.part} is still free: {freedom_in_words(before)}" if before.size else "nothing is free"
-            raise InputError(
-                f"moves.{move.name}: contact of {contact.moving} and {contact.target} constrains what earlier contacts "
-                f"hold; {free}; expected contacts that are independent of each other"
-            )
-    freedoms.settle(np.mean([world.origin(contact.moving) for contact in move.contacts], axis=0))
-    return freedoms.rest()
-
-
-def _asked(contact: Contact, move: Touch, world: World) -> tuple[Array, Array]:
-    """Rows (equations, 6) and values (equations, columns): the gap of the surfaces, and the tilt of a line [mm]."""
-    surfaces = Surfaces(world, contact.target, contact.moving)
-    try:
-        normal, distance, point = surfaces.checked()
-    except InputError as error:
-        raise InputError(f"moves.{move.name}: {error}") from None
-    nominal, varying = surfaces.touching()
-    others = world.placed(contact.target) - world.on_body(contact.moving, move.part)
-    rows = [height_at(point, normal)]
-    values = [rows[0] @ others + world.columns.constants(np.array([nominal - distance])) + varying]
-    if (hinge := surfaces.hinge()) is not None:
-        turn, sine = hinge
-        length = max(1.0, float(np.linalg.norm(point - world.assembly.part[move.part].pose[:3, 3])))
-        rows.append(length * turn)
-        values.append(length * turn @ others + world.columns.constants(np.array([-length * sine])))
-    return np.concatenate(rows), np.concatenate(values)
-
 
 GAP = 1e-11
 """Relative error of the square of the largest residual at the end."""
@@ -173,8 +126,8 @@ def _until_nil(values: Array, slopes: Array, falls: Array) -> Array:
     return np.asarray((2.0 * values / np.maximum(below, 1e-300)).min(axis=0))
 
 
-def fitted(move: BestFit, world: World) -> Array:
-    """The torsor (6, columns) of a part by best fit; unaffected by residuals, the middle of its points stays."""
+def fitted(move: BestFit, world: World) -> World:
+    """The world with a part by best fit; unaffected by residuals, the middle of its points stays."""
     residuals = [_residual(fit, move, world) for fit in move.fits]
     points = [world.origin(fit.moving) for fit in move.fits]
     freedoms = Freedoms(world.assembly.part[move.part].pose[:3, 3], points, world.columns.count)
@@ -184,7 +137,7 @@ def fitted(move: BestFit, world: World) -> Array:
         weight = np.concatenate(weights)[:, None]
         freedoms.take(weight * rows, weight * values)
         freedoms.settle(np.mean(points, axis=0))
-        return freedoms.rest()
+        return world.with_part_at(move.part, freedoms.rest())
     # equal numbers of entries; those without a direction are 0
     rows = np.array([np.pad(rows, ((0, 3 - len(rows)), (0, 0))) for rows, _ in residuals]) @ freedoms.scale
     values = np.array([np.pad(values, ((0, 3 - len(values)), (0, 0))) for _, values in residuals])
@@ -193,7 +146,7 @@ def fitted(move: BestFit, world: World) -> Array:
     found = world.columns.made_by(Minimax(values.reshape(-1, world.columns.count), rows @ seen.T))
     freedoms.take(seen @ np.linalg.inv(freedoms.scale), found)
     freedoms.settle(np.mean(points, axis=0))
-    return freedoms.rest()
+    return world.with_part_at(move.part, freedoms.rest())
 
 
 def _residual(fit: Fit, move: BestFit, world: World) -> tuple[Array, Array]:
@@ -205,36 +158,3 @@ def _residual(fit: Fit, move: BestFit, world: World) -> tuple[Array, Array]:
     other = at_moving @ world.parts[part] + at_target @ world.on_part(fit.target)
     gap = world.columns.constants(directions @ (moving - target))
     return at_moving, other - at_moving @ world.on_body(fit.moving, move.part) - gap
-
-
-def after(move: Move, world: World, leaning: Array | None = None) -> World:
-    """The world after a move.
-
-    Args:
-        move: the move.
-        world: before it.
-        leaning: for a rest, direction along its unknowns in which the part rocks; default in the middle. For play,
-            direction along its freedoms in which the part is pushed; default by its float.
-
-    Raises:
-        InputError: it leaves a freedom that it should hold, or holds one twice.
-    """
-    match move:
-        case Fix():
-            return world.with_part_at(move.part, world.columns.zeros(6))
-        case Locate():
-            return world.with_part_at(move.part, located(move, world))
-        case Mate():
-            return world.with_part_at(move.part, mated(move, world))
-        case BestFit():
-            return world.with_part_at(move.part, fitted(move, world))
-        case Rest():
-            return world.with_part_at(move.part, rested(move, world, leaning))
-        case Touch():
-            return world.with_part_at(move.part, touched(move, world))
-        case Engage():
-            return engaged(move, world, leaning)
-        case StatedMove():
-            return move.displaced(world)
-        case Weld():
-            return world.with_welded((move.part, *move.others))
