@@ -1,6 +1,6 @@
 """A move that another package brings: it places a part among others, with gears and a housing in the same scene."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -10,9 +10,9 @@ import pytest
 from machine.housed import BACKLASH, FOUR_BORES, GEARS, LAID, SHAFTS, housed_scene
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
+from tol3d.assembly.from_scene.setting import Setting
 from tol3d.assembly.grammar.feature_name import FeatureName, part_of
-from tol3d.assembly.grammar.moves import StatedMoveSpec
-from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.model import Acts, Move
 from tol3d.assembly.model.statuses import NO_CONTACT, OK
 from tol3d.assembly.placing.placer import Placer
@@ -22,7 +22,6 @@ from tol3d.kinds import all_kinds
 from tol3d.scene import Grammar, Scene
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
-from tol3d.scene.reference import Reference
 from tol3d.system.draw import Scalar
 from tol3d.system.mechanism import Mechanism
 from tol3d.system.plain import PlainContributor
@@ -31,11 +30,14 @@ RUNS_OUT = 0.04
 """mm; the screw is no longer than that."""
 
 
+RAISES = Acts("together", "carried by", f"{__name__}:raising", f"{__name__}:raised")
+
+
 @dataclass(frozen=True, eq=False)
 class Jack(Move):
     """A part on a screw that stands on a plane, raised along its normal."""
 
-    acts: ClassVar[Acts] = Acts("together", "carried by", f"{__name__}:raising", f"{__name__}:raised")
+    acts: ClassVar[Acts] = RAISES
 
     part: str
     foot: str
@@ -78,8 +80,12 @@ def raised(move: Jack, world: Any) -> Any:
     return world.with_part_at(move.part, torsor)
 
 
-class JackSpec(StatedMoveSpec):
+class JackSpec(AssemblyMoveSpec):
     """A part on a jack."""
+
+    acts = RAISES
+    stated_by = f"{__name__}:jack_of"
+    drawn_by = f"{__name__}:height_of"
 
     kind: Literal["jack"]
     part: Name
@@ -94,14 +100,13 @@ class JackSpec(StatedMoveSpec):
     def targets(self) -> Iterator[tuple[KeyPath, str]]:
         yield ("on",), self.on
 
-    def references(self) -> tuple[Reference, ...]:
-        return (Reference(("part",), self.part, (SolidSpec,)), Reference(("on",), part_of(self.on), (SolidSpec,)))
 
-    def contributors(self, name: str, scene: Scene) -> Sequence[PlainContributor]:
-        return [PlainContributor(f"height of {name}", "jack", Scalar(self.height.resolve(scene.files)))]
+def height_of(spec: JackSpec, name: str, scene: Scene) -> Sequence[PlainContributor]:
+    return [PlainContributor(f"height of {name}", "jack", Scalar(spec.height.resolve(scene.files)))]
 
-    def stated(self, name: str, understood: Any, touched: Any, drawn: Mapping[str, slice], pose: str) -> Move:
-        return Jack(name, self.part, self.foot, self.on, drawn[f"height of {name}"].start)
+
+def jack_of(spec: JackSpec, name: str, setting: Setting) -> Jack:
+    return Jack(name, spec.part, spec.foot, spec.on, setting.drawn[f"height of {name}"].start)
 
 
 TOY = Mechanism(name="jacks", moves=(JackSpec,), extends=("assembly", "machine"))

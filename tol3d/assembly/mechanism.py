@@ -5,13 +5,7 @@ from typing import Final
 from tol3d.assembly.grammar import measures, moves, parts, tolerances
 from tol3d.assembly.grammar.boundary_checks import unfit_boundaries, unfit_modifiers
 from tol3d.assembly.grammar.checks import differences_of_two_poses, unknown_features, unknown_poses, unplaced_bodies
-from tol3d.assembly.grammar.contact_checks import (
-    idle_over_play,
-    idle_rocking,
-    round_contacts,
-    unfit_engagements,
-    unfit_pairs,
-)
+from tol3d.assembly.grammar.contact_checks import idle_over_play, idle_rocking, unfit_moves, unfit_pairs
 from tol3d.assembly.grammar.drawing_checks import (
     contradicting_tolerances,
     features_far_off,
@@ -101,10 +95,9 @@ ASSEMBLY: Final = Mechanism(
         idle_rocking,
         unfit_holes,
         unfit_patterns,
-        unfit_engagements,
+        unfit_moves,
         idle_over_play,
         unfit_pairs,
-        round_contacts,
     ),
     warnings=(
         implausible_sizes,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
-from tol3d.assembly.from_scene import Meant, Understood, understood
+from tol3d.assembly.from_scene import Meant, Understood, meant, understood
 from tol3d.assembly.from_scene.datums import place_of
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.idle import idle_forms
@@ -343,7 +343,7 @@ def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
     it lies decides by second order how it lies: until that is met.
     """
     poses = poses_of(scene)
-    made = drawn = meaning.at(poses, pose)
+    made = drawn = meant(meaning, poses, pose)
     for n in range(SETTLINGS):
         found = placing.placed(made.assembly, np.zeros((1, made.assembly.width)))
         settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
@@ -351,7 +351,7 @@ def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
         if off <= (SETTLED if n else 0.0):
             break  # the first with its cached properties
         poses = {**poses, **settled}
-        made = meaning.at(poses, pose)
+        made = meant(meaning, poses, pose)
         if not any(move.is_pushed for move in made.assembly.moves):
             break
         made = _pushed_alike(made, drawn)

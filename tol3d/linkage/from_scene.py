@@ -1,24 +1,24 @@
 """Loops of a scene: their structure, positions in a pose, draws."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.assembly.from_scene.features import poses_of
+from tol3d.assembly.from_scene.setting import Setting, Understood
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import UsesFeatures, part_of
 from tol3d.assembly.grammar.features.nominal_frame import Triple, unit
 from tol3d.assembly.grammar.measures.assembly_measure import BetweenSpec
 from tol3d.assembly.grammar.measures.clearance import ClearanceSpec as SolidClearanceSpec
 from tol3d.assembly.grammar.measures.pose_errors import DirectionErrorSpec, OrientationErrorSpec, PoseErrorSpec
-from tol3d.assembly.grammar.moves import WeldSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.errors import InputError
-from tol3d.linkage.grammar.close_loop import STEP
+from tol3d.linkage.grammar.close_loop import STEP, CloseLoopSpec
 from tol3d.linkage.grammar.inputs import PathSpec, PlacePoseSpec, TiltPoseSpec
 from tol3d.linkage.grammar.joints import (
     ClearanceSpec,
@@ -37,11 +37,6 @@ from tol3d.scene.place import KeyPath
 from tol3d.system.draw import Ball, Scalar
 from tol3d.system.plain import UNITS, PlainContributor
 from tol3d.units import Quantity
-
-if TYPE_CHECKING:
-    from tol3d.assembly.from_scene.assembly import Understood
-    from tol3d.assembly.from_scene.features import TouchedPoints
-    from tol3d.linkage.grammar.close_loop import CloseLoopSpec
 
 Array = NDArray[np.float64]
 
@@ -65,12 +60,12 @@ def deviation_name(deviation: str, of: str) -> str:
     return f"{deviation} of {of}"
 
 
-def contributors_of(spec: "CloseLoopSpec", name: str, scene: Scene) -> Sequence[PlainContributor]:
+def contributors_of(spec: CloseLoopSpec, name: str, scene: Scene) -> Sequence[PlainContributor]:
     """Contributors of a loop: clearances and positions of joints in them, then deviations of inputs."""
     return tuple(_drawn(spec, scene))
 
 
-def _drawn(spec: "CloseLoopSpec", scene: Scene) -> Iterator[PlainContributor]:
+def _drawn(spec: CloseLoopSpec, scene: Scene) -> Iterator[PlainContributor]:
     for joint, own in spec.joints.items():
         room = own.room
         if room is None:
@@ -100,29 +95,23 @@ class _Known:
         self.positions: dict[tuple[str, bytes, str], Position] = {}
 
 
-_KNOWN: "WeakKeyDictionary[Understood, _Known]" = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[Understood, _Known] = WeakKeyDictionary()
 
 
-def loop_of(
-    spec: "CloseLoopSpec",
-    name: str,
-    understood: "Understood",
-    touched: "TouchedPoints",
-    drawn: Mapping[str, slice],
-    pose: str,
-) -> ClosedLoop:
+def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
     """A loop in a pose.
 
     Raises:
         SceneError: it does not close, is held twice or not at all, or does not reach the pose.
     """
+    understood, drawn, pose = setting.understood, setting.drawn, setting.pose
     plays = {joint: play for joint, own in spec.joints.items() if (play := _play(joint, own.room, drawn)) is not None}
     others = {part_of(feature) for _, feature in spec.targets()} | {
         own.carrier.partition(".")[0] for own in spec.joints.values() if isinstance(own, RollingSpec)
     }
     if spec.output is not None:
         others.add(part_of(spec.output.from_))
-    placed = {part: touched.poses[part] for part in sorted(others - set(spec.bodies))}
+    placed = {part: setting.touched.poses[part] for part in sorted(others - set(spec.bodies))}
     known = _KNOWN.setdefault(understood, _Known())
     key = name, b"".join(own.tobytes() for own in placed.values())
     if key not in known.kinematics:
@@ -149,9 +138,9 @@ def _play(joint: str, room: ClearanceSpec | PlaySpec | None, drawn: Mapping[str,
 
 
 def kinematics_of(
-    spec: "CloseLoopSpec",
+    spec: CloseLoopSpec,
     name: str,
-    understood: "Understood",
+    understood: Understood,
     placed: Mapping[str, Array],
     plays: Mapping[str, JointPlay],
 ) -> Kinematics:
@@ -173,7 +162,7 @@ def kinematics_of(
     return found
 
 
-def _keys(path: str, name: str, spec: "CloseLoopSpec") -> KeyPath:
+def _keys(path: str, name: str, spec: CloseLoopSpec) -> KeyPath:
     """A place in the scene from words such as `moves.drive.joints.upper 1`."""
     rest = path.removeprefix(f"moves.{name}").removeprefix(".")
     if not rest:
@@ -182,7 +171,7 @@ def _keys(path: str, name: str, spec: "CloseLoopSpec") -> KeyPath:
     return ("moves", name, section, joint) if joint in spec.joints else ("moves", name, section)
 
 
-def _structure(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing) -> Structure:
+def _structure(spec: CloseLoopSpec, name: str, scene: Scene, drawing: Drawing) -> Structure:
     joints = []
     for joint, own in spec.joints.items():
         lead = own.lead.internal / (2 * np.pi) if isinstance(own, ScrewSpec) else 0.0
@@ -213,7 +202,7 @@ def _radius(drawing: Drawing, feature: str) -> float:
     return size / 2
 
 
-def _read_features(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
+def _read_features(spec: CloseLoopSpec, name: str, scene: Scene) -> Iterator[tuple[KeyPath, str]]:
     """Features of the bodies that later moves and measures read, with their fields."""
     later = list(scene.moves)[list(scene.moves).index(name) + 1 :]
     entries: list[tuple[str, str, object]] = [("moves", own, scene.moves[own]) for own in later]
@@ -225,7 +214,7 @@ def _read_features(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[t
                     yield (section, own, *use.path), use.name
 
 
-def _read_turns(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tuple[KeyPath, str, Triple | None]]:
+def _read_turns(spec: CloseLoopSpec, name: str, scene: Scene) -> Iterator[tuple[KeyPath, str, Triple | None]]:
     """Bodies whose turn is read, with the field: of a direction in the body, or of all of it where that is None."""
     for own, entry in scene.measures.items():
         if isinstance(entry, PoseErrorSpec | DirectionErrorSpec) and entry.from_ in spec.bodies:
@@ -238,14 +227,14 @@ def _read_turns(spec: "CloseLoopSpec", name: str, scene: Scene) -> Iterator[tupl
                     yield ("measures", own, key), part, None
         if isinstance(entry, BetweenSpec) and entry.along is not None and part_of(entry.from_) in spec.bodies:
             yield ("measures", own, "from"), part_of(entry.from_), entry.along
-    for own, move in list(scene.moves.items())[list(scene.moves).index(name) + 1 :]:
-        if isinstance(move, WeldSpec):
-            for reference in move.references():
-                if reference.name in spec.bodies:
-                    yield ("moves", own, *reference.path), reference.name, None
+    moves = scene.of(AssemblyMoveSpec)
+    for own, move in list(moves.items())[list(moves).index(name) + 1 :]:
+        for path, part in move.joined:
+            if part in spec.bodies:
+                yield ("moves", own, *path), part, None
 
 
-def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
+def _refuse_read_idle(spec: CloseLoopSpec, name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
     """Refuse to read a feature moved by a freedom that moves no joint, as its place is undefined."""
     own = kinematics.structure
     for words, moved in kinematics.idle_freedoms():
@@ -270,7 +259,7 @@ def _refuse_read_idle(spec: "CloseLoopSpec", name: str, scene: Scene, drawing: D
 
 
 def _position(
-    spec: "CloseLoopSpec",
+    spec: CloseLoopSpec,
     name: str,
     scene: Scene,
     kinematics: Kinematics,
@@ -322,7 +311,7 @@ def _leg(path: PathSpec, k: int) -> tuple[str, str, float]:
     raise IndexError(k)
 
 
-def _reached(spec: "CloseLoopSpec", kinematics: Kinematics, pose: str, start: Position) -> Position:
+def _reached(spec: CloseLoopSpec, kinematics: Kinematics, pose: str, start: Position) -> Position:
     own = spec.poses[pose]
     if isinstance(own, TiltPoseSpec):
         return kinematics.at_output(tilt_vector(own.tilt.internal, own.azimuth.internal), start)
@@ -345,19 +334,19 @@ def _frame(pose: PlacePoseSpec) -> Array:
     return found
 
 
-def _values(spec: "CloseLoopSpec", pose: Mapping[str, Quantity]) -> Mapping[str, float]:
+def _values(spec: CloseLoopSpec, pose: Mapping[str, Quantity]) -> Mapping[str, float]:
     """Inputs from where parts are placed [mm or rad]."""
     return {name: value.internal - as_placed(spec, name) for name, value in pose.items()}
 
 
-def as_placed(spec: "CloseLoopSpec", name: str) -> float:
+def as_placed(spec: CloseLoopSpec, name: str) -> float:
     """An input as parts are placed [mm or rad]."""
     own = spec.inputs[name].as_placed
     return 0.0 if own is None else own.internal
 
 
 def _between(
-    spec: "CloseLoopSpec",
+    spec: CloseLoopSpec,
     kinematics: Kinematics,
     names: tuple[str, str],
     ends: Sequence[Position],
@@ -381,7 +370,7 @@ def _between(
     return kinematics.at_inputs(between, start)
 
 
-def inputs_of(spec: "CloseLoopSpec") -> Mapping[str, LoopInput]:
+def inputs_of(spec: CloseLoopSpec) -> Mapping[str, LoopInput]:
     """Inputs of a loop."""
     return {
         name: LoopInput(
@@ -395,7 +384,7 @@ def inputs_of(spec: "CloseLoopSpec") -> Mapping[str, LoopInput]:
 
 
 def _refuse_out_of_range(
-    spec: "CloseLoopSpec", name: str, scene: Scene, kinematics: Kinematics, pose: str, at: Position
+    spec: CloseLoopSpec, name: str, scene: Scene, kinematics: Kinematics, pose: str, at: Position
 ) -> None:
     for each, own in inputs_of(spec).items():
         value = own.as_placed + kinematics.inputs_at(at)[each]
@@ -406,7 +395,7 @@ def _refuse_out_of_range(
             raise scene.refuse(("moves", name, "poses", pose.partition(STEP)[0]), words + at_position)
 
 
-def _told(spec: "CloseLoopSpec", kinematics: Kinematics, at: Position) -> Mapping[str, str]:
+def _told(spec: CloseLoopSpec, kinematics: Kinematics, at: Position) -> Mapping[str, str]:
     """Inputs and the output where a loop stands, in words."""
     values = kinematics.inputs_at(at)
     found = {name: own.told(values[name]) for name, own in inputs_of(spec).items()}
@@ -418,7 +407,7 @@ def _told(spec: "CloseLoopSpec", kinematics: Kinematics, at: Position) -> Mappin
 
 
 def _deviations(
-    spec: "CloseLoopSpec", kinematics: Kinematics, position: Position, drawn: Mapping[str, slice]
+    spec: CloseLoopSpec, kinematics: Kinematics, position: Position, drawn: Mapping[str, slice]
 ) -> Mapping[str, Sequence[InputDeviation]]:
     values, found = kinematics.inputs_at(position), dict[str, list[InputDeviation]]()
     for of, own in spec.inputs.items():

@@ -17,6 +17,7 @@ from tol3d.assembly.torsors.world import World as TorsorWorld
 from tol3d.linkage.closing import loops_closed
 from tol3d.linkage.first_order import Displaced
 from tol3d.linkage.frames import joint_frames, stacked
+from tol3d.linkage.grammar.close_loop import CloseLoopSpec
 from tol3d.linkage.kinematics import Kinematics, Position
 from tol3d.linkage.play import JointPlay
 from tol3d.linkage.structure import ROOT, Structure
@@ -77,15 +78,7 @@ class ClosedLoop(Move):
         errors: of inputs, by their names.
     """
 
-    acts: ClassVar[Acts] = Acts(
-        "together",
-        "carried by",
-        f"{__name__}:closing",
-        f"{__name__}:displaced",
-        presents="tol3d.linkage.presenting.tables:loop_blocks",
-        workspace="tol3d.linkage.presenting.workspace_picture:workspace_map",
-        closes_loops=True,
-    )
+    acts: ClassVar[Acts] = CloseLoopSpec.acts
 
     kinematics: Kinematics
     position: Position

@@ -18,6 +18,7 @@ from tol3d.assembly.placing.poses import Codes, Pose, about
 from tol3d.assembly.placing.world import World as PlacedWorld
 from tol3d.assembly.torsors.torsor import cross_matrix
 from tol3d.assembly.torsors.world import World as TorsorWorld
+from tol3d.machine.grammar.open_chain import OpenChainSpec
 from tol3d.numerics.arrays import Array
 
 _Z = np.array([[0.0], [0.0], [1.0]])
@@ -52,7 +53,7 @@ class Joint:
 class Chain(Move):
     """A chain of links in one of its poses."""
 
-    acts: ClassVar[Acts] = Acts("together", "carried by", f"{__name__}:turning", f"{__name__}:displaced")
+    acts: ClassVar[Acts] = OpenChainSpec.acts
 
     joints: tuple[Joint, ...]
     carried: tuple[str, ...]

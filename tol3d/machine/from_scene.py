@@ -8,7 +8,7 @@ import numpy as np
 
 from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.measures.pose_errors import PositionErrorSpec
-from tol3d.assembly.grammar.moves import StatedMoveSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.system import AssemblySystem, assembly_system
@@ -93,9 +93,7 @@ def _up(scene: Scene) -> tuple[float, float, float]:
 def _parts_of(scene: Scene) -> Scene:
     """Its assembly: parts with drawings, the moves that place them, and their measures, in every pose."""
     parts = _entries_of(scene, ASSEMBLY)
-    moves = {
-        name: move for name, move in scene.moves.items() if name in parts.moves or isinstance(move, StatedMoveSpec)
-    }
+    moves = scene.of(AssemblyMoveSpec)
     measures: dict[str, Any] = dict(parts.measures)
     for spec in scene.of(WorstPositionErrorSpec).values():
         for pose in spec.poses or pose_names(scene):
@@ -185,7 +183,7 @@ def _others_than(scene: Scene, vocabulary: Vocabulary) -> Scene:
 def _is_between(entry: Any, vocabulary: Vocabulary) -> bool:
     kinds = {spec for own in (vocabulary, MACHINE) for section in SECTIONS for spec in own.specs(section)}
     shared = {spec for section in SECTIONS for spec in GEARING.specs(section)}
-    return type(entry) in kinds - shared or isinstance(entry, StatedMoveSpec)
+    return type(entry) in kinds - shared or isinstance(entry, AssemblyMoveSpec)
 
 
 def _gears_of(scene: Scene) -> Scene:

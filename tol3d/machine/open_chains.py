@@ -1,20 +1,21 @@
 """Chains of a scene: their joints where parts are placed, and on which side of its play gravity lays each."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from tol3d.assembly.from_scene.features import poses_of
+from tol3d.assembly.from_scene.setting import Setting
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
+from tol3d.distributions.constant import Constant
 from tol3d.machine.chain import Chain, Joint, forward
+from tol3d.machine.either_side import EitherSide
+from tol3d.machine.grammar.open_chain import FLANK, OpenChainSpec, flank_name, turn_name
 from tol3d.scene import Scene
-
-if TYPE_CHECKING:
-    from tol3d.assembly.from_scene.assembly import Understood
-    from tol3d.machine.grammar.open_chain import OpenChainSpec
-
+from tol3d.system.draw import Scalar
+from tol3d.system.plain import UNITS, PlainContributor
 
 SAME_LINE: Final = 1e-6
 """mm, and sine of an angle; both axes of a joint are one to within this where parts are placed."""
@@ -24,7 +25,7 @@ NO_TORQUE: Final = 1e-6
 
 
 def joints_of(
-    spec: "OpenChainSpec", drawing: Drawing, frames: Mapping[str, str], columns: Mapping[str, int], pose: str
+    spec: OpenChainSpec, drawing: Drawing, frames: Mapping[str, str], columns: Mapping[str, int], pose: str
 ) -> tuple[Joint, ...]:
     """The joints of a chain in a pose.
 
@@ -46,18 +47,30 @@ def joints_of(
     return tuple(found)
 
 
-def chain_of(
-    spec: "OpenChainSpec", name: str, understood: "Understood", drawn: Mapping[str, slice], pose: str
-) -> Chain:
+def contributors_of(spec: OpenChainSpec, name: str, scene: Scene) -> Sequence[PlainContributor]:
+    """Turns of the joints, which are not drawn; then flanks of those that nothing loads in some pose."""
+    hidden = Scalar(Constant(0.0))
+    turns = (
+        PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"], nominal="") for joint in spec.joints
+    )
+    words = "the end of its play at which {} lies, for nothing loads it"
+    free = (
+        PlainContributor(flank_name(joint), FLANK, Scalar(EitherSide()), "1", 1.0, words.format(joint))
+        for joint in free_joints(scene, spec)
+    )
+    return (*turns, *free)
+
+
+def chain_of(spec: OpenChainSpec, name: str, setting: Setting) -> Chain:
     """A chain in a pose.
 
     Raises:
         SceneError: a joint whose two axes are not one line where its parts are placed.
     """
-    scene, drawing = understood.scene, understood.effects.drawing
+    scene, drawing, drawn, pose = setting.scene, setting.effects.drawing, setting.drawn, setting.pose
     _refuse_apart(scene, name, spec, drawing)
     frames = {
-        joint: understood.frames.named(part_of(own.between[1]), own.seat)
+        joint: setting.understood.frames.named(part_of(own.between[1]), own.seat)
         for joint, own in spec.joints.items()
         if own.seat
     }
@@ -66,7 +79,7 @@ def chain_of(
     return Chain(name, joints_of(spec, drawing, frames, columns, pose), carried)
 
 
-def _refuse_apart(scene: Scene, name: str, spec: "OpenChainSpec", drawing: Drawing) -> None:
+def _refuse_apart(scene: Scene, name: str, spec: OpenChainSpec, drawing: Drawing) -> None:
     placed = poses_of(scene)
     for joint, own in spec.joints.items():
         first, last = (placed[part_of(axis)] @ drawing.kind(axis).frame for axis in own.between)
@@ -80,7 +93,7 @@ def _refuse_apart(scene: Scene, name: str, spec: "OpenChainSpec", drawing: Drawi
             raise scene.refuse(("moves", name, "joints", joint, "between"), f"{words} {amount} {own.between[0]!r}")
 
 
-def loaded_sides(scene: Scene, spec: "OpenChainSpec", pose: str) -> Mapping[str, int]:
+def loaded_sides(scene: Scene, spec: OpenChainSpec, pose: str) -> Mapping[str, int]:
     """End of each joint's play at which gravity lays it in a pose: 1, -1, or 0 if nothing loads it.
 
     A link's torque about an axis is positive where it turns the link in the sense of positive inputs.
@@ -112,7 +125,7 @@ def _behind(joints: Sequence[Joint], joint: Joint) -> set[str]:
     return found
 
 
-def free_joints(scene: Scene, spec: "OpenChainSpec") -> tuple[str, ...]:
+def free_joints(scene: Scene, spec: OpenChainSpec) -> tuple[str, ...]:
     """Joints with play that nothing loads in one of the poses."""
     sides = [loaded_sides(scene, spec, pose) for pose in spec.poses]
     trains = (name for name, own in spec.joints.items() if own.train is not None)

@@ -13,6 +13,7 @@ warming       parts that are warmer grow
 assembly      all of it together
 """
 
-from tol3d.assembly.from_scene.assembly import Meant, Understood, understood
+from tol3d.assembly.from_scene.assembly import Meant, meant, understood
+from tol3d.assembly.from_scene.setting import Understood
 
-__all__ = ["Meant", "Understood", "understood"]
+__all__ = ["Meant", "Understood", "meant", "understood"]

@@ -12,15 +12,12 @@ from tol3d.assembly.grammar.drawing import Drawing, Stated
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import ConeSpec, PlaneSpec, PointSpec, SlotSpec, SphereSpec
 from tol3d.assembly.grammar.forms import whole_form
-from tol3d.assembly.grammar.moves import PinAndHoleSpec, PlaySpec, StatedMoveSpec
-from tol3d.assembly.grammar.moves.locating import LocatingSpec
-from tol3d.assembly.grammar.moves.play import BoltSpec, PatternPairSpec, RandomSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
 from tol3d.assembly.model import Axis, Cone, Contribution, Point, Slot
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones import EnvelopedForm
-from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.distributions import Distribution
 from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
@@ -56,12 +53,8 @@ class Effects:
     locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
     heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
     """Form contributions of surfaces at points of touch."""
-    floats: dict[str, slice] = field(default_factory=dict)
-    """Columns of the float draws of moves with play."""
-    bolts: dict[tuple[str, int], Contribution] = field(default_factory=dict)
-    """Deviations of bolts that belong to no part, by a move's pairs."""
-    stated: dict[str, Mapping[str, slice]] = field(default_factory=dict)
-    """Columns of the draws of other mechanisms' moves, by name."""
+    drawn: dict[str, Mapping[str, slice]] = field(default_factory=dict)
+    """Columns of contributors of moves, by the move's name and theirs."""
     width: int = 0
 
     def _added(
@@ -100,39 +93,6 @@ class Effects:
         columns = self._added(name, own.spec.kind, f"of all features of {own.entry} together", draw, line=line)
         for feature, matrix in moved.items():
             self.moved_by.setdefault(feature, []).append(Contribution(name, columns, matrix))
-
-    def add_float(self, name: str, spec: PlaySpec) -> None:
-        """Add the draw of a part with random play; nothing otherwise."""
-        if not isinstance(spec.floating, RandomSpec):
-            return
-        if is_pattern(spec, self.drawing):
-            draw = FloatDraw(("room",), (*SHIFT_AND_TURN, "start"))
-        else:
-            ends = ("",) if spec.relations else ("start ", "end ")
-            names = [f"{end}{axis}" for end in ends for axis in "xy"] + ["across"] * (len(spec.engaged) - 1)
-            laws: list[Law] = ["disc" for _ in ends]
-            laws += ["interval" for _ in spec.engaged[1:]]
-            draw = FloatDraw(tuple(laws), tuple(names))
-        columns = slice(self.width, self.width + len(draw.components))
-        words = f"where {spec.part} lies in its room"
-        self.contributors.append(PlainContributor(f"float of {name}", "float", draw, "1", 1.0, words))
-        self.width, self.floats[name] = columns.stop, columns
-
-    def add_bolts(self, name: str, spec: PlaySpec) -> None:
-        """The diameters of bolts that belong to no part."""
-        for k, pair in enumerate(spec.engaged):
-            if isinstance(pair, PatternPairSpec) and pair.bolt is not None and pair.bolt.distribution is not None:
-                own, draw = f"bolt {k + 1} of {name}", Scalar(pair.bolt.distribution.resolve(self.scene.files))
-                self._refuse_no_bolt(name, k, pair.bolt, draw)
-                columns = self._added(own, "size", f"bolt through {pair.from_} and {pair.to}", draw, nominal="size")
-                self.bolts[name, k] = Contribution(own, columns, np.eye(1))
-
-    def _refuse_no_bolt(self, name: str, k: int, spec: BoltSpec, draw: Scalar) -> None:
-        assert spec.diameter is not None
-        nominal, law = spec.diameter.internal, draw.distribution
-        if nominal + law.low <= 0.0 or law.high >= nominal:
-            words = f"expected deviations smaller than the nominal {nominal:g} mm, got {law.low:g} to {law.high:g} mm"
-            raise self.scene.refuse(("moves", name, "pairs", k, "bolt", "distribution"), words)
 
     def _locator(self, name: str) -> None:
         spec = self.scene.tolerances[name]
@@ -257,12 +217,6 @@ def motion_name(own: Stated, word: str) -> str:
 SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
 
 
-def is_pattern(spec: PlaySpec, drawing: Drawing) -> bool:
-    """True if all engagements share their clearance: those of a pattern, or of two round holes."""
-    kinds = [drawing.kind(name).kind for pair in spec.engaged for name in (pair.from_, pair.to)]
-    return not isinstance(spec, PinAndHoleSpec) or (len(spec.engaged) == 2 and "slot" not in kinds)
-
-
 def effects_of(scene: Scene, drawing: Drawing) -> Effects:
     """All contributors of a scene, and their effects.
 
@@ -274,27 +228,20 @@ def effects_of(scene: Scene, drawing: Drawing) -> Effects:
         effects.add(own)
         if isinstance(own, Stated) and (pattern := drawing.composite(own)) and own is pattern[-1]:
             effects.add_motion(pattern)
-    for name, move in scene.moves.items():
-        if isinstance(move, PlaySpec):
-            effects.add_bolts(name, move)
-            effects.add_float(name, move)
-        elif isinstance(move, StatedMoveSpec):
-            drawn = move.contributors(name, scene)
-            effects.stated[name] = {own.name: effects.added(own) for own in drawn}
+    for name, move in scene.of(AssemblyMoveSpec).items():
+        drawn = named(move.drawn_by)(move, name, scene) if move.drawn_by else ()
+        effects.drawn[name] = {own.name: effects.added(own) for own in drawn}
     return effects
 
 
 def _fitting(scene: Scene) -> frozenset[str]:
-    moves = [move for move in scene.moves.values() if isinstance(move, PlaySpec)]
-    pairs = [pair for move in moves for pair in move.engaged]
-    bolts = (pair.bolt.of for pair in pairs if isinstance(pair, PatternPairSpec) and pair.bolt is not None)
-    return frozenset([*(own for pair in pairs for own in (pair.from_, pair.to)), *(own for own in bolts if own)])
+    return frozenset(own for move in scene.of(AssemblyMoveSpec).values() for own in move.fitted)
 
 
 def _touching(scene: Scene) -> Mapping[str, Mapping[str, Sequence[Touch]]]:
     found: dict[str, dict[str, list[Touch]]] = {}
-    for name, move in scene.moves.items():
-        for pair, (_, own) in (move.pairs_by_name if isinstance(move, LocatingSpec) else {}).items():
+    for name, move in scene.of(AssemblyMoveSpec).items():
+        for pair, (_, own) in move.pairs_by_name.items():
             for one, other in ((own.from_, own.to), (own.to, own.from_)):
                 found.setdefault(one, {}).setdefault(other, []).append((name, pair))
     return found

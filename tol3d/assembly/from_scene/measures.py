@@ -20,7 +20,7 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedTogetherSpec,
 )
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
-from tol3d.assembly.grammar.moves import FixSpec
+from tol3d.assembly.grammar.moves.assembly_move import fixed_parts
 from tol3d.assembly.model import Feature, Measured, Point
 from tol3d.assembly.model.datum_frame import MaterialBonus
 from tol3d.numerics.arrays import Array
@@ -83,7 +83,7 @@ def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Ar
     """Add the nominal twins of features whose pose errors other parts see, for given poses of parts (4, 4)."""
     for spec in scene.measures.values():
         if isinstance(spec, PoseErrorSpec | DirectionErrorSpec) and (name := spec.twin) not in features:
-            own, part = features[spec.of], spec.from_ or next(move.part for move in scene.of(FixSpec).values())
+            own, part = features[spec.of], spec.from_ or fixed_parts(scene.moves)[0]
             frame = np.linalg.inv(poses[part]) @ poses[own.part] @ own.frame
             features[name] = Feature(name, part, Point(), frame, is_named=False)
 

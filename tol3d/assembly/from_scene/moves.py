@@ -1,41 +1,35 @@
 """Moves of a scene: pairs, normals, locators."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.features import TouchedPoints
-from tol3d.assembly.from_scene.play import engaged_by, touch
+from tol3d.assembly.from_scene.setting import Setting, Understood
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import (
+    AssemblyMoveSpec,
     BestFitSpec,
     FixSpec,
     LocatingSpec,
     MateSpec,
-    PlacingSpec,
-    PlaySpec,
     RestSpec,
-    StatedMoveSpec,
     TouchSpec,
     WeldSpec,
 )
 from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
-from tol3d.assembly.model import BestFit, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Weld
+from tol3d.assembly.model import BestFit, Contact, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Touch, Weld
+from tol3d.assembly.model.moves import unfit_for_contact
+from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
-
-if TYPE_CHECKING:
-    from tol3d.assembly.from_scene.assembly import Understood
-
 
 FLAT = 1e-6
 """Sine of the angle between directions that are the same."""
 
 
-def moves_of(understood: "Understood", touched: TouchedPoints, pose: str) -> tuple[Move, ...]:
+def moves_of(understood: Understood, touched: TouchedPoints, pose: str) -> tuple[Move, ...]:
     """All moves of a scene, in order; the points of planes that they touch are added to the features.
 
     Args:
@@ -46,48 +40,73 @@ def moves_of(understood: "Understood", touched: TouchedPoints, pose: str) -> tup
     Raises:
         SceneError: directions that do not fit their features.
     """
-    scene, effects = understood.scene, understood.effects
     found: list[Move] = []
-    for name, spec in scene.moves.items():
-        if isinstance(spec, StatedMoveSpec):
-            found.append(spec.stated(name, understood, touched, effects.stated[name], spec.pose_like(pose)))
-        elif isinstance(spec, PlacingSpec | WeldSpec):
-            found.append(_move(scene, name, spec, effects, touched))
+    for name, spec in understood.scene.of(AssemblyMoveSpec).items():
+        setting = Setting(understood, touched, understood.effects.drawn[name], spec.pose_like(pose))
+        found.append(named(spec.stated_by)(spec, name, setting))
     return tuple(found)
 
 
-def _move(scene: Scene, name: str, spec: PlacingSpec | WeldSpec, effects: Effects, touched: TouchedPoints) -> Move:
-    match spec:
-        case WeldSpec():
-            return Weld(name, spec.part, spec.to)
-        case RestSpec():
-            pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
-            at = np.array([own.internal for own in spec.force.at])
-            return Rest(
-                name, spec.part, pairs, unit(spec.force.direction), at, spec.points_on, _relations(spec.relations)
-            )
-        case LocatingSpec():
-            pairs = tuple(_pair(scene, name, number, spec, effects, touched) for number in spec.pairs_by_name)
-            return Locate(name, spec.part, pairs, spec.points_on)
-        case BestFitSpec():
-            _refuse_a_line(scene, name, spec, touched)
-            fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
-            return BestFit(name, spec.part, fits, spec.criterion)
-        case MateSpec():
-            return Mate(name, spec.part, _relations(spec.relations))
-        case TouchSpec():
-            return touch(scene, name, spec, touched.features)
-        case PlaySpec():
-            return engaged_by(scene, name, spec, _relations(spec.relations), effects, touched.features)
-        case FixSpec():
-            return Fix(name, spec.part)
-    raise NotImplementedError(spec.kind)
+def fixed(spec: FixSpec, name: str, setting: Setting) -> Fix:
+    """A part that stays where it is drawn."""
+    return Fix(name, spec.part)
 
 
-def _relations(specs: Sequence[RelationSpec]) -> tuple[Relation, ...]:
+def welded(spec: WeldSpec, name: str, setting: Setting) -> Weld:
+    """Parts that become one body."""
+    return Weld(name, spec.part, spec.to)
+
+
+def mated(spec: MateSpec, name: str, setting: Setting) -> Mate:
+    """A mate."""
+    return Mate(name, spec.part, relations_of(spec.relations))
+
+
+def relations_of(specs: Sequence[RelationSpec]) -> tuple[Relation, ...]:
+    """Relations of a mate, or kept by another move."""
     return tuple(
         Relation(own.kind, own.from_, own.to, 0.0 if own.distance is None else own.distance.internal) for own in specs
     )
+
+
+def touched(spec: TouchSpec, name: str, setting: Setting) -> Touch:
+    """A touch.
+
+    Raises:
+        SceneError: surfaces that do not touch as contacts ask.
+    """
+    for path, pair in spec.paired():
+        if words := unfit_for_contact(setting.features[pair.from_].shape, setting.features[pair.to].shape):
+            raise setting.scene.refuse(("moves", name, *path), words)
+    contacts = tuple(Contact(pair.from_, pair.to) for pair in spec.contacts)
+    return Touch(name, spec.part, contacts, None if spec.pressed is None else unit(spec.pressed))
+
+
+def fitted(spec: BestFitSpec, name: str, setting: Setting) -> BestFit:
+    """A best fit.
+
+    Raises:
+        SceneError: points on a line.
+    """
+    _refuse_a_line(setting.scene, name, spec, setting.touched)
+    fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
+    return BestFit(name, spec.part, fits, spec.criterion)
+
+
+def located(spec: LocatingSpec, name: str, setting: Setting) -> Locate:
+    """Six contacts.
+
+    Raises:
+        SceneError: directions that do not fit their features.
+    """
+    return Locate(name, spec.part, _pairs(spec, name, setting), spec.points_on)
+
+
+def rested(spec: RestSpec, name: str, setting: Setting) -> Rest:
+    """A part at rest; raises as `located`."""
+    at = np.array([own.internal for own in spec.force.at])
+    force, relations = unit(spec.force.direction), relations_of(spec.relations)
+    return Rest(name, spec.part, _pairs(spec, name, setting), force, at, spec.points_on, relations)
 
 
 def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedPoints) -> None:
@@ -101,7 +120,12 @@ def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedP
         raise scene.refuse(("moves", name, "pairs"), f"{words}; add a point beside it")
 
 
-def _pair(scene: Scene, move: str, number: str, spec: LocatingSpec, effects: Effects, touched: TouchedPoints) -> Pair:
+def _pairs(spec: LocatingSpec, name: str, setting: Setting) -> tuple[Pair, ...]:
+    return tuple(_pair(spec, name, number, setting) for number in spec.pairs_by_name)
+
+
+def _pair(spec: LocatingSpec, move: str, number: str, setting: Setting) -> Pair:
+    scene, effects, touched = setting.scene, setting.effects, setting.touched
     path, own = spec.pairs_by_name[number]
     on_part = spec.points_on == "part"
     side, point = (own.to, own.from_) if on_part else (own.from_, own.to)

@@ -1,33 +1,25 @@
-"""Moves with play: where pins, tabs, holes and slots engage nominally."""
+"""Moves with play: where pins, tabs, holes and slots engage nominally, and the draws of bolts and floats."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tol3d.assembly.from_scene.contributors import Effects, is_pattern
+from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
 from tol3d.assembly.from_scene.features import poses_of
+from tol3d.assembly.from_scene.moves import relations_of
+from tol3d.assembly.from_scene.setting import Setting
+from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves import PlaySpec, TouchSpec
-from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, PatternPairSpec, RandomSpec, TowardSpec
-from tol3d.assembly.model import (
-    Axis,
-    Bolt,
-    Contact,
-    Contribution,
-    Engage,
-    Engagement,
-    Feature,
-    Floating,
-    Plane,
-    Relation,
-    Slot,
-    Touch,
-)
+from tol3d.assembly.grammar.moves import PlaySpec
+from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, RandomSpec, TowardSpec
+from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating, Plane, Slot
 from tol3d.assembly.model.feature import nominal_size
-from tol3d.assembly.model.moves import unfit_for_contact
+from tol3d.assembly.zones.float_draw import FloatDraw, Law
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
+from tol3d.system.draw import Scalar
+from tol3d.system.plain import PlainContributor
 
 FLAT = 1e-6
 """Sine of an angle that is none."""
@@ -35,32 +27,59 @@ SHORT = 1e-9
 """Length of an engagement that counts as none [mm]."""
 
 
-def engaged_by(
-    scene: Scene,
-    name: str,
-    spec: PlaySpec,
-    relations: tuple[Relation, ...],
-    effects: Effects,
-    features: Mapping[str, Feature],
-) -> Engage:
-    """A move with play.
+def contributors_of(spec: PlaySpec, name: str, scene: Scene) -> Iterator[PlainContributor]:
+    """Diameters of bolts that belong to no part; then the draw of a part with random play.
 
-    Args:
-        scene: the scene.
-        name: of the move.
-        spec: its entry.
-        relations: its relations.
-        effects: of the scene's tolerances, the float's among them.
-        features: all, by their names.
+    Raises:
+        SceneError: a law that leaves nothing of a bolt.
+    """
+    for k, pair in enumerate(spec.engaged):
+        if (bolt := pair.through) is not None and bolt.distribution is not None:
+            draw = Scalar(bolt.distribution.resolve(scene.files))
+            _refuse_no_bolt(scene, name, k, bolt, draw)
+            words = f"bolt through {pair.from_} and {pair.to}"
+            yield PlainContributor(_bolt_name(name, k), "size", draw, description=words, nominal="size")
+    if isinstance(spec.floating, RandomSpec):
+        if not spec.floats_by_pairs(Drawing(scene)):
+            float_draw = FloatDraw(("room",), (*SHIFT_AND_TURN, "start"))
+        else:
+            ends = ("",) if spec.relations else ("start ", "end ")
+            names = [f"{end}{axis}" for end in ends for axis in "xy"] + ["across"] * (len(spec.engaged) - 1)
+            laws: list[Law] = ["disc" for _ in ends]
+            laws += ["interval" for _ in spec.engaged[1:]]
+            float_draw = FloatDraw(tuple(laws), tuple(names))
+        words = f"where {spec.part} lies in its room"
+        yield PlainContributor(_float_name(name), "float", float_draw, "1", 1.0, words)
+
+
+def _bolt_name(move: str, k: int) -> str:
+    return f"bolt {k + 1} of {move}"
+
+
+def _float_name(move: str) -> str:
+    return f"float of {move}"
+
+
+def _refuse_no_bolt(scene: Scene, name: str, k: int, spec: BoltSpec, draw: Scalar) -> None:
+    assert spec.diameter is not None
+    nominal, law = spec.diameter.internal, draw.distribution
+    if nominal + law.low <= 0.0 or law.high >= nominal:
+        words = f"expected deviations smaller than the nominal {nominal:g} mm, got {law.low:g} to {law.high:g} mm"
+        raise scene.refuse(("moves", name, "pairs", k, "bolt", "distribution"), words)
+
+
+def engaged(spec: PlaySpec, name: str, setting: Setting) -> Engage:
+    """A move with play.
 
     Raises:
         SceneError: features that do not engage nominally; a hole that is smaller than its pin at the mean.
     """
+    scene, effects, features = setting.scene, setting.effects, setting.features
     engagements, poses = [], poses_of(scene)  # as drawn: moves may tilt a part within its play
     for k, pair in enumerate(spec.engaged):
         here = ("moves", name, "pairs", k)
-        if isinstance(pair, PatternPairSpec) and pair.bolt is not None:
-            engagements.append(_bolted(scene, name, k, pair, pair.bolt, effects, features, poses))
+        if pair.through is not None:
+            engagements.append(_bolted(setting, name, k, pair, pair.through, poses))
             continue
         found = _engagement(pair, features, poses)
         if isinstance(found, str):
@@ -70,20 +89,14 @@ def engaged_by(
             words = f"expected a size of {found.inner!r} above that of {found.outer!r} at the mean"
             raise scene.refuse(here, f"{words}, got {-clearance * 1e3:.6g} um under it; nothing could be assembled")
         engagements.append(found)
-    return Engage(name, spec.part, relations, tuple(engagements), _floating(name, spec, effects))
+    return Engage(name, spec.part, relations_of(spec.relations), tuple(engagements), _floating(name, spec, setting))
 
 
 def _bolted(
-    scene: Scene,
-    name: str,
-    k: int,
-    pair: PatternPairSpec,
-    spec: BoltSpec,
-    effects: Effects,
-    features: Mapping[str, Feature],
-    poses: Mapping[str, Array],
+    setting: Setting, name: str, k: int, pair: EngagementSpec, spec: BoltSpec, poses: Mapping[str, Array]
 ) -> Engagement:
     """Two holes and their bolt."""
+    scene, effects, features = setting.scene, setting.effects, setting.features
     holes = [features[own] for own in (pair.from_, pair.to)]
     frames = [poses[part_of(own.name)] @ own.frame for own in holes]
     here = ("moves", name, "pairs", k)
@@ -97,7 +110,8 @@ def _bolted(
     if spec.of is None:
         assert spec.diameter is not None
         diameter: float = spec.diameter.internal
-        by: tuple[Contribution, ...] = (effects.bolts[name, k],)
+        contributor = _bolt_name(name, k)
+        by: tuple[Contribution, ...] = (Contribution(contributor, setting.drawn[contributor], np.eye(1)),)
     else:
         shank = features[spec.of]
         diameter, by = nominal_size(shank.shape) or 0.0, shank.mating_by
@@ -118,10 +132,11 @@ def _hole_ends(hole: Feature) -> Array:
     return hole.shape.ends
 
 
-def _floating(name: str, spec: PlaySpec, effects: Effects) -> Floating:
+def _floating(name: str, spec: PlaySpec, setting: Setting) -> Floating:
     match spec.floating:
         case RandomSpec():
-            return Floating("random", effects.floats[name], by_pairs=not is_pattern(spec, effects.drawing))
+            by_pairs = spec.floats_by_pairs(setting.effects.drawing)
+            return Floating("random", setting.drawn[_float_name(name)], by_pairs=by_pairs)
         case TowardSpec(along=along, at=at):
             return Floating("toward", at=at, along=unit(along))
     return Floating("centred")
@@ -198,16 +213,3 @@ def _within(start: float, slope: float, reach: float) -> tuple[float, float]:
         return (-np.inf, np.inf) if abs(start) <= reach else (np.inf, -np.inf)
     low, high = sorted(((-reach - start) / slope, (reach - start) / slope))
     return low, high
-
-
-def touch(scene: Scene, name: str, spec: TouchSpec, features: Mapping[str, Feature]) -> Touch:
-    """A touch of a scene.
-
-    Raises:
-        SceneError: surfaces that do not touch as contacts ask.
-    """
-    for path, pair in spec.paired():
-        if words := unfit_for_contact(features[pair.from_].shape, features[pair.to].shape):
-            raise scene.refuse(("moves", name, *path), words)
-    contacts = tuple(Contact(pair.from_, pair.to) for pair in spec.contacts)
-    return Touch(name, spec.part, contacts, None if spec.pressed is None else unit(spec.pressed))

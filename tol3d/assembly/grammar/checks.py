@@ -8,7 +8,7 @@ from tol3d.assembly.grammar.feature_name import Use, UsesFeatures, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec
-from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec, WeldSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.moves.forgotten import how_to_place
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.grammar.tolerances.feature_tolerance import FeatureTolerance
@@ -72,58 +72,38 @@ class Bodies:
     def problems(self) -> Iterator[Problem]:
         """Problems, move by move; then parts that no move places."""
         self.body = {name: name for name in self.scene.of(SolidSpec)}
-        moving = {move.part for move in self.scene.moves.values() if isinstance(move, PlacingSpec)}
-        stated = (move for move in self.scene.moves.values() if isinstance(move, StatedMoveSpec))
-        moving |= {part for move in stated for _, part in move.parts_placed}
-        for name, move in self.scene.moves.items():
+        moves = self.scene.of(AssemblyMoveSpec)
+        moving = {part for move in moves.values() for _, part in move.parts_placed}
+        for name, move in moves.items():
             here: KeyPath = ("moves", name)
-            if isinstance(move, WeldSpec):
-                yield from self._welded(here, move, moving)
-            elif isinstance(move, PlacingSpec):
-                yield from self._placed(here, move, moving)
-            elif isinstance(move, StatedMoveSpec):
-                yield from self._placed_together(here, move, moving)
+            yield from self._placed(here, move, moving)
+            yield from self._joined(here, move, moving)
             self.by[name] = {part for part, own in self.body.items() if own in self.placed}
         for part, own in self.body.items():
             if own not in self.placed:
                 words = f"expected a move that places {part!r}, got none"
                 yield ("parts", part), f"{words}; {how_to_place(part, self.scene.moves)}"
 
-    def _welded(self, here: KeyPath, move: WeldSpec, moving: set[str]) -> Iterator[Problem]:
-        joined = {self.body[move.part]}
-        for k, part in enumerate(move.to):
+    def _joined(self, here: KeyPath, move: AssemblyMoveSpec, moving: set[str]) -> Iterator[Problem]:
+        if not move.joined:
+            return
+        (_, leader), *others = move.joined
+        joined = {self.body[leader]}
+        for path, part in others:
             if self.body[part] in joined:
-                yield (*here, "to", k), f"expected a part of another body, got {part!r}, which is of this one already"
+                yield (*here, *path), f"expected a part of another body, got {part!r}, which is of this one already"
             joined.add(self.body[part])
-        for part in (move.part, *move.to):
+        for _, part in move.joined:
             if self.body[part] not in self.placed and part in moving:
                 words = f"expected parts that are placed already, got {part!r}"
                 yield here, f"{words}; put the move that places it before this one"
         for part, own in self.body.items():
             if own in joined:
-                self.body[part] = move.part
+                self.body[part] = leader
         if joined <= self.placed.keys():
-            self.placed[move.part] = ""  # it may be moved again, and stays where it is if it is not
+            self.placed[leader] = ""  # it may be moved again, and stays where it is if it is not
 
-    def _placed(self, here: KeyPath, move: PlacingSpec, moving: set[str]) -> Iterator[Problem]:
-        own = self.body[move.part]
-        if before := self.placed.get(own):
-            yield (*here, "part"), f"expected a part that is not placed yet, got {move.part!r}, which {before!r} places"
-        early: set[str] = set()  # each is reported once
-        for path, pair in move.paired():
-            moving_part, target = part_of(pair.from_), part_of(pair.to)
-            if self.body[moving_part] != own:
-                yield (*here, *path, "from"), f"expected a feature of the part that is placed, got {pair.from_!r}"
-            if self.body[target] == own:
-                words = f"expected a feature of another part, got {pair.to!r}, which is placed by this move"
-                yield (*here, *path, "to"), words
-            elif self.body[target] not in self.placed and target in moving - early:
-                early.add(target)
-                words = f"expected a feature of a part that is placed already, got {pair.to!r}"
-                yield (*here, *path, "to"), f"{words}; put the move that places {target!r} before this one"
-        self.placed[own] = str(here[1])
-
-    def _placed_together(self, here: KeyPath, move: StatedMoveSpec, moving: set[str]) -> Iterator[Problem]:
+    def _placed(self, here: KeyPath, move: AssemblyMoveSpec, moving: set[str]) -> Iterator[Problem]:
         its: set[str] = set()
         for path, part in move.parts_placed:
             if (own := self.body[part]) in its:
@@ -132,23 +112,31 @@ class Bodies:
                 words = f"expected a part that is not placed yet, got {part!r}, which {before!r} places"
                 yield (*here, *path), words
             its.add(own)
+        for path, pair in move.paired():
+            if self.body[part_of(pair.from_)] not in its:
+                yield (*here, *path, "from"), f"expected a feature of the part that is placed, got {pair.from_!r}"
+            if self.body[part_of(pair.to)] in its:
+                words = f"expected a feature of another part, got {pair.to!r}, which is placed by this move"
+                yield (*here, *path, "to"), words
+        early: set[str] = set()  # each is reported once
         for path, feature in move.targets():
-            body = self.body[part_of(feature)]
-            if body not in its and body not in self.placed and part_of(feature) in moving:
+            part = part_of(feature)
+            if self.body[part] not in its | self.placed.keys() and part in moving - early:
+                early.add(part)
                 words = f"expected a feature of a part that is placed already, got {feature!r}"
-                yield (*here, *path), f"{words}; put the move that places {part_of(feature)!r} before this one"
+                yield (*here, *path), f"{words}; put the move that places {part!r} before this one"
         self.placed |= dict.fromkeys(its, str(here[1]))
 
 
 def pose_names(scene: Scene) -> tuple[str, ...]:
     """The poses of a scene's moves, in order."""
-    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
+    moves = scene.of(AssemblyMoveSpec).values()
     return tuple(dict.fromkeys(pose for move in moves for pose in move.pose_names))
 
 
 def paths_of(scene: Scene) -> Mapping[str, Sequence[str]]:
     """The paths of a scene's moves: by name the poses on them."""
-    moves = (move for move in scene.moves.values() if isinstance(move, StatedMoveSpec))
+    moves = scene.of(AssemblyMoveSpec).values()
     return {name: poses for move in moves for name, poses in move.path_names.items()}
 
 

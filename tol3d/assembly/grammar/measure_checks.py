@@ -13,7 +13,7 @@ from tol3d.assembly.grammar.measures.assembly_measure import AssemblyMeasureSpec
 from tol3d.assembly.grammar.measures.clearance import ClearanceSpec, VirtualClearanceSpec
 from tol3d.assembly.grammar.measures.inspected import InspectedFlatnessSpec, InspectedPatternSpec
 from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec
-from tol3d.assembly.grammar.moves import FixSpec
+from tol3d.assembly.grammar.moves.assembly_move import fixed_parts
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
@@ -51,7 +51,7 @@ def mixed_dimensions(scene: Scene) -> Iterator[Problem]:
 
 def seen_by_nothing(scene: Scene) -> Iterator[Problem]:
     """Errors of directions in the world, where no part is fixed in it."""
-    if not scene.of(FixSpec):
+    if not fixed_parts(scene.moves):
         for name, spec in scene.of(DirectionErrorSpec).items():
             if spec.from_ is None:
                 yield ("measures", name, "from"), "expected the part that sees it, for no move is `fix`, got none"

@@ -11,6 +11,8 @@ from tol3d.numerics.arrays import Array
 PLACING: Final = "tol3d.assembly.placing"
 TORSORS: Final = "tol3d.assembly.torsors"
 """Package of each method's code for the moves bundled with tol3d."""
+STATED_BY: Final = "tol3d.assembly.from_scene"
+"""Package of the functions that make their models from scenes."""
 
 
 @dataclass(frozen=True)

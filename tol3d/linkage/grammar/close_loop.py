@@ -1,14 +1,14 @@
 """Bodies that joints hold together in closed loops, and that are placed at once."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
-from tol3d.assembly.grammar.moves import StatedMoveSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.import_path import named
+from tol3d.assembly.model import Acts
 from tol3d.linkage.grammar.inputs import InputSpec, OutputSpec, PathSpec, PlacePoseSpec, PoseSpec, TiltPoseSpec
 from tol3d.linkage.grammar.joints import JointUnion, Length, RollingSpec
 from tol3d.scene.listed import listed
@@ -17,16 +17,8 @@ from tol3d.scene.nearest import hint
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.strict import refused
-from tol3d.system.plain import PlainContributor
 from tol3d.units import Quantity, refuse_dimension
 
-if TYPE_CHECKING:
-    from tol3d.assembly.from_scene.assembly import Understood
-    from tol3d.assembly.from_scene.features import TouchedPoints
-    from tol3d.assembly.model import Move
-    from tol3d.scene import Scene
-
-READ_BY: Final = "tol3d.linkage.from_scene"
 STEP: Final = "|"
 """Between a path and the number of a position on it; names have none."""
 
@@ -43,7 +35,7 @@ COORDINATES: Final[Mapping[str, tuple[str, ...]]] = {
 """Coordinates of a joint that may be inputs."""
 
 
-class CloseLoopSpec(StatedMoveSpec):
+class CloseLoopSpec(AssemblyMoveSpec):
     """Bodies between placed ones, held by joints and moved by inputs.
 
     The branch is that in which the parts are `placed`. A freedom that moves no joint, such as the spin of a rod between
@@ -51,6 +43,17 @@ class CloseLoopSpec(StatedMoveSpec):
     """
 
     words: ClassVar[str] = "a closed loop"
+    acts: ClassVar[Acts] = Acts(
+        "together",
+        "carried by",
+        "tol3d.linkage.loop:closing",
+        "tol3d.linkage.loop:displaced",
+        presents="tol3d.linkage.presenting.tables:loop_blocks",
+        workspace="tol3d.linkage.presenting.workspace_picture:workspace_map",
+        closes_loops=True,
+    )
+    stated_by: ClassVar[str] = "tol3d.linkage.from_scene:loop_of"
+    drawn_by: ClassVar[str] = "tol3d.linkage.from_scene:contributors_of"
 
     kind: Literal["close_loop"]
     bodies: Annotated[tuple[Name, ...], listed("bodies")] = Field(description="the parts that it places")
@@ -66,21 +69,21 @@ class CloseLoopSpec(StatedMoveSpec):
 
     @property
     def parts_placed(self) -> Sequence[tuple[KeyPath, str]]:
-        """See StatedMoveSpec."""
+        """See AssemblyMoveSpec."""
         return [(("bodies", k), body) for k, body in enumerate(self.bodies)]
 
     def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
-        """See StatedMoveSpec."""
+        """See AssemblyMoveSpec."""
         yield from self._named()
 
     @property
     def pose_names(self) -> Sequence[str]:
-        """See StatedMoveSpec."""
+        """See AssemblyMoveSpec."""
         return tuple(name for name, own in self.poses.items() if not isinstance(own, PathSpec))
 
     @property
     def path_names(self) -> Mapping[str, Sequence[str]]:
-        """See StatedMoveSpec."""
+        """See AssemblyMoveSpec."""
         paths = ((name, own) for name, own in self.poses.items() if isinstance(own, PathSpec))
         return {name: [f"{name}{STEP}{k}" for k in range(own.steps + 1)] for name, own in paths}
 
@@ -123,18 +126,6 @@ class CloseLoopSpec(StatedMoveSpec):
             if law is not None:
                 room = ("joints", name, "clearance" if joint.kind == "ball" else "play", "distribution")
                 yield from (((*room, field), file) for field, file in law.file_names())
-
-    def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
-        """See StatedMoveSpec: plays and clearances of joints, then deviations of inputs."""
-        found: Sequence[PlainContributor] = named(f"{READ_BY}:contributors_of")(self, name, scene)
-        return found
-
-    def stated(
-        self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
-    ) -> "Move":
-        """See StatedMoveSpec."""
-        found: Move = named(f"{READ_BY}:loop_of")(self, name, understood, touched, drawn, pose)
-        return found
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:

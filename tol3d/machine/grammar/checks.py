@@ -7,7 +7,7 @@ from tol3d.assembly.grammar.checks import pose_names
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
-from tol3d.assembly.grammar.moves import PlacingSpec, StatedMoveSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.gearing.grammar.checks import too_thick
@@ -57,11 +57,8 @@ def laid_too_early(scene: Scene) -> Iterator[Problem]:
     """Shafts in bores of parts that a later move places; each part is reported once."""
     order = list(scene.moves)
     placing: dict[str, str] = {}
-    for name, move in reversed(list(scene.moves.items())):
-        if isinstance(move, StatedMoveSpec):
-            placing |= {part: name for _, part in move.parts_placed}
-        elif isinstance(move, PlacingSpec):
-            placing[move.part] = name
+    for name, placed in reversed(list(scene.of(AssemblyMoveSpec).items())):
+        placing |= {part: name for _, part in placed.parts_placed}
     for name, move in scene.of(ShaftInBoresSpec).items():
         for k, bore in enumerate(move.in_):
             by = placing.get(part_of(bore), name)

@@ -1,38 +1,27 @@
 """Links that turn about each other, one after the other, from a part that is placed to the last one: a robot's arm."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, ClassVar, Final, Literal, Self
+from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.datums import Datums
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
-from tol3d.assembly.grammar.moves import StatedMoveSpec
+from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.distributions.constant import Constant
+from tol3d.assembly.model import Acts
 from tol3d.gearing.grammar.moves import TrainSpec
-from tol3d.import_path import named
-from tol3d.machine.either_side import EitherSide
 from tol3d.scene.listed import listed
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
 from tol3d.scene.vector import Direction, Vector
 from tol3d.strict import Strict, refused
-from tol3d.system.draw import Scalar
-from tol3d.system.plain import UNITS, PlainContributor
 from tol3d.units import Of, Quantity
-
-if TYPE_CHECKING:
-    from tol3d.assembly.from_scene.assembly import Understood
-    from tol3d.assembly.from_scene.features import TouchedPoints
-    from tol3d.assembly.model import Move
-    from tol3d.scene import Scene
 
 AXES: Final = ("axis", "cylinder")
 FLANK: Final = "flank"
 """The kind of such a contributor."""
-READ_BY: Final = "tol3d.machine.open_chains"
 Angle = Annotated[Quantity, Of("angle")]
 
 
@@ -76,7 +65,7 @@ class MassSpec(Strict):
     at: Vector = Field(description="its place, in the frame of that part")
 
 
-class OpenChainSpec(StatedMoveSpec):
+class OpenChainSpec(AssemblyMoveSpec):
     """Links in series, each turned against the one before by its input and, in its play, by its load.
 
     A joint that gravity loads lies at that end of its play to which its torque turns it; one that nothing loads lies at
@@ -84,6 +73,11 @@ class OpenChainSpec(StatedMoveSpec):
     """
 
     words: ClassVar[str] = "a chain of links"
+    acts: ClassVar[Acts] = Acts(
+        "together", "carried by", "tol3d.machine.chain:turning", "tol3d.machine.chain:displaced"
+    )
+    stated_by: ClassVar[str] = "tol3d.machine.open_chains:chain_of"
+    drawn_by: ClassVar[str] = "tol3d.machine.open_chains:contributors_of"
 
     kind: Literal["open_chain"]
     joints: Mapping[Name, RevoluteSpec] = Field(min_length=1, description="from the placed part on, in order")
@@ -131,26 +125,6 @@ class OpenChainSpec(StatedMoveSpec):
                 for own in datum.features:
                     path = ("joints", name, "seat", k)
                     yield Use(path, f"{part_of(joint.between[1])}.{own}", datum.kinds)
-
-    def contributors(self, name: str, scene: "Scene") -> Sequence[PlainContributor]:
-        """Turns of the joints, which are not drawn; then flanks of those that nothing loads in some pose."""
-        hidden = Scalar(Constant(0.0))
-        turns = (
-            PlainContributor(turn_name(name, joint), "joint", hidden, *UNITS["angle"], nominal="")
-            for joint in self.joints
-        )
-        words = "the end of its play at which {} lies, for nothing loads it"
-        free = (
-            PlainContributor(flank_name(joint), FLANK, Scalar(EitherSide()), "1", 1.0, words.format(joint))
-            for joint in named(f"{READ_BY}:free_joints")(scene, self)
-        )
-        return (*turns, *free)
-
-    def stated(
-        self, name: str, understood: "Understood", touched: "TouchedPoints", drawn: Mapping[str, slice], pose: str
-    ) -> "Move":
-        found: Move = named(f"{READ_BY}:chain_of")(self, name, understood, drawn, pose)
-        return found
 
     @model_validator(mode="after")
     def _refuse_contradictions(self) -> Self:

@@ -10,10 +10,8 @@ from pydantic import Field, model_validator
 from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features.nominal_frame import unit
-from tol3d.assembly.grammar.moves.fix import WeldSpec
+from tol3d.assembly.grammar.moves.assembly_move import AssemblyMoveSpec
 from tol3d.assembly.grammar.moves.forgotten import MoveReference
-from tol3d.assembly.grammar.moves.placing_move import PlacingSpec
-from tol3d.assembly.grammar.moves.stated_move import StatedMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
 from tol3d.assembly.model.measures import Measured, OverPlay, Reading, Rocking
 from tol3d.scene.measure import AngleLimit, LengthLimit, MeasureEntry, Take
@@ -113,7 +111,7 @@ class TimedSpec(AssemblyMeasureSpec):
         """The move after which it is read."""
         if self.after is None:
             return ()
-        return (MoveReference(("after",), self.after, (PlacingSpec, StatedMoveSpec, WeldSpec)),)
+        return (MoveReference(("after",), self.after, (AssemblyMoveSpec,)),)
 
 
 class FeatureMeasureSpec(TimedSpec):

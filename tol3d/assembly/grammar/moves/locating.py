@@ -2,14 +2,16 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
-from itertools import chain
+from itertools import chain, islice
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
+from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
-from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
-from tol3d.assembly.model.moves import PointsOn
+from tol3d.assembly.model.move import Acts
+from tol3d.assembly.model.moves import STATED_BY, Locate, PointsOn, Rest
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction, Vector
@@ -29,6 +31,9 @@ class ContactSpec(PairSpec):
 class LocatingSpec(PlacingSpec):
     """Six contacts."""
 
+    acts: ClassVar[Acts] = Locate.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:located"
+
     points_on: PointsOn = Field(
         default="part",
         description="part: points ride on the part that is placed, planes stay with what it is placed on; fixture: "
@@ -42,6 +47,26 @@ class LocatingSpec(PlacingSpec):
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         return iter(self.pairs_by_name.values())
+
+    def problems(self, drawing: DrawnFeatures) -> Iterator[tuple[KeyPath, str]]:
+        """Round features on planes, of which the middle would lie there, not the surface."""
+        for path, pair in self.pairs_by_name.values():
+            if {pair.from_, pair.to} <= set(drawing.names):
+                sides = (("from", pair.from_, pair.to), ("to", pair.to, pair.from_))
+                found = ((key, self._round(own, drawing.kind(own), drawing.kind(other))) for key, own, other in sides)
+                yield from (((*path, key), words) for key, words in islice(((k, w) for k, w in found if w), 1))
+
+    def _round(self, name: str, own: FeatureUnion, other: FeatureUnion) -> str:
+        """Error text for a round feature; "" where it fits."""
+        if not isinstance(own, SphereSpec | CylinderSpec | ConeSpec):
+            return ""
+        if not (self.acts.rocks or isinstance(other, PlaneSpec)):
+            return ""
+        words = f"expected a point or a plane, got {name!r}, which is {own.words}: its middle would lie there"
+        remedy = "name the point of its surface that touches"
+        if self.acts.rocks:
+            return f"{words}; {remedy}, for a rest has no round contacts"
+        return f"{words}; {remedy}" if isinstance(own, ConeSpec) else f"{words}; take a move of kind touch, or {remedy}"
 
 
 class ThreeTwoOneSpec(LocatingSpec):
@@ -88,6 +113,8 @@ class RestSpec(LocatingSpec):
     """One-sided contacts, of which a force chooses those that carry; without friction."""
 
     words: ClassVar[str] = "a rest"
+    acts: ClassVar[Acts] = Rest.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:rested"
 
     kind: Literal["rest"]
     contacts: Annotated[tuple[ContactSpec, ...], listed("contacts", 1)] = Field(

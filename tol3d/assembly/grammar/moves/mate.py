@@ -6,7 +6,9 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import Use
-from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
+from tol3d.assembly.grammar.moves.assembly_move import PairSpec, PlacingSpec
+from tol3d.assembly.model.move import Acts
+from tol3d.assembly.model.moves import STATED_BY, BestFit, Mate, Touch
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
 from tol3d.scene.vector import Direction
@@ -37,6 +39,8 @@ class MateSpec(PlacingSpec):
     """Relations in order; no contact is checked."""
 
     words: ClassVar[str] = "a mate"
+    acts: ClassVar[Acts] = Mate.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:mated"
 
     kind: Literal["mate"]
     relations: Annotated[tuple[RelationSpec, ...], listed("relations", 1, 6)] = Field(
@@ -60,6 +64,8 @@ class BestFitSpec(PlacingSpec):
     """Points are fitted as well as possible: least squares, or least largest distance; no scale."""
 
     words: ClassVar[str] = "a best fit"
+    acts: ClassVar[Acts] = BestFit.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:fitted"
 
     kind: Literal["best_fit"]
     pairs: Annotated[tuple[FitSpec, ...], listed("pairs", 3)] = Field(
@@ -86,6 +92,8 @@ class TouchSpec(PlacingSpec):
     """Contacts of round features, all at once: surfaces touch by the sizes of the trial."""
 
     words: ClassVar[str] = "a touch"
+    acts: ClassVar[Acts] = Touch.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.moves:touched"
 
     kind: Literal["touch"]
     contacts: Annotated[tuple[PairSpec, ...], listed("contacts", 1, 6)] = Field(

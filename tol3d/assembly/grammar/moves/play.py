@@ -1,15 +1,19 @@
 """Parts held with play by pins or tabs in holes or slots: engagements, and the position within the clearance."""
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
+from tol3d.assembly.grammar.features import CylinderSpec, FeatureUnion, SlotSpec
+from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
-from tol3d.assembly.grammar.moves.placing_move import PairSpec, PlacingSpec
 from tol3d.assembly.grammar.parts import SolidSpec
+from tol3d.assembly.model.move import Acts
+from tol3d.assembly.model.moves import STATED_BY
+from tol3d.assembly.model.play import Engage
 from tol3d.distributions import StatedDistribution
 from tol3d.scene.listed import listed
 from tol3d.scene.place import KeyPath
@@ -25,6 +29,39 @@ class EngagementSpec(PairSpec):
     over: Literal["from", "to"] | None = Field(
         default=None, description="whose ends are those of the engagement; default: of the stretch that both share"
     )
+
+    @property
+    def through(self) -> "BoltSpec | None":
+        """The bolt that goes through both; by default none."""
+        return None
+
+    def unfit(self, drawing: DrawnFeatures) -> str:
+        """Why its features do not engage, in words; "" where they do."""
+        one, other = drawing.kind(self.from_), drawing.kind(self.to)
+        for name, own in ((self.from_, one), (self.to, other)):
+            if not isinstance(own, CylinderSpec | SlotSpec):
+                return f"expected a pin or tab and a hole or slot, got {name!r}, which is {own.words}"
+        if (bolt := self.through) is not None:
+            if not all(isinstance(own, CylinderSpec) and own.hole for own in (one, other)):
+                return f"expected two holes that the bolt goes through, got {self.from_!r} and {self.to!r}"
+            shank = None if bolt.of is None or bolt.of not in drawing.names else drawing.kind(bolt.of)
+            if isinstance(shank, CylinderSpec) and shank.hole:
+                return f"expected a bolt that is a pin, got {bolt.of!r}, which is a hole"
+            return ""
+        if _is_inner(one) == _is_inner(other):
+            both = "two holes or slots" if _is_inner(one) else "two pins or tabs"
+            holes = _is_inner(one) and isinstance(one, CylinderSpec) and isinstance(other, CylinderSpec)
+            advice = "; a bolt that is loose in both is `bolt` of a pattern's pair" if holes else ""
+            return f"expected a pin or tab and a hole or slot, got {both}, {self.from_!r} and {self.to!r}{advice}"
+        inner, outer = (one, other) if _is_inner(one) else (other, one)
+        if isinstance(inner, CylinderSpec) and isinstance(outer, SlotSpec):
+            return "expected a pin in a hole, a pin in a slot or a tab in a slot, got a tab in a hole"
+        return ""
+
+
+def _is_inner(feature: FeatureUnion) -> bool:
+    """True for a hole or a slot."""
+    return (isinstance(feature, CylinderSpec) and feature.hole) or (isinstance(feature, SlotSpec) and not feature.tab)
 
 
 class BoltSpec(Strict):
@@ -62,6 +99,10 @@ class PatternPairSpec(EngagementSpec):
     bolt: Annotated[BoltSpec, BeforeValidator(_bolt, json_schema_input_type=str | BoltSpec)] | None = Field(
         default=None, description="that goes through two holes, loose in both: a pin of a part, or its diameter and law"
     )
+
+    @property
+    def through(self) -> BoltSpec | None:
+        return self.bolt
 
     @model_validator(mode="after")
     def _refuse_over(self) -> Self:
@@ -103,10 +144,16 @@ FloatUnion = Annotated[
 ]
 
 
+NO_SIZE = "a size that does not vary is {kind: size, ..., distribution: {kind: constant, value: 0 mm}}"
+
+
 class PlaySpec(PlacingSpec):
     """A part that is held with play."""
 
     words: ClassVar[str] = "a move with play"
+    acts: ClassVar[Acts] = Engage.acts
+    stated_by: ClassVar[str] = f"{STATED_BY}.play:engaged"
+    drawn_by: ClassVar[str] = f"{STATED_BY}.play:contributors_of"
 
     relations: Annotated[tuple[RelationSpec, ...], listed("relations", 0, 6)] = Field(
         default=(), description="as of a mate: what holds it before its pins do, such as faces that lie on each other"
@@ -125,6 +172,35 @@ class PlaySpec(PlacingSpec):
     @abstractmethod
     def engaged(self) -> tuple[EngagementSpec, ...]:
         """Engagements, in order."""
+
+    @property
+    def fitted(self) -> Sequence[FeatureName]:
+        bolts = (pair.through.of for pair in self.engaged if pair.through is not None)
+        return [*(own for pair in self.engaged for own in (pair.from_, pair.to)), *(own for own in bolts if own)]
+
+    def floats_by_pairs(self, drawing: DrawnFeatures) -> bool:
+        """True if a random float draws each pin in its own clearance, not the part in the room of all."""
+        return False
+
+    def problems(self, drawing: DrawnFeatures) -> Iterator[tuple[KeyPath, str]]:
+        """Pairs that do not engage, or whose sizes have no tolerance."""
+        for k, pair in enumerate(self.engaged):
+            here: KeyPath = ("pairs", k)
+            if not all(own in drawing.names for own in (pair.from_, pair.to)):
+                continue  # unknown, reported already
+            if problem := pair.unfit(drawing) or self._unfit_place(k, pair, drawing):
+                yield here, problem
+                continue
+            sized = [("from", pair.from_), ("to", pair.to)]
+            sized += [("bolt", pair.through.of)] if pair.through is not None and pair.through.of is not None else []
+            for end, own in sized:
+                if not drawing.is_sized(own):
+                    words = f"expected a size tolerance of {own!r}, because the play depends on it, got none"
+                    yield (*here, end), f"{words}; {NO_SIZE}"
+
+    def _unfit_place(self, k: int, pair: EngagementSpec, drawing: DrawnFeatures) -> str:
+        """Why a pair does not fit its place among the pairs, in words; "" where it does."""
+        return ""
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         yield from ((("relations", k), pair) for k, pair in enumerate(self.relations))
@@ -156,6 +232,19 @@ class PinAndHoleSpec(PlaySpec):
     @property
     def engaged(self) -> tuple[EngagementSpec, ...]:
         return self.pairs
+
+    def floats_by_pairs(self, drawing: DrawnFeatures) -> bool:
+        """Unless both share their clearance: two round holes."""
+        kinds = [drawing.kind(name).kind for pair in self.engaged for name in (pair.from_, pair.to)]
+        return len(self.engaged) != 2 or "slot" in kinds
+
+    def _unfit_place(self, k: int, pair: EngagementSpec, drawing: DrawnFeatures) -> str:
+        """The first pin holds both shifts."""
+        if k == 0 and {drawing.kind(name).kind for name in (pair.from_, pair.to)} != {"cylinder"}:
+            return (
+                "expected a pin in a hole first, which holds both shifts, got a slot; put it second, or take a pattern"
+            )
+        return ""
 
 
 class PatternSpec(PlaySpec):
