@@ -183,7 +183,7 @@ def fitted_line(places: Sequence[Array]) -> tuple[Array, Array]:
     points = np.stack(np.broadcast_arrays(*places))
     middle = points.mean(axis=0)
     off = points - middle
-    _, vectors = np.linalg.eigh(np.einsum("kin,kjn->nij", off, off))
+    _, vectors = np.linalg.eigh(np.moveaxis(sum(own[:, None] * own[None] for own in off), 2, 0))
     direction = vectors[:, :, -1].T
     return middle, np.where(dot(direction, points[-1] - points[0]) < 0.0, -direction, direction)
 

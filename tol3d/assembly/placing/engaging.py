@@ -29,7 +29,7 @@ from tol3d.assembly.placing.poses import (
     rotated_back,
 )
 from tol3d.assembly.placing.world import World
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 ROUNDS: Final = 20
 """Corrections of a pin towards its drawn place at most; each leaves a turn's share of the correction."""
@@ -189,7 +189,7 @@ class Engaging(RoomPlacer):
 
     def _moved(self, pose: Pose, steps: Array) -> Pose:
         """A pose after steps (freedoms, n) as finite motions."""
-        motion = np.einsum("rf,fn->rn", self.freedoms, steps, optimize=False)
+        motion = times(self.freedoms, steps)
         return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
 
 

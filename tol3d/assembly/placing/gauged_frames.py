@@ -18,11 +18,11 @@ from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
 from tol3d.assembly.placing.floats import axes_of
 from tol3d.assembly.placing.growth import Mask, centred
-from tol3d.assembly.placing.later_datums import LaterDatums, later_datums, times
+from tol3d.assembly.placing.later_datums import LaterDatums, later_datums
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.seen_motions import SeenMotions, seen_motions
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 ROUNDS: Final = 12
 """Corrections of a pose at most; each leaves a turn's share, 1e-3 or less, of the correction."""
@@ -65,7 +65,7 @@ class GaugeFloats:
         stated = np.isnan(uniforms[0])
         gone = self._swept(offsets, clearances, rows, centred, axes, uniforms)
         last = 2.0 * uniforms[-len(axes) :] - 1.0
-        gone = np.where(stated, np.einsum("sf,sn->fn", axes, last, optimize=False), gone)
+        gone = np.where(stated, times(axes.T, last), gone)
         length = np.sqrt(sum(own * own for own in gone))
         along = gone / np.where(length > 0.0, length, 1.0)
         way = self._way(offsets, clearances, rows, centred, along)
@@ -108,17 +108,23 @@ def _conjugate(offsets: Array, clearances: Array, rows: Array, axes: Array) -> l
     """Directions of the freedoms (freedoms, n); see `engaged_poses.conjugate`."""
     with np.errstate(divide="ignore", invalid="ignore"):  # without room, which is not asked for
         room = clearances**2 - offsets[:, 0] ** 2 - offsets[:, 1] ** 2
-        out = np.einsum("krn,krf->kfn", offsets, rows, optimize=False)
+        out = offsets[:, 0, None] * rows[:, 0, :, None] + offsets[:, 1, None] * rows[:, 1, :, None]
         both = np.einsum("krf,krg->kfg", rows, rows, optimize=False)[..., None]
         room = room[:, None, None]
-        stiffness = (2.0 * both / room + 4.0 * out[:, :, None] * out[:, None] / room**2).sum(axis=0)
+        stiffness = np.asarray(sum(2.0 * both / room + 4.0 * out[:, :, None] * out[:, None] / room**2))
         found = list[Array]()
         for own in axes:
             along = own[:, None] * np.ones(offsets.shape[2])
             for other in found:
-                along = along - other * np.einsum("fn,fgn,gn->n", other, stiffness, along, optimize=False)
-            found.append(along / np.sqrt(np.einsum("fn,fgn,gn->n", along, stiffness, along, optimize=False)))
+                along = along - other * _by_stiffness(other, stiffness, along)
+            found.append(along / np.sqrt(_by_stiffness(along, stiffness, along)))
     return found
+
+
+def _by_stiffness(left: Array, stiffness: Array, right: Array) -> Array:
+    """Product (n,) of directions (freedoms, n), by (freedoms, freedoms, n)."""
+    size = range(len(left))
+    return np.asarray(sum(left[f] * sum(stiffness[f, g] * right[g] for g in size) for f in size))
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +165,7 @@ class GaugedFrame(SeenMotions):
                 whole = self.later.nearest(pose, after, offsets, clearances, self.rows, asked)
                 if left.shape[1]:
                     its = offsets + times(self.rows, whole), clearances, self.rows @ left
-                    whole = whole + np.einsum("fg,gn->fn", left, self._floating(*its, columns, asked), optimize=False)
+                    whole = whole + times(left, self._floating(*its, columns, asked))
             else:
                 whole = self.floats.steps(offsets, clearances, self.rows, steps, slacks, columns)
             lacking = np.where(asked, np.abs(whole).max(axis=0, initial=0.0), lacking)

@@ -13,11 +13,10 @@ from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame
 from tol3d.assembly.placing.growth import SPARE, centred, least_growth
-from tol3d.assembly.placing.later_datums import times
 from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot, full
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +86,7 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
     after = [own.feature(name) for name in gauged.later.features]
     pose, _ = gauged.as_kept(seats, full(IDENTITY, world.trials))
     left, every = gauged.later.left, np.ones(world.trials, dtype=bool)
-    least = np.full(world.trials, np.nan)
+    least, going = np.full(world.trials, np.nan), every
     for _ in range(ROUNDS):
         ends = np.concatenate(
             [
@@ -100,9 +99,11 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
         steps = gauged.later.nearest(pose, after, offsets, room, gauged.rows, every)
         ends, offsets = ends + times(found.rows, steps), offsets + times(gauged.rows, steps)
         spare = room + len(after) * SPARE
-        least, some = least_growth(ends, radii, found.rows @ left, offsets, spare, gauged.rows @ left)
-        steps, least = steps + np.einsum("fg,gn->fn", left, some, optimize=False), np.where(fits, least, np.nan)
-        if np.abs(steps).max(initial=0.0) < MET:
+        grown, some = least_growth(ends, radii, found.rows @ left, offsets, spare, gauged.rows @ left)
+        steps, least = steps + times(left, some), np.where(going, np.where(fits, grown, np.nan), least)
+        going = going & (np.abs(steps).max(axis=0, initial=0.0) >= MET)
+        if not going.any():
             break
-        pose, _ = gauged.as_kept(seats, gauged.moved(pose, steps))
+        moved, _ = gauged.as_kept(seats, gauged.moved(pose, steps))
+        pose = Pose(np.where(going, moved.turn, pose.turn), np.where(going, moved.shift, pose.shift))
     return 2.0 * least

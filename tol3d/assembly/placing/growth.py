@@ -64,7 +64,7 @@ def least_growth(
         room_found(
             every, clearances, every_row, np.zeros(rows.shape[2]), asked, steps, slacks, deciding, found, *before
         )
-        share = np.where(before[1][:ends] == 1, before[0][:ends], 0.0).sum(axis=0)
+        share = np.asarray(sum(np.where(before[1][:ends] == 1, before[0][:ends], 0.0)))
         short = np.where(slacks < 0.0, -slacks, 0.0)
         empty = asked & (~found | ((short > SHORT) & ~(share > FREE)))
         least = np.where(empty, np.nan, least)

@@ -19,7 +19,7 @@ from tol3d.assembly.placing.poses import Pose, column, dot, full, moved_about
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 RIM: Final = 24
 """Places around a disc where it is judged: a tilt is read low by 1 - cos(pi / 24), 0.9 %, at most."""
@@ -78,7 +78,7 @@ def _least(measured: Measured, world: World, pose: Pose, seen: tuple[Array, Arra
     least = _largest(offsets, radii)
     for _ in range(ROUNDS):
         room_found(offsets, radii, rows, push, asked, steps, slacks, deciding, found, *before)
-        motion = motions @ np.where(asked & found, steps, 0.0)
+        motion = times(motions, np.where(asked & found, steps, 0.0))
         moved = moved_about(pose, middle, motion[:3], motion[3:])
         offsets = _offsets(measured, world, moved)
         value = _largest(offsets, radii)
@@ -108,7 +108,8 @@ def _offsets(measured: Measured, world: World, pose: Pose) -> Array:
                 vector[0] -= measured.middle
             found.append(vector)
         if measured.surfaces and isinstance(feature.shape, Cone):
-            found[-2:] = np.einsum("ij,jkn->ikn", feature.shape.surface_by_axis, found[-2:])
+            start, end = found[-2:]
+            found[-2:] = [own[0] * start + own[1] * end for own in feature.shape.surface_by_axis]
     return np.array(found)
 
 

@@ -18,7 +18,7 @@ from tol3d.assembly.placing.growth import SPARE, Mask, least_growth
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.seen_motions import SeenMotions, point_row
 from tol3d.errors import InputError
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 SEEN: Final = 1e-6
 """Change of what is asked by a freedom of length 1 [mm] that is none."""
@@ -132,13 +132,8 @@ class LaterDatums:
             none = np.zeros((len(its), trials))
             spare = clearances + k * SPARE
             _, some = least_growth(its, none, own.rows @ own.open, room, spare, rows @ own.open, asked)
-            steps = steps + np.einsum("fg,gn->fn", own.open @ own.held, some, optimize=False)
+            steps = steps + times(own.open @ own.held, some)
         return steps
-
-
-def times(rows: Array, steps: Array) -> Array:
-    """Change of offsets (cones, 2, n) by steps (freedoms, n)."""
-    return np.asarray(np.einsum("krf,fn->krn", rows, steps, optimize=False))
 
 
 def later_datums(frame: DatumFrame, nominal: Sequence[ActualFeature], seen: SeenMotions) -> LaterDatums:

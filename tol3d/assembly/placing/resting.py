@@ -17,7 +17,7 @@ from tol3d.assembly.placing.freedoms import free_motions, in_words, seen_steps
 from tol3d.assembly.placing.locating import side_of
 from tol3d.assembly.placing.mating import NOTHING, KeptRelations, kept_motions, kept_relations, kept_rows
 from tol3d.assembly.placing.placer import RockingPlacer
-from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
+from tol3d.assembly.placing.poses import Codes, Pose, column, dot, product, rotated
 from tol3d.assembly.placing.rests import BETWEEN, LOST, RESTS, TIED, rests_found
 from tol3d.assembly.placing.tilted_rests import tilted_rests_found
 from tol3d.assembly.placing.world import World
@@ -121,8 +121,8 @@ class Resting(RockingPlacer):
         x, y, z = moved[:3] / self.reach
         none = np.zeros_like(x)
         skew = np.array([[none, -z, y], [z, none, -x], [-y, x, none]])
-        once = np.einsum("ijn,jkn->ikn", skew, turn)
-        return turn + once + np.einsum("ijn,jkn->ikn", skew, once) / 2.0, shift + moved[3:]
+        once = product(skew, turn)
+        return turn + once + product(skew, once) / 2.0, shift + moved[3:]
 
     def carries(self) -> tuple[Array, Array]:
         """The least and the largest part of the force that each contact may carry (contacts,)."""

@@ -17,7 +17,7 @@ from tol3d.assembly.placing.alignment import Alignment, Held, Seat, Tie, Turning
 from tol3d.assembly.placing.freedoms import aligned
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, column, cross, dot, full, moved_about, rotated_back
 from tol3d.errors import InputError
-from tol3d.numerics.arrays import Array
+from tol3d.numerics.arrays import Array, times
 
 SEEN: Final = 1e-6
 """Change of all offsets by a motion of length 1 [mm] that is none."""
@@ -59,7 +59,7 @@ class SeenMotions:
 
     def moved(self, pose: Pose, steps: Array) -> Pose:
         """A pose after steps (freedoms, n) as finite motions."""
-        motion = np.einsum("rf,fn->rn", self.motions, steps, optimize=False)
+        motion = times(self.motions, steps)
         return moved_about(pose, self.middle, motion[:3], motion[3:] / self.reach)
 
     def offsets(self, pose: Pose, features: Sequence[ActualFeature], trials: int) -> Array:
@@ -117,7 +117,7 @@ class Pattern(SeenMotions):
                 for across in map(column, sides):
                     turning = cross(end - middle, across) / self.reach
                     seen = np.concatenate([np.broadcast_to(across, turning.shape), turning])
-                    row = np.einsum("rf,rn->nf", self.motions, seen, optimize=False)
+                    row = times(self.motions.T, seen).T
                     square += row[:, :, None] * row[:, None, :]
                     missing += row * dot(across, end - place)[:, None]
             steps = -np.linalg.solve(square, missing[:, :, None])[:, :, 0].T
