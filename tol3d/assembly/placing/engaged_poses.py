@@ -316,7 +316,7 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
         goal: target of the motion.
         rooms: work arrays.
     """
-    place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting, _ = rooms
+    place, all_rows, tangents, q, push, step, before, basis, done, inner, _, bolting, _, _ = rooms
     i, ray, freedoms, state = trial[1], goal[4], tangents.shape[1], place[4]
     previous, gone, slack, which, left, nominal = NONE, 0.0, 0.0, 0, 0, mode != STRAYED
     for n in range(ROUNDS):
@@ -353,22 +353,27 @@ def stays(pose: Any, start: Any, mode: int, trial: Any, reach: float, goal: Any,
 
 @nested
 def lies(pose: Any, trial: Any, reach: float, goal: Any, rooms: Any) -> Any:
-    """Find a pose; True if found, with the least slack of the centred one and a cone that has it."""
-    mode, slack, which, start = CENTRED, 0.0, 0, rooms[10]
+    """Find a pose, and the shares of cones in the least slack of the centred one; True if found, with this slack."""
+    mode, slack, start, before, shares = CENTRED, 0.0, rooms[10], rooms[6], rooms[13]
     pushes, ray, drawn, axes = goal[0], goal[4], goal[6], goal[7]
     while mode != DONE:
         copy_matrix(start, pose)
         found, least, decides = stays(pose, start, mode, trial, reach, goal, rooms)
         if not found:
-            return False, slack, which
+            return False, slack
         if mode == CENTRED:
-            slack, which = least, decides
+            slack = least
+            for k in range(shares.shape[0]):
+                shares[k] = before[0][k] if before[1][k] == 1 else 0.0
+            if not shares[decides] > 0.0:  # no freedom moves it
+                fill(shares, 0.0)
+                shares[decides] = 1.0
         strays = not pushes and drawn.shape[1] > 0
         goes = mode == CENTRED and slack > 0.0 and (pushes or strays)
         mode = DONE if not goes else STRAYED if strays else PUSHED
         if mode == STRAYED:
             drawn_ray(rooms[0][:3], drawn, trial[1], axes, trial[0], ray, (rooms[12], rooms[11]))
-    return True, slack, which
+    return True, slack
 
 
 @nested
@@ -391,6 +396,7 @@ def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
         np.empty((3, 4)),
         bolt_rooms(),
         (np.empty((cones, 2)), np.empty(freedoms), np.empty((freedoms, freedoms)), np.empty((freedoms, freedoms))),
+        np.empty(cones),
     )
 
 
@@ -401,14 +407,14 @@ def work_rooms(cones: int, freedoms: int, bolts: int, kept: int) -> Any:
     "float64[:,:,::1], float64, boolean, float64[::1], float64[:,::1], float64[::1], float64[:,::1], float64[:,::1], "
     "float64[:,::1], "
     "float64[:,:,::1], float64[:,::1], "
-    "float64[::1], int64[::1], boolean[::1]"
+    "float64[::1], float64[:,::1], boolean[::1]"
 )
 def engaged_poses_found(
     moving: Any, fixed: Any, axes: Any, others: Any, halves: Any, inner_moves: Any, kinds: Any,
     bolt_of: Any, bolts: Any,
     kept_vectors: Any, kept_normals: Any, kept_shifts: Any, kept_steps: Any, steps: Any, rows: Any, start: Any,
     reach: float, pushes: bool, push: Any, point: Any, along: Any, drawn: Any, room_axes: Any, turn: Any,
-    turns: Any, shifts: Any, slacks: Any, deciding: Any, found: Any,
+    turns: Any, shifts: Any, slacks: Any, shares: Any, found: Any,
 ) -> None:  # fmt: skip
     """Poses of parts within their clearances.
 
@@ -436,7 +442,7 @@ def engaged_poses_found(
         turn: of the part as it lies nominally (3, 3).
         turns, shifts: found (3, 3, n), (3, n) [mm].
         slacks: the least slack of the centred pose (n,) [mm].
-        deciding: a cone that has that slack (n,).
+        shares: multipliers of the cones that decide it, which sum to 1 (cones, n); 1 for a cone that no freedom moves.
         found: whether all is found (n,).
     """
     cones, freedoms = kinds.shape[0], steps.shape[1]
@@ -450,7 +456,10 @@ def engaged_poses_found(
         fill(rooms[6][1], 0)
         fill(rooms[4], 0.0)
         fill_matrix(rooms[0][4], 0.0)
-        found[i], slacks[i], deciding[i] = lies(pose, (engaged, i, kept, steps, rows), reach, goal, rooms)
+        fill(rooms[13], 0.0)
+        found[i], slacks[i] = lies(pose, (engaged, i, kept, steps, rows), reach, goal, rooms)
+        for k in range(cones):
+            shares[k, i] = rooms[13][k]
         for r in range(3):
             shifts[r, i] = pose[r, 3]
             for c in range(3):

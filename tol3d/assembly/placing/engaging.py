@@ -39,6 +39,8 @@ LOST: Final = 1e-6
 """Step [mm] left after all rounds at which the pose counts as not found."""
 NUDGE: Final = 1e-4
 """Motion [mm] by which the free motions under relations are found."""
+EQUAL: Final = 1e-6
+"""Share of a pair in the least slack by which it is not larger than another's."""
 SEEN: Final = 1e-6
 """Change of all offsets per unit freedom that counts as none."""
 
@@ -111,7 +113,7 @@ class Engaging(RoomPlacer):
         if self.nudge is not None:
             pose, _ = self.mating.poses(world, seats, self._moved(pose, self.nudge[:, None] * np.ones(count)))
             return world.with_part_at(self.move.part, pose), codes
-        pose, slacks, deciding, found = self._found(world, seats, pose)
+        pose, slacks, shares, found = self._found(world, seats, pose)
         codes = np.where(codes == OK, np.where(slacks < FITS, NO_BUILD, OK), codes)
         if self.floats.by_pairs is not None:
             pose, met = self._by_pairs(world, seats, pose, found & (slacks > 0.0))
@@ -119,25 +121,23 @@ class Engaging(RoomPlacer):
         codes = np.where((codes == OK) & ~found, SINGULAR, codes).astype(np.int8)
         slacks = np.where(found, slacks, np.nan)
         world = world.with_part_at(self.move.part, pose)
-        return world.with_slack(self.move.name, slacks, self._pairs[deciding]), codes
+        return world.with_slack(self.move.name, slacks, self._tightest(shares)), codes
 
-    def _found(
-        self, world: World, seats: Sequence[Seat], start: Pose
-    ) -> tuple[Pose, Array, NDArray[np.int64], NDArray[np.bool_]]:
-        """Poses within the clearance, slacks (n,), cones that have them (n,), and flags of those found (n,)."""
+    def _found(self, world: World, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Array, Array, NDArray[np.bool_]]:
+        """Poses within the clearance, slacks (n,), shares of cones in them (cones, n), flags of those found (n,)."""
         count, origin = world.trials, column(self.origin)
         begin = np.empty((3, 4, count))
         begin[:, :3], begin[:, 3] = start.turn, start.point(origin) - column(self.middle)
         kept = self.relations.kept_by(seats)
         vectors = kept.vectors - kept.shifts[:, None, None] * origin
         turns, shifts = np.empty((3, 3, count)), np.empty((3, count))
-        slacks, deciding, found = np.empty(count), np.empty(count, dtype=np.int64), np.empty(count, dtype=np.bool_)
+        slacks, shares, found = np.empty(count), np.empty((len(self.rows), count)), np.empty(count, dtype=np.bool_)
         engaged_poses_found(
             *engaged_arrays(self.move, world, self.origin, self.middle), vectors, kept.normals, kept.shifts, self.undo,
             self.steps, self.rows, begin, self.reach, *self.floats.given(world, self.origin),
-            turns, shifts, slacks, deciding, found,
+            turns, shifts, slacks, shares, found,
         )  # fmt: skip
-        return Pose(turns, shifts + column(self.middle) - rotated(turns, origin)), slacks, deciding, found
+        return Pose(turns, shifts + column(self.middle) - rotated(turns, origin)), slacks, shares, found
 
     def _by_pairs(
         self, world: World, seats: Sequence[Seat], pose: Pose, asked: NDArray[np.bool_]
@@ -162,10 +162,19 @@ class Engaging(RoomPlacer):
         """The freedoms as turn times reach and shift (6, freedoms)."""
         return np.ascontiguousarray(np.roll(self.freedoms, 3, axis=0))
 
-    @cached_property
-    def _pairs(self) -> NDArray[np.str_]:
-        """Name of each cone's engagement."""
-        return np.array([own.name for own in self.move.engagements for _ in range(_cones_of(own))])
+    def _tightest(self, shares: Array) -> NDArray[np.str_]:
+        """Pair that decides the least slack (n,): that of the largest share, of equal ones the first as written.
+
+        Args:
+            shares: of its cones (cones, n).
+        """
+        sums, start = np.zeros((len(self.move.engagements), shares.shape[1])), 0
+        for own, engagement in zip(sums, self.move.engagements, strict=True):
+            for share in shares[start : start + _cones_of(engagement)]:
+                own += share
+            start += _cones_of(engagement)
+        names = np.array([own.name for own in self.move.engagements])
+        return names[np.argmax(sums >= sums.max(axis=0) - EQUAL, axis=0)]
 
     def _targets(self, world: World) -> Sequence[str]:
         body = world.bodies[self.move.part]

@@ -16,6 +16,8 @@ from tol3d.numerics.loops import fill
 
 HELD: Final = 1e-6
 """Multiplier (they sum to 1) above which a cone is tight."""
+TIED: Final = 1e-9
+"""Slack [mm] over the least one that counts as the same."""
 STARTS: Final = 1.0, 0.1, 0.01, 1.0
 """Factors for a programme's first multipliers over those that balance its goal, until it ends."""
 UNSEEN: Final = 1e-6
@@ -134,16 +136,18 @@ def started(place: Any, q: Any, used: Any, y: Any, z: Any, count: int, lifts: in
 
 
 @nested
-def least_slack(place: Any, q: Any) -> Any:
-    """The least slack, and a cone that has it."""
+def least_slack(place: Any, q: Any, before: Any) -> Any:
+    """The least slack, and a cone that has it: if any of them decided the first round, such a one."""
     offsets, clearances, rows = place
-    least, which = np.inf, 0
+    least, which, decided, first = np.inf, 0, np.inf, 0
     for k in range(rows.shape[0]):
         a, b = at_step(offsets, rows, q, k)
         slack = clearances[k] - np.sqrt(a * a + b * b)
         if slack < least:
             least, which = slack, k
-    return least, which
+        if before[1][k] == 1 and slack < decided:
+            decided, first = slack, k
+    return least, first if decided <= least + TIED else which
 
 
 @nested
@@ -237,7 +241,7 @@ def lain(
         if count == 0 or (parts > 0 and not moves_part(basis, parts, size)):
             if pushes > 0:
                 return True, slack, which, left
-            slack, which = least_slack(place, q)
+            slack, which = least_slack(place, q, before)
             if strength == 0.0 or not slack > 0.0:
                 return True, slack, which, left
             pushes, size = 1, opened(basis, done)
