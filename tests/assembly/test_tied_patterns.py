@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from assembly.placing.built_by_numbers import posed
+from assembly.placing.one_sided_parts import pads
+from assembly.test_shifted_coordinates import askew
 from assembly_trials import Assembled, assembled
 from cutting_planes import cut
 from numpy.typing import NDArray
 
-from tol3d.assembly.model.statuses import OK
+from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.torsors import method as torsors
@@ -173,6 +176,46 @@ def test_one_end_of_one_hole_off_leaves_half_of_it(floating: str, tmp_path: Path
     x, codes = placing.values(made.system.assembly, rows, ["x"])["x"]
     assert np.isfinite(x).all()
     assert np.isfinite(torsors.values(made.system.assembly, rows, ["x"])["x"]).all()
+
+
+@pytest.mark.parametrize("floating", ["{kind: centred}", "{kind: random}", "{kind: toward, along: [1, 0, 0], at: AT}"])
+def test_eight_tied_ends_go_together_down_to_a_slack_that_is_rounding(floating: str, tmp_path: Path) -> None:
+    """Slacks of ±1e-9 mm about FITS, all eight ends alike: statuses by the stated slack, and of those built no play.
+
+    Sizes of 8 mm leave 2e-15 mm of a slack; a part drawn 600 mm off, 1e-13 mm.
+    """
+    made = cover(floating.replace("AT", "cover.hole 0"), tmp_path)
+    place = {contributor.name: own for contributor, own in made.slices}
+    slacks = np.array([1e-6, 1e-9, 1e-12, 0.0, -1e-12, -0.9e-9, -1.1e-9, -2e-9, -1e-6])
+    rows = np.zeros((len(slacks), made.system.assembly.width))
+    for k in range(4):
+        rows[:, place[f"hole {k}"]] = (2 * slacks - 1.0)[:, None]
+    for assembly in (made.system.assembly, askew(made.system.assembly, 1)):
+        values = placing.values(assembly, rows, ["slack", "x"])
+        np.testing.assert_allclose(values["slack"][0], slacks, rtol=0, atol=2e-12)
+        assert (values["slack"][1] == OK).all()
+        np.testing.assert_array_equal(values["x"][1], np.where(slacks < -1e-9, NO_BUILD, OK))
+        built = slacks > -1e-9
+        play = np.maximum(slacks[built], 0.0)
+        assert (np.abs(values["x"][0][built]) <= play + 2e-9).all()  # less than nothing is no room to go
+        linear = torsors.values(assembly, rows, ["slack", "x"])
+        np.testing.assert_allclose(linear["slack"], slacks, rtol=0, atol=2e-12)
+        assert (np.abs(linear["x"][built]) <= play + 2e-9).all()
+
+
+@pytest.mark.parametrize("pose", [np.eye(4), posed((0.3, -1.2, 0.8), (600.0, -400.0, 500.0))], ids=["drawn", "askew"])
+def test_a_plate_on_tied_pads_has_no_unique_pose_from_a_nanometre_s_millionth_on(pose: Array) -> None:
+    """Two pads across a rectangle are h higher: a corner over the third one moves by 2 h, and 1e-9 mm of it is none."""
+    at = np.array([[-100.0, -60.0], [100.0, -60.0], [100.0, 60.0], [-100.0, 60.0]])
+    model = pads(at).rested(pose, seen=[(np.array([100.0, -60.0, 0.0]), np.array([0.0, 0.0, 1.0]))])
+    highs = np.array([0.0, 1e-12, 0.4e-9, 0.6e-9, 1e-9, 1e-6])
+    rows = np.outer(highs, [1.0, 0.0, 1.0, 0.0])
+    values, codes = placing.values(model, rows, ["0"])["0"]
+    np.testing.assert_array_equal(codes, np.where(2 * highs > 1e-9, NOT_UNIQUE, OK))
+    assert (np.abs(values[codes == OK]) < 1e-9).all()
+    values, codes = placing.values(model, rows[:, [1, 0, 3, 2]], ["0"])["0"]  # the corner lies on its pad
+    assert (codes == OK).all()
+    np.testing.assert_allclose(values, highs, rtol=0, atol=2e-12)
 
 
 PUSHED = """
