@@ -138,7 +138,11 @@ def test_the_ends_of_a_rocking_are_placed_from_the_first_rest_on(monkeypatch: py
     laid = []
 
     def counted(placed: Any) -> Any:
-        return lambda own, world: laid.append(own) or placed(own, world)
+        def told(own: Any, world: Any) -> Any:
+            laid.append(own)
+            return placed(own, world)
+
+        return told
 
     for kind in (Fixing, Resting):
         monkeypatch.setattr(kind, "placed", counted(kind.placed))

@@ -78,6 +78,55 @@ def test_layers_are_kept() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+IN_CIRCLES = ("drafting", "gearing", "report", "runs", "scene", "simulate", "solids", "study")
+"""Rooms with modules that import each other in a circle, imports for types counted; they may only become fewer."""
+
+IMPORTS = re.compile(r"^ *(?:from (tol3d[\w.]*) )?import (\([^)]*\)|.*)$", re.MULTILINE)
+
+
+def imports_of_package() -> dict[str, set[str]]:
+    """By module, those that it imports, for types too; by text, for parsing takes seconds."""
+    folder = PACKAGE_FOLDERS["tol3d"]
+    paths = {path: path.relative_to(ROOT).with_suffix("").parts for path in folder.rglob("*.py")}
+    texts = {".".join(parts).removesuffix(".__init__"): text_of(path) for path, parts in paths.items()}
+    found = dict[str, set[str]]()
+    for module, text in texts.items():
+        names = {
+            f"{home}.{name}" if f"{home}.{name}" in texts else home
+            for home, listed in IMPORTS.findall(text)
+            for name in re.findall(r"\w+", listed)
+        }
+        found[module] = names & texts.keys() - {module}
+    return found
+
+
+def test_no_more_rooms_import_in_circles() -> None:
+    imports = imports_of_package()
+    assert sum(map(len, imports.values())) > 3000
+    left, rest = set[str](), set(imports)
+    while left != rest:  # without modules that import none of the rest, or that none of the rest imports
+        left, imported = rest, set().union(*(imports[name] for name in rest))
+        rest = {name for name in left if imports[name] & left and name in imported}
+
+    def reaches_itself(name: str) -> bool:
+        reached, new = set[str](), {name}
+        while new:
+            new = set().union(*(imports[each] & left for each in new)) - reached
+            reached |= new
+        return name in reached
+
+    assert sorted({name.split(".")[1] for name in left if reaches_itself(name)}) == sorted(IN_CIRCLES)
+
+
+def test_moves_and_words_of_assemblies_see_no_method() -> None:
+    """Not even for types: both methods are named by import paths."""
+    above = tuple(f"tol3d.assembly.{room}" for room in ("placing", "torsors", "from_scene", "presenting", "system"))
+    below = ("tol3d.assembly.model", "tol3d.assembly.grammar")
+    imports = {name: own for name, own in imports_of_package().items() if name.startswith(below)}
+    assert len(imports) > 40
+    assert [(name, own) for name, owns in imports.items() for own in owns if own.startswith(above)] == []
+
+
 @pytest.mark.parametrize("library", DOORS)
 def test_a_heavy_library_has_one_door(library: str) -> None:
     strangers = [
