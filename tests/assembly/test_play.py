@@ -15,6 +15,9 @@ from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NO_BUILD
 from tol3d.assembly.placing import method as placing
+from tol3d.assembly.placing.engaging import Engaging
+from tol3d.assembly.placing.poses import Codes
+from tol3d.assembly.placing.world import World
 from tol3d.assembly.torsors import method as torsors
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
@@ -48,6 +51,24 @@ def test_hole_and_slot(method: str) -> None:
     both = np.corrcoef(found["corner x"], found["corner y"])[0, 1]
     assert both == pytest.approx(correlation, abs=4 * (1 - correlation**2) / math.sqrt(count))
     assert np.abs(found["corner y"]).max() < abs(1 - x / length) * 0.08 + x / length * 0.06  # of sizes 5 sigma off
+
+
+def test_over_play_only_what_a_measure_reads_is_placed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The plate and the key once, the plate for both measures of its corner, the key for both of its own."""
+    simulation = simulation_of(load(SCENES / "hole_and_slot.yaml"))
+    trials, system = drawn(simulation, 0, 3), simulation.system
+    method = system.method("exact", system.materials("exact"))
+    method.answers(trials, system.measures)  # plans
+    placed: list[str] = []
+
+    def counted(self: Engaging, world: World) -> tuple[World, Codes]:
+        placed.append(self.move.name)
+        return as_it_is(self, world)
+
+    as_it_is = Engaging.placed
+    monkeypatch.setattr(Engaging, "placed", counted)
+    method.answers(trials, system.measures)
+    assert sorted(placed) == ["key in its way"] * 3 + ["plate on the pins"] * 3
 
 
 def test_a_fit_of_size_and_size_goes_together_in_any_coordinates(tmp_path: Path) -> None:

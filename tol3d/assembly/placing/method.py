@@ -164,6 +164,7 @@ def _placed(
     instead: Mapping[int, Placer] | None = None,
     otherwise: _Block | None = None,
     kept: dict[str, Any] | None = None,
+    measure: str = "",
 ) -> _Block:
     """Trials placed by moves.
 
@@ -173,6 +174,7 @@ def _placed(
         instead: other moves for some, by their places.
         otherwise: the same trials without these; before the first of them nothing is placed anew.
         kept: see World.
+        measure: the one that is read of them, so that what it does not depend on need not be placed; "" for any.
     """
     _refuse_lost("a deviation", ~np.isfinite(deviations.sum(axis=1)))
     if otherwise is not None and instead:
@@ -182,11 +184,16 @@ def _placed(
     else:
         columns, codes = np.ascontiguousarray(deviations.T), dict[int, Codes]()
         worlds = [world_before(plan.assembly, plan.datum_seats, columns, plan.still, kept)]
+    needed = plan.needed[measure] if measure else range(len(plan.moves))
     for index, move in enumerate(plan.moves[len(worlds) - 1 :], len(worlds) - 1):
-        world, codes[index] = (instead.get(index, move) if instead else move).placed(worlds[-1])
+        world = worlds[-1]
+        if index in needed:
+            world, codes[index] = (instead.get(index, move) if instead else move).placed(world)
         worlds.append(world)
     block = _Block(tuple(worlds), codes)
     for part, causes in plan.causes[-1].placed.items():
+        if any(cause not in needed for cause in causes if isinstance(cause, int)):
+            continue
         pose = worlds[-1].poses[part]
         lost = ~np.isfinite(pose.turn.sum(axis=(0, 1)) + pose.shift.sum(axis=0))
         _refuse_lost(f"the pose of {part}", lost & (block.first_of(ordered(causes)) == OK) if lost.any() else lost)
@@ -227,8 +234,8 @@ def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[A
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
     """A measure's values and codes (n,); where parts may rock, over all poses that they may take."""
     alone = block
-    if plan.assembly.measures[name].over_play is not None:
-        block = _placed(plan, deviations, _over_play(plan, name), block)
+    if plan.assembly.measures[name].over_play is not None and (pushed := _over_play(plan, name)):
+        block = _placed(plan, deviations, pushed, block, measure=name)
     numbers, codes = _read(plan, block, name, plan.of_measures[name])
     leaning, varies = dict[int, Array](), np.zeros(len(numbers), dtype=bool)
     for index in plan.of_measures[name]:
@@ -244,7 +251,7 @@ def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) 
     ends = []
     for sign in (-1.0, 1.0):
         instead = {index: _leaning(plan, index, (sign * own).tobytes()) for index, own in leaning.items()}
-        there = _placed(plan, deviations[varies], instead, alone if varies.all() else None)
+        there = _placed(plan, deviations[varies], instead, alone if varies.all() else None, measure=name)
         ends.append(_read(plan, there, name, plan.of_measures[name])[0])
     numbers[varies], codes[varies] = over_poses(
         ends[0], ends[1], numbers[varies], codes[varies], plan.assembly.measures[name].rocking
@@ -258,10 +265,12 @@ def _over_play(plan: PlacingPlan, name: str) -> Mapping[int, RoomPlacer]:
     sign = 1.0 if plan.assembly.measures[name].over_play == "largest" else -1.0
     found, rest = dict[int, RoomPlacer](), np.zeros((1, plan.assembly.width))
     for index, move in plan.rooms.items():
+        if index not in plan.needed[name]:
+            continue
         read = []
         for side in (1.0, -1.0):
             nudged = [move.nudged(side * own) for own in NUDGE * np.eye(move.motions)]
-            blocks = [_placed(plan, rest, {index: own}) for own in nudged]
+            blocks = [_placed(plan, rest, {index: own}, measure=name) for own in nudged]
             read.append([_read(plan, own, name, plan.of_measures[name])[0][0] for own in blocks])
         slope = np.subtract(*np.array(read)) / (2 * NUDGE)
         found[index] = move.at_support_point(sign * np.where(np.abs(slope) > FLAT, slope, 0.0))
@@ -273,7 +282,7 @@ def _slope(plan: PlacingPlan, name: str, index: int) -> Array | None:
     """Change of a measure per motion of a part at rest."""
 
     def read(deviations: Array, instead: Mapping[int, Placer]) -> Array:
-        return _read(plan, _placed(plan, deviations, instead), name, plan.of_measures[name])[0]
+        return _read(plan, _placed(plan, deviations, instead, measure=name), name, plan.of_measures[name])[0]
 
     return slope_of(plan.assembly.measures[name], index, plan.rocking[index], read, plan.assembly.width)
 

@@ -55,6 +55,18 @@ class PlacingPlan:
         """Possible failures before each measure, in order."""
         return {name: causes_of(each, name, self.causes) for name, each in self.assembly.measures.items()}
 
+    @cached_property
+    def needed(self) -> Mapping[str, frozenset[int]]:
+        """Moves without which each measure cannot be read, welds included."""
+        welds = frozenset(k for k, move in enumerate(self.moves) if not move.move.parts)
+        return {
+            name: welds.union(
+                (cause for cause in self.of_measures[name] if isinstance(cause, int)),
+                (own.of_move for own in (each, each.minus) if own is not None and own.of_move >= 0),
+            )
+            for name, each in self.assembly.measures.items()
+        }
+
 
 @lru_cache(maxsize=8)
 def planned(assembly: Assembly, solids: SolidReader | None = None) -> PlacingPlan:
