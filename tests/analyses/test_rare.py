@@ -112,8 +112,13 @@ MORE = {"a plane": (1000, 931)}
 """Seeds, and how many must hold, one of 300 again: of the first 100 only 85 do, of 2000 others 1911."""
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", [*CASES, *OTBENCHMARK], ids=lambda own: own.name)
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(own, marks=pytest.mark.nightly if own.name in MORE else pytest.mark.slow, id=own.name)
+        for own in (*CASES, *OTBENCHMARK)
+    ],
+)
 def test_its_interval_holds_the_truth_in_about_95_of_100_seeds(case: Case) -> None:
     """Fewer than 88 of 100 at 95 % happen in one of 300; wider intervals where the method cannot know are no fault."""
     seeds, least = MORE.get(case.name, (100, 88))

@@ -50,13 +50,14 @@ COPIED = ("tol3d", "parts", "scenes", "tests", "benchmarks", "docs", "README.md"
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: what it is, where, which text stands for which, and the tests that must fail of it."""
+    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if slow."""
 
     fault: str
     file: str
     old: str
     new: str
     tests: tuple[str, ...]
+    nightly: bool = False
 
 
 MUTANTS = [
@@ -136,8 +137,14 @@ def test_a_mutant_s_text_is_there_once_and_its_tests_too(mutant: Mutant) -> None
         assert defined, f"there is no test {test}: {told}"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("mutated", MUTANTS, ids=lambda mutant: mutant.fault, indirect=True)
+@pytest.mark.parametrize(
+    "mutated",
+    [
+        pytest.param(own, marks=pytest.mark.nightly if own.nightly else pytest.mark.slow, id=own.fault)
+        for own in MUTANTS
+    ],
+    indirect=True,
+)
 def test_a_mutant_is_killed(mutated: tuple[Tree, Mutant]) -> None:
     tree, mutant = mutated
     code, said = tree.pytest(*mutant.tests)

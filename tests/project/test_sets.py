@@ -11,6 +11,7 @@ from thinned import NIGHTLY, SETS, SLOW
 MUTANTS = {
     entry["fault"]: entry["tests"]
     for entry in tomllib.loads((ROOT / "tests" / "mutants.toml").read_text("utf-8"))["mutant"]
+    if "nightly" not in entry
 }
 
 

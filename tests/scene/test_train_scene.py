@@ -165,7 +165,8 @@ CHANGES = {
     ),
     "nothing behind a carried gear": (
         ("wheel: {phase: 5 deg}", "wheel: "),
-        'parts.spline shaft.carries.wheel: expected keys with values, such as {at: …, facing: …, phase: …}, got nothing',
+        "parts.spline shaft.carries.wheel: expected keys with values, such as {at: …, facing: …, phase: …}, got "
+        "nothing",
     ),
     "unknown facing": (
         ("facing: backward", "facing: backwards"),

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 COUNT = 6
 CHEAP = ("bevel_pair", "box_with_discs", "cover_on_base", "door", "every_bevel_field", "four_pads")
 """Scenes of the default suite, of some 2 s together but for kernels; the others are slow."""
+DEAR = ("robot_arm", "stewart")
+"""Of dozens of measures, each of which is built alone."""
 ROUNDING = 1e-9
 """Of the largest value of a measure: sums of other order, such as of joints that a measure does not depend on."""
 
@@ -47,7 +49,7 @@ def with_its_own(scene: Scene, name: str) -> dict[str, MeasureEntry]:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=() if name in CHEAP else pytest.mark.slow)
+        pytest.param(name, marks=() if name in CHEAP else pytest.mark.nightly if name in DEAR else pytest.mark.slow)
         for name in sorted(own.stem for own in SCENES.glob("*.yaml"))
     ],
 )
