@@ -181,7 +181,7 @@ def related(k: int, folder: Path) -> Built:
 
 
 def chain(k: int, folder: Path) -> Built:
-    return normal(stacked(("least", "largest")[k % 2], welded=bool(k // 2 % 2)), k, 0.05)  # type: ignore[arg-type]
+    return normal(stacked(("least", "largest")[k % 2], welded=bool(k // 2 % 2)), k, 0.05)
 
 
 def pins(k: int, folder: Path) -> Built:
@@ -318,8 +318,8 @@ def kept() -> Mapping[str, Found]:
         ends = np.cumsum(np.prod(file["shapes"], axis=1))[:-1]
         values = [np.split(file[name], ends) for name in ("exact", "codes", "analytic")]
         return {
-            str(name): Found(*(own.reshape(shape) for own in its), float(deviations), str(commit))
-            for name, shape, *its, deviations, commit in zip(
+            str(name): Found(exact.reshape(shape), codes.reshape(shape), linear.reshape(shape), drawn_as, str(commit))
+            for name, shape, exact, codes, linear, drawn_as, commit in zip(
                 file["cases"], file["shapes"], *values, file["deviations"], file["commits"], strict=True
             )
         }

@@ -356,8 +356,8 @@ def test_the_pair_is_named_whose_clearance_adds_most_to_the_slack(tmp_path: Path
     """Its multipliers sum to the slope of the slack by its clearance; no symmetry, and slopes 1 % apart."""
     made = assembled(plates(THREE.tolist(), 10.1, 10.0), tmp_path)
     rows = drawn(made.simulation, 0, 30).deviations
-    (slack, _), told = (own["slack" if k == 0 else "tightest:together"] for k, own in enumerate(
-        placing.answers(made.system.assembly, rows, ["slack"])))  # fmt: skip
+    values, columns = placing.answers(made.system.assembly, rows, ["slack"])
+    slack, told = values["slack"][0], columns["tightest:together"]
     slopes = []
     for k in range(len(THREE)):
         (column,) = (own.start for contributor, own in made.slices if contributor.name == f"hole {k} size")
