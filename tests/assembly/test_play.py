@@ -373,7 +373,7 @@ def test_the_pair_is_named_whose_clearance_adds_most_to_the_slack(tmp_path: Path
     assert len(np.unique(told[clear])) == len(THREE)
 
 
-def test_of_two_pairs_that_hold_each_other_the_first_is_named_whatever_the_rounding() -> None:
+def test_of_two_pairs_that_hold_each_other_the_first_is_named_whatever_the_rounding(tmp_path: Path) -> None:
     """Two pins push a plate as hard, or one alone is tight: a change of 1e-14 mm names no other (one in thirty did)."""
     made = Assembled(simulation_of(load(SCENES / "two_plates.yaml"), Overrides()))
     rows = drawn(made.simulation, 0, 2000).deviations
@@ -384,6 +384,13 @@ def test_of_two_pairs_that_hold_each_other_the_first_is_named_whatever_the_round
     for name in ("tightest:plate on plate", "reason:edge"):
         np.testing.assert_array_equal(found[0][name], found[1][name])
     assert (found[0]["reason:edge"] != "").sum() > 50
+    apart = assembled(plates(((-20.0, 5.0), (60.0, 5.0)), 10.2, 10.0), tmp_path)
+    columns = {contributor.name: own.start for contributor, own in apart.slices}
+    tight = np.zeros((4, apart.system.assembly.width))
+    tight[:, columns["hole 1 x"]] = [0.05, -0.05, 0.3, -0.3]
+    told = placing.answers(apart.system.assembly, tight, ["x"])[1]
+    assert set(told["tightest:together"]) == {"lower.pin 0 in upper.hole 0"}
+    assert told["reason:x"].tolist() == ["", "", *2 * ["lower.pin 0 in upper.hole 0"]]
 
 
 def test_a_run_names_the_pair_that_most_often_does_not_go_in(tmp_path: Path) -> None:

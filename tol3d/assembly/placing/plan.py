@@ -57,15 +57,22 @@ class PlacingPlan:
 
     @cached_property
     def needed(self) -> Mapping[str, frozenset[int]]:
-        """Moves without which each measure cannot be read, welds included."""
-        welds = frozenset(k for k, move in enumerate(self.moves) if not move.move.parts)
+        """Moves without which each measure cannot be read, welds and what places their parts before them included."""
+        welds = [k for k, move in enumerate(self.moves) if not move.move.parts]
+        every = frozenset(welds).union(*(self._before_weld(k) for k in welds))
         return {
-            name: welds.union(
+            name: every.union(
                 (cause for cause in self.of_measures[name] if isinstance(cause, int)),
                 (own.of_move for own in (each, each.minus) if own is not None and own.of_move >= 0),
             )
             for name, each in self.assembly.measures.items()
         }
+
+    def _before_weld(self, index: int) -> frozenset[int]:
+        """Moves on which the poses of parts depend that a weld makes one body."""
+        before, after = self.causes[index : index + 2]
+        parts = [part for part, body in after.bodies.items() if body != before.bodies[part]]
+        return frozenset(cause for part in parts for cause in before.placed[part] if isinstance(cause, int))
 
 
 @lru_cache(maxsize=8)
