@@ -174,7 +174,8 @@ class Engaging(RoomPlacer):
                 own += share
             start += _cones_of(engagement)
         names = np.array([own.name for own in self.move.engagements])
-        return names[np.argmax(sums >= sums.max(axis=0) - EQUAL, axis=0)]
+        told: NDArray[np.str_] = names[np.argmax(sums >= sums.max(axis=0) - EQUAL, axis=0)]
+        return told
 
     def _targets(self, world: World) -> Sequence[str]:
         body = world.bodies[self.move.part]
