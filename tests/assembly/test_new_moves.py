@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from of_kind import of_kind
 from places import ROOT, SCENES
 from toys.registered import known
 from toys.shim import ACTS, SHIMS, ShimSpec
@@ -21,6 +22,7 @@ from tol3d.assembly.model import Move
 from tol3d.assembly.placing.placer import Placer
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.presenting.tables import freedom_blocks
+from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError
 from tol3d.import_path import named
 from tol3d.scene.entry import kind_of
@@ -79,7 +81,7 @@ def test_a_shim_joins_two_bundled_scenes(method: str) -> None:
 
 def test_a_shim_is_told_as_any_move(tmp_path: Path) -> None:
     simulation = simulation_of(shimmed("door"))
-    assembly = simulation.system.assembly  # type: ignore[attr-defined]
+    assembly = of_kind(AssemblySystem, simulation.system).assembly
     assert "door: shimmed on body (move hanging)" in repr(parts_tree(assembly))
     assert "('all six of door', 'body.upper hinge')" in repr(freedom_blocks(assembly))
     summary = run_scene(shimmed("door"), overrides=Overrides(trials=200), out=tmp_path / "run").summary

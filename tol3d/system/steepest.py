@@ -9,6 +9,8 @@ from tol3d.numerics.arrays import Array
 
 Values = Callable[[Array], Array]
 """A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
+LEAST_STEP: Final = 1e-9
+"""Of a slope [mm or rad], where a deviation has no width."""
 CURVED: Final = 0.1
 """Change that is alike to both sides over the one that is not, from which on other directions are looked at too."""
 
@@ -26,6 +28,7 @@ def steepest_ends(values: Values, mean: Array, steps: Array, furthest: Callable[
         steps: to both sides of it, of each component (components,).
         furthest: where a function with these slopes (components,) is largest (components,).
     """
+    steps = np.maximum(steps, LEAST_STEP)
     both = np.concatenate([np.diag(steps), -np.diag(steps)])
     *found, middle = values(np.concatenate([mean + both, mean[None]]))
     above, below = np.array(found).reshape(2, len(steps))

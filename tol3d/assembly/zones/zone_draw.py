@@ -21,8 +21,6 @@ from tol3d.system.draw import JointDraw
 from tol3d.system.normals import Group, scalars
 from tol3d.system.steepest import Values, steepest_ends
 
-LEAST_STEP = 1e-9  # mm; of a gradient, where a zone of width 0 has no sigma
-
 
 @dataclass(frozen=True)
 class ComponentLaw:
@@ -142,8 +140,7 @@ class ZoneDraw(ABC):
 
     def ends(self, values: Values, *, turning: bool) -> Array:
         """See Draw: as far as the components reach along the measure's gradient, and against it."""
-        steps = np.maximum(self.sigmas, LEAST_STEP)
-        return steepest_ends(values, self.mean_vector, steps, self.furthest)
+        return steepest_ends(values, self.mean_vector, self.sigmas, self.furthest)
 
 
 @dataclass(frozen=True)

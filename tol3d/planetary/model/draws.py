@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tol3d.assembly.from_scene.zones import drawn_by
 from tol3d.assembly.zones import Process
 from tol3d.assembly.zones.catalogue import axis_section
-from tol3d.assembly.zones.zone_draw import LEAST_STEP, ZoneDraw
+from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
@@ -75,7 +75,7 @@ class EachZone(EachOwn):
 
         All bores at their worst ends at once would be far rarer than the end of one.
         """
-        steps, mean = np.maximum(np.sqrt(np.diagonal(self.covariance)), LEAST_STEP), np.array(self.mean(turning=False))
+        steps, mean = np.sqrt(np.diagonal(self.covariance)), np.array(self.mean(turning=False))
         return steepest_ends(values, mean, steps, self._reach)
 
     def _reach(self, slopes: Array) -> Array:

@@ -52,7 +52,7 @@ class StudySummary(Section):
     engine: Label
     witness: int = Field(ge=0, le=1_000_000)
     ppk_by: Maybe[Literal["quantiles", "sigma"]] = Field(default=LEFT_OUT, description="requested basis of Ppk")
-    accept_ppk: Maybe[Annotated[float, Field(gt=0.0)]] = Field(
+    accept_ppk: Maybe[Annotated[float, Field(gt=0.0, le=10.0)]] = Field(
         default=LEFT_OUT, description="Ppk that is asked of measures"
     )
 
