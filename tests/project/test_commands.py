@@ -60,6 +60,8 @@ def is_read_only(command: str, later: Sequence[str]) -> bool:
 GROUP: Final = typer.main.get_command(app)
 assert isinstance(GROUP, TyperGroup)
 COMMANDS: Final = GROUP.commands
+DEAR: Final = ("step.md", "planetary.md")
+"""Pages whose commands take most of a minute: nightly."""
 PAGES: Final[Mapping[str, list[str]]] = {
     page.name: commands
     for page in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
@@ -120,8 +122,9 @@ def test_pages_whose_commands_others_run_are_there() -> None:
     assert all((ROOT / "docs" / page).is_file() and (ROOT / test).is_file() for page, test in OTHERS.items())
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize(
+    "page", [pytest.param(own, marks=pytest.mark.nightly if own in DEAR else pytest.mark.slow) for own in PAGES]
+)
 def test_the_commands_of_a_page_run_as_they_stand(
     page: str, thinned: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tol3d: Command
 ) -> None:

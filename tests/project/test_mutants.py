@@ -21,6 +21,7 @@ from py_compile import PycInvalidationMode
 
 import pytest
 from places import ROOT
+from thinned import NIGHTLY
 
 LIST = ROOT / "tests" / "mutants.toml"
 FAILED, PASSED = 1, 0  # pytest's exit codes; others mean that it could not run
@@ -50,7 +51,7 @@ COPIED = ("tol3d", "parts", "scenes", "tests", "benchmarks", "docs", "README.md"
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if slow."""
+    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if those are slow."""
 
     fault: str
     file: str
@@ -63,6 +64,12 @@ class Mutant:
 MUTANTS = [
     Mutant(**{**entry, "tests": tuple(entry["tests"])}) for entry in tomllib.loads(LIST.read_text("utf-8"))["mutant"]
 ]
+
+
+STANDING = {entry["mutant"] for entry in NIGHTLY.values()}
+"""Those by which a test of CI stands for a nightly one."""
+OF_CI = STANDING | {own.fault for own in [own for own in MUTANTS if not own.nightly][::2]}
+"""Those that CI tries: every second one besides, but for those whose tests compile or take long; nightly are the others."""
 
 
 class Tree:
@@ -140,7 +147,7 @@ def test_a_mutant_s_text_is_there_once_and_its_tests_too(mutant: Mutant) -> None
 @pytest.mark.parametrize(
     "mutated",
     [
-        pytest.param(own, marks=pytest.mark.nightly if own.nightly else pytest.mark.slow, id=own.fault)
+        pytest.param(own, marks=pytest.mark.slow if own.fault in OF_CI else pytest.mark.nightly, id=own.fault)
         for own in MUTANTS
     ],
     indirect=True,
