@@ -51,7 +51,7 @@ COPIED = ("tol3d", "parts", "scenes", "tests", "benchmarks", "docs", "README.md"
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if those are slow."""
+    """A fault: what it is, where, which text stands for which, the tests that must fail of it; nightly if slow."""
 
     fault: str
     file: str
@@ -69,7 +69,7 @@ MUTANTS = [
 STANDING = {entry["mutant"] for entry in NIGHTLY.values()}
 """Those by which a test of CI stands for a nightly one."""
 OF_CI = STANDING | {own.fault for own in [own for own in MUTANTS if not own.nightly][::2]}
-"""Those that CI tries: every second one besides, but for those whose tests compile or take long; nightly are the others."""
+"""Those that CI tries: every second one besides, of those whose tests are quick; the others are nightly."""
 
 
 class Tree:
