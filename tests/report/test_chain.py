@@ -347,7 +347,7 @@ def test_limits_differences_and_labels_of_a_tip_are_in_mm() -> None:
     assert (values_label("tip", "mm"), density_label("mm")) == ("tip [mm]", "% of trials per mm")
     assert heading(tip) == ("displacement of tip of arm by the lost motion, at a random position each trial")
     assert heading(typed_measure(MEASURES["lost motion"])).startswith(
-        "lost motion of shoulder flange, motor held, at a random"
+        "lost motion of shoulder flange, motor held, without load, at a random"
     )
     assert Compared.of("tip", tip) != Compared.of(
         "tip", typed_measure(MEASURES["tip displacement"] | {"point": "elbow"})

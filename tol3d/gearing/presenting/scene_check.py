@@ -279,7 +279,7 @@ def _what(measure: Measure) -> str:
         stages = " + ".join(stage.link for stage in kind.stages)
         moves = f"{kind.tip.point} of {kind.tip.arm} ({kind.tip.lever:g} mm from the axis) by the " if kind.tip else ""
         read = {backlash.mesh: _reading(backlash) for _, backlash in kind.backlashes}
-        return f"{moves}lost motion of {kind.shaft}, {kind.held} held: {stages}{readings_words(read)}"
+        return f"{moves}lost motion of {kind.shaft}, {kind.held} held, without load: {stages}{readings_words(read)}"
     gear = f" of {kind.gear}" if kind.is_angle else ""
     what = f"{TAKE_WORDS[measure.take]}{QUANTITY_WORDS[kind.quantity]}{gear}, {kind.mesh}"
     return what + curve + _reading(kind).words

@@ -163,13 +163,13 @@ class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
 
     @property
     def words(self) -> str:
-        """Quantity, shafts or point, and positions: `lost motion of flange, motor held, at one position`."""
+        """Quantity, shafts or point, and positions: `lost motion of flange, motor held, without load, at one position`."""
         return f"{self._quantity}, {TRAIN_OVER_WORDS[self.over]}{readings_words(self.readings)}"
 
     @property
     def _quantity(self) -> str:
         if self.kind == "lost_motion":
-            return f"lost motion of {self.shaft}, {self.held} held"
+            return f"lost motion of {self.shaft}, {self.held} held, without load"
         word = "error" if self.kind == "tip_error" else "displacement"
         return f"{word} of {self.point} of {self.arm} by the lost motion"
 
