@@ -12,7 +12,8 @@ from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.numerics.arrays import Array
 from tol3d.system.normals import Group, scalars
 from tol3d.system.remembered import Remembered
-from tol3d.system.steepest import Values, along, steepest_ends
+from tol3d.system.steepest import Values as Values  # also of mechanisms from outside
+from tol3d.system.steepest import along, steepest_ends
 
 
 class Draw(Protocol):
