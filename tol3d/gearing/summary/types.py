@@ -163,7 +163,7 @@ class TrainMeasureSummary(TrainMeasureWords, MeasureSummary):
 
     @property
     def words(self) -> str:
-        """Quantity, shafts or point, and positions: `lost motion of flange, motor held, without load, at one position`."""
+        """Quantity, shafts or point, and positions: `lost motion of flange, motor held, without load, at random`."""
         return f"{self._quantity}, {TRAIN_OVER_WORDS[self.over]}{readings_words(self.readings)}"
 
     @property
