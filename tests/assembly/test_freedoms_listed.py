@@ -291,8 +291,9 @@ def test_datums_take_what_earlier_ones_leave() -> None:
 def test_what_is_taken_and_left_is_six(scene: str) -> None:
     assembly = drawn(SCENES / f"{scene}.yaml").assembly
     for plan in planned(assembly).moves:
-        found = held_by(assembly, plan)
-        assert sum(own.count for own in found.taken) + found.left.count == 6
+        if plan.move.parts:  # a weld places none
+            found = held_by(assembly, plan)
+            assert sum(own.count for own in found.taken) + found.left.count == 6
 
 
 @pytest.mark.parametrize("seed", range(20))
