@@ -18,7 +18,7 @@ COUNT = 6
 CHEAP = ("bevel_pair", "box_with_discs", "cover_on_base", "door", "every_bevel_field", "four_pads")
 """Scenes of the default suite, of some 2 s together but for kernels; the others are slow."""
 DEAR = ("robot_arm", "stewart")
-"""Of dozens of measures, each of which is built alone."""
+"""Scenes of dozens of measures, each of which is built alone."""
 ROUNDING = 1e-9
 """Of the largest value of a measure: sums of other order, such as of joints that a measure does not depend on."""
 

@@ -15,7 +15,7 @@ FURTHEST = partial(along, RADIUS)
 
 
 def ends_of(matrix: list[list[float]], offset: list[float]) -> Array:
-    """Of the size of matrix · x + offset, over a ball."""
+    """Ends over a ball, of the size of matrix · x + offset."""
     lines, place = np.array(matrix), np.array(offset)
     count = lines.shape[1]
     return steepest_ends(

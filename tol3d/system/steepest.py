@@ -10,7 +10,7 @@ from tol3d.numerics.arrays import Array
 Values = Callable[[Array], Array]
 """A measure (rows,) of the components (rows, components) of one contributor, all others at their means."""
 LEAST_STEP: Final = 1e-9
-"""Of a slope [mm or rad], where a deviation has no width."""
+"""Step of a slope [mm or rad] where a deviation has no width."""
 CURVED: Final = 0.1
 """Change that is alike to both sides over the one that is not, from which on other directions are looked at too."""
 

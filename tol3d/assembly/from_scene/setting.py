@@ -31,7 +31,7 @@ class Understood:
 
 @dataclass(frozen=True, eq=False)
 class Setting:
-    """What a move finds in its scene: drawings, places of parts, columns of its own contributors.
+    """The scene as a move finds it: drawings, places of parts, columns of its own contributors.
 
     Args:
         understood: the scene's drawings; datum frames that the move needs are named here.

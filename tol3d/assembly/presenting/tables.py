@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Move, Plane, Point, RoundPlane, Slot
+from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, RoundPlane, Slot
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.placing.asked import touched
 from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
@@ -120,17 +120,15 @@ def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     words = [Heading(word, words=word != PLACE) for word in columns]
     features = titled("features, nominally in the world", Table("", words, rows))
     plans = planned(system.assembly).moves
-    moves = [Row(own.move.name, (own.move.acts.words, _of(own.move), own.words)) for own in plans]
+    moves = [
+        Row(own.move.name, (own.move.acts.words, ", ".join(own.move.parts or own.move.joined[:1]), own.words))
+        for own in plans
+    ]
     steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
     presented = ((at_path(path), own) for own in plans if (path := own.move.acts.presents))
     others = (item for presents, own in presented for item in presents(own, system.assembly))
     return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *others)
-
-
-def _of(move: Move) -> str:
-    """Parts that a move places, or the body that it makes."""
-    return ", ".join(move.parts or move.joined[:1])
 
 
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:

@@ -132,7 +132,7 @@ class PlacingSpec(AssemblyMoveSpec):
         return [(("part",), self.part)]
 
     def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
-        """What its pairs are laid on."""
+        """Features that its pairs are laid on."""
         return (((*path, "to"), pair.to) for path, pair in self.paired())
 
     def references(self) -> tuple[Reference, ...]:
