@@ -258,7 +258,7 @@ WRONG: dict[str, tuple[Sequence[Edit], str, str]] = {
     "measure after an unknown move": (
         [(HOLES, f"{HOLES}, after: cover in the base")],
         "measures.hole offset.after",
-        "expected the name of a move that places a part or a weld, got 'cover in the base', which is not in the scene; "
+        "expected the name of a move that places or joins parts, got 'cover in the base', which is not in the scene; "
         'did you mean "cover on the base"?',
     ),
     "measure before its parts are placed": (

@@ -49,7 +49,7 @@ class AssemblyMoveSpec(MoveSpec):
       with . is hidden. "" for none.
     """
 
-    words: ClassVar[str] = "a move that places a part"
+    words: ClassVar[str] = "a move that places or joins parts"
     acts: ClassVar[Acts]
     stated_by: ClassVar[str] = ""
     drawn_by: ClassVar[str] = ""
