@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.centring import Cones, centred
 from tol3d.assembly.torsors.room import support_point
+from tol3d.contact.programme import Programme
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
@@ -28,15 +28,11 @@ Array = NDArray[np.float64]
 
 def exact(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
     """The step and its centred slack by the exact method's kernel; the step is found."""
-    places, size = len(rows), rows.shape[2]
-    step, slack, which, found = np.empty((size, 1)), np.empty(1), np.empty(1, np.int64), np.empty(1, np.bool_)
-    room_found(
-        np.ascontiguousarray(offsets[:, :, None]), np.ascontiguousarray(clearances[:, None]), rows,
-        np.zeros(size) if push is None else push, np.ones(1, np.bool_), step, slack, which, found,
-        np.zeros((places, 1)), np.zeros((places, 1), np.int64),
-    )  # fmt: skip
-    assert found[0]
-    return step[:, 0], float(slack[0])
+    programme = Programme.of(len(rows), rows.shape[2], 1)
+    goal = None if push is None else push[:, None]
+    programme.solve(offsets[:, :, None], clearances[:, None], rows[..., None], goal=goal)
+    assert programme.found[0]
+    return programme.steps[:, 0], float(programme.slack[0])
 
 
 def by_torsors(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:

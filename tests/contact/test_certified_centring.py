@@ -11,11 +11,11 @@ from kept_assemblies import found, made
 from numpy.typing import NDArray
 from thinned import thinned
 
-from tol3d.assembly.placing import gauged_frames, growth, inspected_sets
-from tol3d.assembly.placing.cones import climbed
-from tol3d.assembly.placing.rooms import new_rooms, room_found, started
 from tol3d.assembly.torsors import centring
 from tol3d.contact.certify import certificate
+from tol3d.contact.cones import climbed
+from tol3d.contact.programme import Programme
+from tol3d.contact.rooms import new_rooms, started
 
 Array = NDArray[np.float64]
 NO_DIRECTION = 1e-6, 1e-8, 1e-10
@@ -66,22 +66,38 @@ def _duals(at: Array, clearances: Array, rows: Array, multipliers: Array, least:
     return duals
 
 
+def own_duals_certify(
+    programme: Programme, place: tuple[Array, ...], goal: Array | None, trials: NDArray[np.int64]
+) -> Array:
+    """A certificate by the duals that a programme tells of its first round, or of its push (4, trials found)."""
+    offsets, clearances, rows = place
+    decided = programme.rounds[:, trials] == (1 if goal is None else -1)
+    some = programme.found[trials] & decided.any(axis=0)
+    h, whole = np.zeros((len(rows), 4, len(trials))), np.zeros((len(rows), 4, *rows.shape[2:]))
+    h[:, 0], h[:, 1:3], whole[:, 1:3] = clearances, offsets, rows
+    duals = np.zeros(h.shape)
+    duals[:, :3] = np.where(decided[:, None], programme.duals[..., trials], 0.0)
+    steps = programme.steps[:, trials]
+    slack = programme.slack[trials] if goal is None else np.zeros(len(trials))
+    seen, aim = seen_by(rows), np.zeros((len(steps), 1)) if goal is None else goal
+    whole, aim = (np.broadcast_to(own, (*own.shape[:-1], len(trials)))[..., some] for own in (whole, aim))
+    dims, lifted = np.full(len(rows), 3)[seen], np.full(int(seen.sum()), goal is None)
+    return certificate(
+        h[seen][..., some], whole[seen], dims, lifted, aim, steps[:, some], slack[some], duals[seen][..., some]
+    )
+
+
 def seen_by(rows: Array) -> NDArray[np.bool_]:
     """Places that some freedom changes (places,)."""
-    return np.asarray(np.abs(rows).max(axis=(1, 2)) > 1e-6)
+    return np.asarray(np.abs(rows).reshape(len(rows), -1).max(axis=1, initial=0.0) > 1e-6)
 
 
 def by_kernel(offsets: Array, clearances: Array, rows: Array) -> tuple[Array, Array]:
     """Steps (freedoms, 1) and the first round's multipliers (places, 1) by the exact method."""
-    size = rows.shape[2]
-    steps, slacks, which, is_found = np.empty((size, 1)), np.empty(1), np.empty(1, np.int64), np.empty(1, np.bool_)
-    multipliers, programmes = np.zeros((len(rows), 1)), np.zeros((len(rows), 1), np.int64)
-    room_found(
-        offsets, clearances, rows, np.zeros(size), np.ones(1, np.bool_), steps, slacks, which, is_found,
-        multipliers, programmes,
-    )  # fmt: skip
-    assert is_found[0]
-    return steps, np.where(programmes == 1, multipliers, 0.0)
+    programme = Programme.of(len(rows), rows.shape[2], 1)
+    programme.solve(offsets, clearances, rows[..., None])
+    assert programme.found[0]
+    return programme.steps, programme.multipliers
 
 
 def by_torsors(offsets: Array, clearances: Array, rows: Array) -> tuple[Array, Array]:
@@ -104,6 +120,31 @@ def test_tied_grids_are_certified(solve: Callable[..., tuple[Array, Array]], see
         assert own.max() < CLOSE["exact" if solve is by_kernel else "analytic"], (seed, own[:, 0])
         off = certified(*place, rows[..., None], seen_by(rows)[:, None], steps + 1e-3, multipliers)
         assert off.max() > 1e-7  # another step is not
+
+
+def test_a_push_goes_on_from_the_places_that_decided_at_the_pose_before_or_from_the_middle() -> None:
+    """As one from the middle, to rounding: at poses nearby, and at one where other places decide; trials by number."""
+    rng, count = np.random.default_rng(7), 60
+    at = rng.uniform(-1.0, 1.0, (5, 2))
+    rows = np.zeros((5, 2, 3, 1))
+    rows[:, 0, 0, 0] = rows[:, 1, 1, 0] = 1.0
+    rows[:, 0, 2, 0], rows[:, 1, 2, 0] = -at[:, 1], at[:, 0]
+    goal, clearances = rng.normal(size=(3, count)), rng.uniform(0.1, 0.2, (5, count))
+    offsets = rng.normal(0.0, 0.02, (5, 2, count))
+    programme, going, others = Programme.of(5, 3, count), np.arange(5, count), 0
+    for _ in range(5):
+        before = programme.rounds[:, going] == -1
+        place = offsets[..., going], clearances[:, going], np.repeat(rows, len(going), axis=3)
+        programme.solve(*place, goal=goal[:, going], trials=going)
+        anew = Programme.of(5, 3, count)
+        anew.solve(offsets, clearances, rows, goal=goal, asked=np.arange(count) >= 5)
+        assert programme.found.all()
+        np.testing.assert_allclose(programme.steps, anew.steps, rtol=0, atol=1e-9)
+        assert own_duals_certify(programme, place, goal[:, going], going).max() < CLOSE["exact"]
+        others += int(np.count_nonzero(before.any(axis=0) & (before != (programme.rounds[:, going] == -1)).any(axis=0)))
+        offsets = offsets + np.einsum("kcfn,fn->kcn", rows, programme.steps) + rng.normal(0.0, 0.004, offsets.shape)
+    assert (programme.steps[:, :5] == 0.0).all()
+    assert 20 < others < 200
 
 
 @pytest.mark.parametrize("at", [[(0.02, -0.05)], [(0.02, -0.05), (0.02, -0.05)]], ids=["one", "two alike"])
@@ -137,7 +178,7 @@ def test_what_kept_assemblies_ask_is_certified(case: str, tmp_path: Path, monkey
     direction, and what it tells of duals does not certify (up to 2e-4).
     """
     read: dict[str, list[Array]] = {"exact": [], "analytic": []}
-    by_torsors_too = centring.largest_slack
+    by_torsors_too, solve = centring.largest_slack, Programme.solve
 
     def by_rounds(*arrays: Any) -> tuple[Array, Array]:
         steps, multipliers = by_torsors_too(*arrays)
@@ -145,19 +186,16 @@ def test_what_kept_assemblies_ask_is_certified(case: str, tmp_path: Path, monkey
         read["analytic"].append(certified(offsets, clearances, rows, counts, steps, multipliers))
         return steps, multipliers
 
-    def in_rooms(*arrays: Any) -> None:
-        room_found(*arrays)
-        offsets, clearances, rows, push, asked, steps, _, _, is_found, multipliers, programmes = arrays
-        some = asked & is_found & (programmes == 1).any(axis=0)
-        if not push.any() and some.any():
-            own = np.where(programmes == 1, multipliers, 0.0)[:, some]
-            counts = np.repeat(seen_by(rows)[:, None], own.shape[1], axis=1)
-            place = offsets[..., some], clearances[:, some], rows[..., None]
-            read["exact"].append(certified(*place, counts, steps[:, some], own))
+    def certified_too(programme: Programme, *place: Array, **asked: Any) -> None:
+        solve(programme, *place, **asked)
+        mask = asked.get("asked", np.ones(len(programme.slack), dtype=bool))
+        trials = asked.get("trials", np.flatnonzero(mask))
+        if "trials" not in asked:
+            place = tuple(own[..., trials] if own.shape[-1] > 1 else own for own in place)
+        read["exact"].append(own_duals_certify(programme, place, asked.get("goal"), trials))
 
     monkeypatch.setattr(centring, "largest_slack", by_rounds)
-    for module in (gauged_frames, growth, inspected_sets):
-        monkeypatch.setattr(module, "room_found", in_rooms)
+    monkeypatch.setattr(Programme, "solve", certified_too)
     family, _, k = case.rpartition(" ")
     found(*made(family, int(k), tmp_path))
     assert sum(map(len, read.values())) > 3

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -13,8 +12,9 @@ from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.asked import Asked, rows_about
-from tol3d.assembly.placing.engaged_places import at_places, engaged_arrays
-from tol3d.assembly.placing.engaged_poses import engaged_poses_found
+from tol3d.assembly.placing.chords import ray
+from tol3d.assembly.placing.engaged_places import ENDS, at_places, engaged_places
+from tol3d.assembly.placing.engaged_poses import EngagedRoom
 from tol3d.assembly.placing.floats import Floats, floats_of
 from tol3d.assembly.placing.mating import KeptRelations, Mating, kept_motions, kept_of, mating
 from tol3d.assembly.placing.placer import RoomPlacer
@@ -29,6 +29,8 @@ from tol3d.assembly.placing.poses import (
     rotated_back,
 )
 from tol3d.assembly.placing.world import World
+from tol3d.contact.programme import Programme
+from tol3d.contact.seat import seated, strayed
 from tol3d.numerics.arrays import Array, times
 
 ROUNDS: Final = 20
@@ -124,20 +126,37 @@ class Engaging(RoomPlacer):
         return world.with_slack(self.move.name, slacks, self._tightest(shares)), codes
 
     def _found(self, world: World, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Array, Array, NDArray[np.bool_]]:
-        """Poses within the clearance, slacks (n,), shares of cones in them (cones, n), flags of those found (n,)."""
-        count, origin = world.trials, column(self.origin)
-        begin = np.empty((3, 4, count))
-        begin[:, :3], begin[:, 3] = start.turn, start.point(origin) - column(self.middle)
-        kept = self.relations.kept_by(seats)
-        vectors = kept.vectors - kept.shifts[:, None, None] * origin
-        turns, shifts = np.empty((3, 3, count)), np.empty((3, count))
-        slacks, shares, found = np.empty(count), np.empty((len(self.rows), count)), np.empty(count, dtype=np.bool_)
-        engaged_poses_found(
-            *engaged_arrays(self.move, world, self.origin, self.middle), vectors, kept.normals, kept.shifts, self.undo,
-            self.steps, self.rows, begin, self.reach, *self.floats.given(world, self.origin),
-            turns, shifts, slacks, shares, found,
+        """Poses within the clearance, slacks (n,), shares of places in them (places, n), flags of those found (n,)."""
+        origin, middle, trials = column(self.origin), column(self.middle), world.trials
+        room = self._room(world, seats, start)
+        bolts = np.zeros(((self.rows.shape[2] - self.motions) // ENDS, ENDS, trials))
+        places, _, unknowns = self.rows.shape
+        programme, sweeps = Programme.of(places, unknowns, trials), self.floats.sweeps(world)
+        at = start.turn, start.point(origin) - middle, bolts
+        every = np.ones(trials, dtype=np.bool_)
+        seat = seated(room, at, programme, every, keeps_place=sweeps is not None)
+        slacks, shares = np.where(seat.found, programme.slack, 0.0), programme.multipliers
+        alone = ~(np.take_along_axis(shares, programme.tightest[None], axis=0)[0] > 0.0)  # no freedom moves it
+        shares = np.where(alone, np.arange(len(shares))[:, None] == programme.tightest, shares)
+        found, goes, after = seat.found, seat.found & (slacks > 0.0), seat
+        if room.push is not None:
+            after = seated(room, seat.pose, programme, goes, pushes=True)
+        elif sweeps is not None and seat.place is not None:
+            along, share = ray(seat.place, *sweeps, room.way)
+            after = strayed(room, seat.pose, along, share, goes)
+        turn, shift, _ = after.pose
+        return Pose(turn, shift + middle - rotated(turn, origin)), slacks, shares, np.where(goes, after.found, found)
+
+    def _room(self, world: World, seats: Sequence[Seat], start: Pose) -> EngagedRoom:
+        """Its room in the trials, as relations lay the part."""
+        origin = column(self.origin)
+        kept = self.relations.kept_by(seats).about(origin)
+        room = EngagedRoom(
+            tuple(engaged_places(self.move, world, self.origin, self.middle)), kept, self.undo, np.zeros((0, 1)),
+            np.roll(self.freedoms, 3, axis=0)[..., None], self.rows[..., None], self.reach,
+            self.floats.goal(world, self.origin),
         )  # fmt: skip
-        return Pose(turns, shifts + column(self.middle) - rotated(turns, origin)), slacks, shares, found
+        return replace(room, first=room.kept_at(start.turn, start.point(origin) - column(self.middle)))
 
     def _by_pairs(
         self, world: World, seats: Sequence[Seat], pose: Pose, asked: NDArray[np.bool_]
@@ -156,11 +175,6 @@ class Engaging(RoomPlacer):
             if not asked.any():
                 break
         return pose, lacking < LOST
-
-    @cached_property
-    def steps(self) -> Array:
-        """The freedoms as turn times reach and shift (6, freedoms)."""
-        return np.ascontiguousarray(np.roll(self.freedoms, 3, axis=0))
 
     def _tightest(self, shares: Array) -> NDArray[np.str_]:
         """Pair that decides the least slack (n,): that of the largest share, of equal ones the first as written.

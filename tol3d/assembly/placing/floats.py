@@ -8,6 +8,7 @@ import numpy as np
 
 from tol3d.assembly.model import Engage
 from tol3d.assembly.placing.actual_feature import ActualFeature
+from tol3d.assembly.placing.engaged_poses import Push
 from tol3d.assembly.placing.poses import Pose, column
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
@@ -46,24 +47,26 @@ class Floats:
         """The float pushed to the limit along a direction of the freedoms (freedoms,); centred along 0."""
         return Floats(self.move, self.freedoms, np.zeros(3), np.ascontiguousarray(push), self.turn)
 
-    def given(self, world: World, origin: Array) -> tuple[bool, Array, Array, Array, Array, Array, Array]:
-        """Inputs of `engaged_poses_found`: flag, direction and point of the push, draws and axes, the nominal turn.
+    def goal(self, world: World, origin: Array) -> Push | None:
+        """The goal of a part that is pushed; None for any other.
 
         Args:
             world: before the move.
             origin: the middle of all places in the part's frame (3,) [mm].
         """
-        drawn, point = np.zeros((0, 0)), np.zeros((3, 1))
-        if self.push is not None:
-            if self.along.any():
-                point = np.ascontiguousarray(_pushed_point(self.move, world).origin - column(origin))
-            return bool(self.push.any()), self.push, point, self.along, drawn, drawn, self.turn
-        axes, floating = drawn, self.move.floating
-        if floating.kind == "random" and self.by_pairs is None:
-            order, axes = axes_of(self.freedoms)
-            bolts = sum(own.bolt is not None for own in self.move.engagements)
-            drawn = floating.sweeps(world.columns[floating.columns], order, bolts)
-        return False, np.zeros(self.freedoms.shape[1]), point, self.along, drawn, axes, self.turn
+        if self.push is None or not self.push.any():
+            return None
+        point = _pushed_point(self.move, world).origin - column(origin) if self.along.any() else np.zeros((3, 1))
+        return Push(self.push, point, self.along, self.turn)
+
+    def sweeps(self, world: World) -> tuple[Array, Array] | None:
+        """Axes of the room (freedoms, freedoms) and uniforms (sweeps * freedoms, n) of a random float; else None."""
+        floating = self.move.floating
+        if self.push is not None or floating.kind != "random" or self.by_pairs is not None:
+            return None
+        order, axes = axes_of(self.freedoms)
+        bolts = sum(own.bolt is not None for own in self.move.engagements)
+        return axes, floating.sweeps(world.columns[floating.columns], order, bolts)
 
 
 def axes_of(freedoms: Array) -> tuple[Sequence[int], Array]:

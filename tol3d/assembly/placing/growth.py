@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.placing.rooms import room_found
+from tol3d.contact.programme import Programme
 from tol3d.numerics.arrays import Array
 
 Mask = NDArray[np.bool_]
@@ -50,30 +50,25 @@ def least_growth(
     ends, trials = len(offsets), offsets.shape[2]
     if not rows.shape[2]:
         return (np.sqrt((offsets * offsets).sum(axis=1)) - radii).max(axis=0), np.zeros((0, trials))
-    every_row = np.ascontiguousarray(np.concatenate([rows, its_rows]))
-    every = np.ascontiguousarray(np.concatenate([offsets, its]))
+    every_row, every = np.concatenate([rows, its_rows])[..., None], np.concatenate([offsets, its])
     clearances = np.concatenate([np.zeros((ends, trials)), room])
     still = np.abs(rows).max(axis=(1, 2)) < UNSEEN
     nearest = np.sqrt((offsets * offsets).sum(axis=1)) * still[:, None]
-    least, steps, slacks = (nearest - radii).max(axis=0), np.zeros((rows.shape[2], trials)), np.zeros(trials)
+    least, programme = (nearest - radii).max(axis=0), Programme.of(len(every), rows.shape[2], trials)
     asked = np.ones(trials, bool) if trials_asked is None else trials_asked
-    found, deciding = np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
-    before = np.zeros((len(every), trials)), np.zeros((len(every), trials), dtype=np.int64)
     for _ in range(STEPS):
         clearances[:ends] = radii + least
-        room_found(
-            every, clearances, every_row, np.zeros(rows.shape[2]), asked, steps, slacks, deciding, found, *before
-        )
-        share = np.asarray(sum(np.where(before[1][:ends] == 1, before[0][:ends], 0.0)))
-        short = np.where(slacks < 0.0, -slacks, 0.0)
-        empty = asked & (~found | ((short > SHORT) & ~(share > FREE)))
+        programme.solve(every, clearances, every_row, asked=asked)
+        share = np.asarray(sum(programme.multipliers[:ends]))
+        short = np.where(programme.slack < 0.0, -programme.slack, 0.0)
+        empty = asked & (~programme.found | ((short > SHORT) & ~(share > FREE)))
         least = np.where(empty, np.nan, least)
         grown = short / np.where(share > FREE, share, 1.0)
         least = np.where(asked & ~empty, least + grown, least)
         asked = asked & ~empty & (grown > SHORT)
         if not asked.any():
             break
-    return least, np.where(np.isfinite(least), steps, 0.0)
+    return least, np.where(np.isfinite(least), programme.steps, 0.0)
 
 
 def centred(offsets: Array, clearances: Array, rows: Array, asked: Mask) -> tuple[Array, Array]:
@@ -85,9 +80,6 @@ def centred(offsets: Array, clearances: Array, rows: Array, asked: Mask) -> tupl
         rows: B_k (cones, 2, freedoms).
         asked: for which trials (n,).
     """
-    trials, places = clearances.shape[1], len(rows)
-    steps, slacks, push = np.zeros((rows.shape[2], trials)), np.zeros(trials), np.zeros(rows.shape[2])
-    found, deciding = np.ones(trials, bool), np.zeros(trials, dtype=np.int64)
-    before = np.zeros((places, trials)), np.zeros((places, trials), dtype=np.int64)
-    room_found(offsets, clearances, np.ascontiguousarray(rows), push, asked, steps, slacks, deciding, found, *before)
-    return steps, slacks
+    programme = Programme.of(len(rows), rows.shape[2], clearances.shape[1])
+    programme.solve(offsets, clearances, rows[..., None], asked=asked)
+    return programme.steps, programme.slack

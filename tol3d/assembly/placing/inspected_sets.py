@@ -16,9 +16,9 @@ from tol3d.assembly.placing.gauged_frames import MET, ROUNDS
 from tol3d.assembly.placing.holding import held_by_datums
 from tol3d.assembly.placing.measuring import bonuses
 from tol3d.assembly.placing.poses import Pose, column, dot, full, moved_about
-from tol3d.assembly.placing.rooms import room_found
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
+from tol3d.contact.programme import Programme
 from tol3d.numerics.arrays import Array, times
 
 RIM: Final = 24
@@ -69,16 +69,12 @@ def _least(measured: Measured, world: World, pose: Pose, seen: tuple[Array, Arra
         seen: radii (places, n), rows (places, 2, freedoms), the middle (3,), motions (6, freedoms).
     """
     radii, rows, middle, motions = seen
-    rows, push = np.ascontiguousarray(rows), np.zeros(motions.shape[1])
-    steps, slacks = np.zeros((motions.shape[1], world.trials)), np.zeros(world.trials)
-    asked, found = np.ones(world.trials, bool), np.ones(world.trials, bool)
-    deciding = np.zeros(world.trials, dtype=np.int64)
-    before = np.zeros((len(rows), world.trials)), np.zeros((len(rows), world.trials), dtype=np.int64)
+    programme, asked = Programme.of(len(rows), motions.shape[1], world.trials), np.ones(world.trials, bool)
     offsets = _offsets(measured, world, pose)
     least = _largest(offsets, radii)
     for _ in range(ROUNDS):
-        room_found(offsets, radii, rows, push, asked, steps, slacks, deciding, found, *before)
-        motion = times(motions, np.where(asked & found, steps, 0.0))
+        programme.solve(offsets, radii, rows[..., None], asked=asked)
+        motion = times(motions, np.where(asked & programme.found, programme.steps, 0.0))
         moved = moved_about(pose, middle, motion[:3], motion[3:])
         offsets = _offsets(measured, world, moved)
         value = _largest(offsets, radii)

@@ -146,18 +146,17 @@ IDENTITY = Pose.of(np.eye(4))
 """Nothing is moved."""
 
 
+def turned_by(vector: Array, turn: Array) -> Array:
+    """Vectors (3, n), or columns of rotations, turned about others (3, n) by 2 atan(length / 2): Cayley's formula."""
+    half = turn / 2
+    across = cross(half, vector)
+    return np.asarray(vector + 2.0 / (1.0 + dot(half, half)) * (across + cross(half, across)))
+
+
 def moved_about(pose: Pose, middle: Array, shift: Array, turn: Array) -> Pose:
     """A pose turned further about a middle (3,) by a vector (3, n), of angle 2 atan(length / 2), and shifted (3, n)."""
-    half = turn / 2
-    share = 2.0 / (1.0 + dot(half, half))
-
-    def turned(vector: Array) -> Array:
-        across = cross(half, vector)
-        return np.asarray(vector + share * (across + cross(half, across)))
-
-    arm = pose.shift - column(middle)
-    columns = [turned(pose.turn[:, k]) for k in range(3)]
-    return Pose(np.stack(columns, axis=1), column(middle) + turned(arm) + shift)
+    arm = turned_by(pose.shift - column(middle), turn)
+    return Pose(turned_by(pose.turn, turn), column(middle) + arm + shift)
 
 
 def full(pose: Pose, trials: int) -> Pose:

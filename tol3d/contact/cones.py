@@ -243,7 +243,7 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
     """Reach the optimum by Newton steps; True if all its conditions hold, otherwise nothing is changed.
 
     Args:
-        cones: as in `climbed`; the multipliers are changed to z = (m, 0, 0).
+        cones: as in `climbed`; the duals are changed to z = m (1, -u), u along the offset.
         size, lifts, goal: as in `climbed`.
         scale: of offsets and clearances.
         weight: of the multipliers.
@@ -264,7 +264,9 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
             wrong = amiss(cones, rooms, MET * scale)
             if wrong < 0:
                 for k in range(y.shape[0]):
-                    z[k, 0] = own[k, 0] if used[k] else 0.0
+                    m = own[k, 0] if used[k] else 0.0
+                    share = m / np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2]) if m > 0.0 else 0.0
+                    z[k, 0], z[k, 1], z[k, 2] = m, -share * at[k, 1], -share * at[k, 2]
                 for r in range(size + 1):
                     found[r] += gone[r]
                 return True

@@ -1,17 +1,17 @@
-"""Position of a part with play within its clearance: convex programmes for each trial, in a kernel.
+"""Rounds of convex programmes by which a part is centred or pushed within clearances, trial by trial, in a kernel.
 
-Offsets o_k + B_k q of the places where it engages (two numbers each; of a slot the second is 0) have to stay within
-clearances c_k. The centred q maximises the least slack s = min(c_k - |o_k + B_k q|), then the least of those still
-open, and so on. A cone with a multiplier has the same offset in every solution of its round, so that further rounds
-keep it.
+Offsets o_k + B_k q of places (two numbers each; of a slot the second is 0) have to stay within clearances c_k. The
+centred q maximises the least slack s = min(c_k - |o_k + B_k q|), then the least of those still open, and so on. A
+place with a multiplier has the same offset in every solution of its round, so that further rounds keep it. A pushed q
+goes as far as it can along a goal first, and is centred in what that leaves open.
 """
 
 from typing import Any, Final
 
 import numpy as np
 
-from tol3d.assembly.placing.cones import climbed, ended
-from tol3d.numerics.compiled import FULL, kernel, nested
+from tol3d.contact.cones import climbed, ended
+from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import fill
 
 HELD: Final = 1e-6
@@ -161,25 +161,26 @@ def opened(basis: Any, done: Any) -> int:
 
 
 @nested
-def again(cones: Any, size: int, before: Any, turn: int, found: Any, rooms: Any) -> bool:
-    """Solve by Newton steps with the cones that decided this programme at the pose before; True if solved.
-
-    The programme asks for the largest s.
+def again(
+    cones: Any, size: int, lifts: int, weight: float, push: Any, before: Any, turn: int, found: Any, rooms: Any
+) -> bool:
+    """Solve by Newton steps with the places that decided this programme at the pose before; True if solved.
 
     Args:
-        cones, size, found, rooms: as in `climbed`.
-        before: multipliers, and their programme (cones,).
-        turn: number of this programme, from 1.
+        cones, size, lifts, push, found, rooms: as in `climbed`.
+        weight: of the multipliers.
+        before: duals, and their programme (places,).
+        turn: number of this programme.
     """
     y, _, _, used = cones
     own, scale, some = rooms[3], 0.0, False
     for k in range(y.shape[0]):
         decided = used[k] and before[1][k] == turn
-        own[k, 0] = before[0][k] if decided else 0.0
+        own[k, 0] = before[0][k, 0] if decided else 0.0
         some = some or decided
         scale = max(scale, y[k, 0] if used[k] else 0.0)
     fill(found, 0.0)
-    return some and ended(cones, size, 1, before[0], scale, 1.0, found, rooms)
+    return some and ended(cones, size, lifts, push, scale, weight, found, rooms)
 
 
 @nested
@@ -212,45 +213,54 @@ def moves_part(basis: Any, parts: int, size: int) -> bool:
 
 
 @nested
-def lain(
-    place: Any, parts: int, push: Any, strength: float, before: Any, basis: Any, done: Any, q: Any, rooms: Any
-) -> Any:
-    """Find the step q of a trial: whether it is found, the least slack of the centred pose, a cone that has it.
+def lain(place: Any, parts: int, rounds: int, push: Any, before: Any, basis: Any, done: Any, q: Any, rooms: Any) -> Any:
+    """Find the step q of a trial: whether it is found, the least slack of the centred pose, a place that has it.
 
     The last returned value is the number of freedoms left open by the first round (or by the push).
 
     Args:
-        place: o_k (cones, 2), c_k (cones,), B_k (cones, 2, freedoms).
-        parts: how many of the freedoms, the first, are the part's; the others are of its bolts, and are centred as long
+        place: o_k (places, 2), c_k (places,), B_k (places, 2, unknowns).
+        parts: how many of the unknowns, the first, are the part's; the others are of its bolts, and are centred as long
             as the part is, of a part that relations hold to the end.
-        push: (freedoms,).
-        strength: largest amount of it; 0 for the centred pose.
-        before: of the cones that decided at the pose before, multipliers and in which programme, 0 for none (cones,);
-            changed to those of this pose.
-        basis, done, rooms: work arrays: freedoms (freedoms, freedoms), cones that are held (cones,), see `new_rooms`.
-        q: (freedoms,); changed.
+        rounds: of centring, at most.
+        push: goal (unknowns,); 0 for the centred pose.
+        before: of the places that decided at the pose before, duals (places, 3) and in which programme (places,): from
+            1 on in rounds of centring, from -1 on in a push and what is centred after it, 0 for none; changed to those
+            of this pose. A push that is known from there is not centred first: its slack is NaN.
+        basis, done, rooms: work arrays: freedoms (unknowns, unknowns), places that are held (places,), see `new_rooms`.
+        q: (unknowns,); changed.
     """
     seen, used, y, z, found, held, inner = rooms
     rows = place[2]
-    slack, which, pushes, turn, left = 0.0, 0, 0, 0, -1  # `pushes` is 1 for the push, 2 after it
+    slack, which, turn, left, strength, near = np.nan, 0, 0, -1, 0.0, False
+    for j in range(push.shape[0]):
+        strength = max(strength, abs(push[j]))
+    for k in range(rows.shape[0]):
+        near = near or (strength > 0.0 and before[1][k] < 0)
+    pushes = 1 if near else 0  # 1 for the push, 2 after it
     size = opened(basis, done)
     fill(q, 0.0)
     while True:
         reduced(rows, basis, size, seen)
         count = seeing(seen, used, done, size)
-        if count == 0 or (parts > 0 and not moves_part(basis, parts, size)):
+        if count == 0 or (parts > 0 and not moves_part(basis, parts, size)) or (pushes == 0 and turn == rounds):
             if pushes > 0:
                 return True, slack, which, left
             slack, which = least_slack(place, q, before)
             if strength == 0.0 or not slack > 0.0:
                 return True, slack, which, left
-            pushes, size = 1, opened(basis, done)
+            pushes, turn, size = 1, 0, opened(basis, done)
             continue
         lifts = 0 if pushes == 1 else 1
         weight = 1.0 if lifts else strength
         started(place, q, used, y, z, count, lifts, weight)
         cones, turn = (y, z, seen, used), turn + 1
-        met = lifts > 0 and again(cones, size, before, turn, found, inner)
+        own = turn if pushes == 0 else -turn
+        met = (lifts > 0 or near) and again(cones, size, lifts, weight, push, before, own, found, inner)
+        if near and not met and not lifts:  # other places decide: from the middle on
+            near, pushes, turn = False, 0, 0
+            fill(before[1], 0)
+            continue
         if not met and not reached(place, q, cones, size, lifts, weight, push, found, inner):
             return False, slack, which, left
         for j in range(rows.shape[2]):
@@ -260,8 +270,8 @@ def lain(
             used[k] = used[k] and z[k, 0] > HELD * weight
             done[k] = done[k] or used[k]
             if used[k]:
-                before[0][k], before[1][k] = z[k, 0], turn
-            elif before[1][k] == turn:
+                before[0][k, 0], before[0][k, 1], before[0][k, 2], before[1][k] = z[k, 0], z[k, 1], z[k, 2], own
+            elif before[1][k] == own:
                 before[1][k] = 0
         size = narrowed(seen, used, basis, size, held)
         if pushes == 1 or left < 0:
@@ -289,46 +299,37 @@ def new_rooms(cones: int, freedoms: int) -> Any:
 
 
 @kernel(
-    arrays="float64[:,:,::1], float64[:,::1], float64[:,:,::1], float64[::1], boolean[::1], float64[:,::1], "
-    "float64[::1], int64[::1], boolean[::1], float64[:,::1], int64[:,::1]",
-    level=FULL,
+    arrays="int64[::1], float64[:,:,::1], float64[:,::1], float64[:,:,:,::1], float64[:,::1], int64, int64, "
+    "float64[:,::1], float64[::1], int64[::1], int64[::1], boolean[::1], float64[:,:,::1], int64[:,::1]",
 )
-def room_found(
-    offsets: Any, clearances: Any, rows: Any, push: Any, asked: Any, steps: Any, slacks: Any, deciding: Any, found: Any,
-    multipliers: Any, programmes: Any,
+def rooms_solved(
+    trials: Any, offsets: Any, clearances: Any, rows: Any, goal: Any, parts: int, rounds: int, steps: Any, slacks: Any,
+    tightest: Any, left: Any, found: Any, duals: Any, programmes: Any,
 ) -> None:  # fmt: skip
-    """Steps to a part's position within its clearance.
-
-    Args:
-        offsets: o_k (cones, 2, n) [mm].
-        clearances: c_k (cones, n) [mm].
-        rows: B_k (cones, 2, freedoms).
-        push: direction of the freedoms in which it is pushed to the limit; 0 for the centred pose (freedoms,).
-        asked: for which trials (n,); the others are left.
-        steps: q (freedoms, n).
-        slacks: the least slack of the centred q (n,) [mm].
-        deciding: a cone that has that slack (n,).
-        found: whether it is found (n,).
-        multipliers, programmes: of the cones that decided at the same trial's pose before, and in which of its
-            programmes, from 1, or 0 (cones, n); changed to those of this pose.
-    """
-    cones, freedoms = rows.shape[0], rows.shape[2]
-    rooms = new_rooms(cones, freedoms)
-    basis, q, own, clear = np.empty((freedoms, freedoms)), np.empty(freedoms), np.empty((cones, 2)), np.empty(cones)
-    done = np.empty(cones, dtype=np.bool_)
-    before, strength = (np.empty(cones), np.empty(cones, dtype=np.int64)), 0.0
-    for j in range(freedoms):
-        strength = max(strength, abs(push[j]))
-    for i in range(found.shape[0]):
-        if not asked[i]:
-            continue
-        for k in range(cones):
-            own[k, 0], own[k, 1], clear[k] = offsets[k, 0, i], offsets[k, 1, i], clearances[k, i]
-            before[0][k], before[1][k] = multipliers[k, i], programmes[k, i]
-        found[i], slacks[i], deciding[i], _ = lain(
-            (own, clear, rows), freedoms, push, strength, before, basis, done, q, rooms
+    """Solve the programmes of some trials; see `Programme`."""
+    places, unknowns = rows.shape[0], rows.shape[2]
+    rooms = new_rooms(places, unknowns)
+    basis, q, own, clear = np.empty((unknowns, unknowns)), np.empty(unknowns), np.empty((places, 2)), np.empty(places)
+    here, push, done = np.empty((places, 2, unknowns)), np.empty(unknowns), np.empty(places, dtype=np.bool_)
+    before = (np.empty((places, 3)), np.empty(places, dtype=np.int64))
+    for j in range(trials.shape[0]):
+        i, r, p = trials[j], min(j, rows.shape[3] - 1), min(j, goal.shape[1] - 1)
+        for f in range(unknowns):
+            push[f] = goal[f, p]
+        for k in range(places):
+            own[k, 0], own[k, 1], clear[k] = offsets[k, 0, j], offsets[k, 1, j], clearances[k, j]
+            for c in range(2):
+                for f in range(unknowns):
+                    here[k, c, f] = rows[k, c, f, r]
+            for c in range(3):
+                before[0][k, c] = duals[k, c, i]
+            before[1][k] = programmes[k, i]
+        found[i], slacks[i], tightest[i], left[i] = lain(
+            (own, clear, here), parts, rounds, push, before, basis, done, q, rooms
         )
-        for k in range(cones):
-            multipliers[k, i], programmes[k, i] = before[0][k], before[1][k]
-        for j in range(freedoms):
-            steps[j, i] = q[j] if found[i] else np.nan
+        for k in range(places):
+            for c in range(3):
+                duals[k, c, i] = before[0][k, c]
+            programmes[k, i] = before[1][k]
+        for f in range(unknowns):
+            steps[f, i] = q[f] if found[i] else np.nan
