@@ -18,32 +18,19 @@ from numpy.typing import NDArray
 from tol3d.assembly.model.statuses import NO_BUILD, NOT_UNIQUE, OK
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
-from tol3d.assembly.torsors.centring import Cones, centred
-from tol3d.assembly.torsors.room import support_point
 from tol3d.contact.programme import Programme
 from tol3d.study.draws import drawn
 
 Array = NDArray[np.float64]
 
 
-def exact(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
-    """The step and its centred slack by the exact method's kernel; the step is found."""
+def solved(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
+    """The step and its centred slack by the solver of both methods; the step is found."""
     programme = Programme.of(len(rows), rows.shape[2], 1)
     goal = None if push is None else push[:, None]
     programme.solve(offsets[:, :, None], clearances[:, None], rows[..., None], goal=goal)
     assert programme.found[0]
     return programme.steps[:, 0], float(programme.slack[0])
-
-
-def by_torsors(offsets: Array, clearances: Array, rows: Array, push: Array | None = None) -> tuple[Array, float]:
-    """The same by the analytic method's."""
-    cones = Cones(offsets[:, :, None], clearances[:, None], rows)
-    q = centred(cones)
-    slack = float(cones.slack(q)[0])
-    return (q if push is None else support_point(cones, q, push / np.linalg.norm(push)))[:, 0], slack
-
-
-SOLVERS = {"exact": exact, "analytic": by_torsors}
 
 
 def tied(rng: np.random.Generator) -> tuple[Array, Array, Array]:
@@ -78,14 +65,13 @@ def tied(rng: np.random.Generator) -> tuple[Array, Array, Array]:
 
 
 @pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 92), marks=pytest.mark.slow)])
-@pytest.mark.parametrize("method", list(SOLVERS))
-def test_tied_patterns_have_the_slack_and_the_reach_of_cutting_planes(method: str, seeds: range) -> None:
+def test_tied_patterns_have_the_slack_and_the_reach_of_cutting_planes(seeds: range) -> None:
     """Slack to 1e-9 mm and, of a room, how far it goes along a freedom or any direction."""
     lost = 0
     for seed in seeds:
         rng = np.random.default_rng(seed)
         place = tied(rng)
-        slack = SOLVERS[method](*place)[1]
+        slack = solved(*place)[1]
         expected = cut(*place)
         lost += bool(np.isnan(expected))
         assert not abs(slack - expected) > 1e-9, seed
@@ -93,7 +79,7 @@ def test_tied_patterns_have_the_slack_and_the_reach_of_cutting_planes(method: st
         if slack > 0.0 and np.linalg.matrix_rank(place[2].reshape(-1, size)) == size:
             way = int(rng.integers(size))
             push: Array = np.asarray(rng.normal(size=size) if seed % 2 else np.eye(size)[way])
-            q, _ = SOLVERS[method](*place, push)
+            q, _ = solved(*place, push)
             assert (place[1] - np.hypot(*(place[0] + place[2] @ q).T)).min() > -1e-11, seed
             expected = cut(*place, push)
             lost += bool(np.isnan(expected))
@@ -101,8 +87,7 @@ def test_tied_patterns_have_the_slack_and_the_reach_of_cutting_planes(method: st
     assert lost <= len(seeds) / 6  # oracles, of two a seed
 
 
-@pytest.mark.parametrize("method", list(SOLVERS))
-def test_a_pin_goes_to_the_end_of_its_lens(method: str) -> None:
+def test_a_pin_goes_to_the_end_of_its_lens() -> None:
     """Both ends of a pin in a hole make a lens of two discs; its farthest point is of a disc or a corner."""
     rng = np.random.default_rng(2)
     corners = 0
@@ -115,7 +100,7 @@ def test_a_pin_goes_to_the_end_of_its_lens(method: str) -> None:
         expected = inside[0] if inside else max((corner, -corner), key=lambda own: float(own @ along))
         corners += not inside
         rows = np.repeat(np.eye(2)[None], 2, axis=0)
-        q, slack = SOLVERS[method](np.array([apart, -apart]), np.full(2, radius), rows, along)
+        q, slack = solved(np.array([apart, -apart]), np.full(2, radius), rows, along)
         assert slack == pytest.approx(radius - apart[0], abs=1e-12)
         np.testing.assert_allclose(q, expected, rtol=0, atol=1e-9)
     assert 3 < corners < 19

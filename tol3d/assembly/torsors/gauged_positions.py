@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
-from tol3d.assembly.torsors.centring import Cones
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.later_datums import SPARE, LaterDatums, least_growth
+from tol3d.assembly.torsors.room import changes
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
@@ -44,7 +44,7 @@ class LeastOnGauges:
         offsets, rows = np.concatenate([own, its]).reshape(ends + places, 2, -1), self.rows
         if self.later is not None:
             steps = self.later.nearest(asked, offsets[ends:], room, rows[ends:])
-            offsets, rows = Cones(offsets, room, rows).at(steps), rows @ self.later.left
+            offsets, rows = offsets + changes(rows, steps), rows @ self.later.left
             room = room + len(self.later.asks) * SPARE
         return np.asarray(2.0 * least_growth(offsets, np.concatenate([radii, room]), rows, ends)[0][None])
 

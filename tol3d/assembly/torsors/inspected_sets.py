@@ -7,9 +7,9 @@ from typing import Final, assert_never
 import numpy as np
 
 from tol3d.assembly.model import Axis, Cone, Measured, Plane, Point, RoundPlane
-from tol3d.assembly.torsors.centring import Cones, largest_slack
 from tol3d.assembly.torsors.columns import without_rounding
 from tol3d.assembly.torsors.measures import clipped
+from tol3d.assembly.torsors.room import Cones
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import cross_matrix, height_at, shift_at
 from tol3d.assembly.torsors.world import World
@@ -46,10 +46,7 @@ class LeastOverPlaces:
         if not self.rows.shape[2]:
             lengths = np.sqrt(sum(offsets[:, k] ** 2 for k in range(self.size)))
             return np.asarray(2.0 * (lengths + added).max(axis=0)[None])
-        rows, closed = self.rows[..., None] * np.ones(trials), np.zeros((self.rows.shape[2],) * 2 + (trials,))
-        cones = Cones(offsets, -added, self.rows)
-        found, _ = largest_slack(offsets, -added, rows, np.ones((places, trials), dtype=bool), closed)
-        return np.asarray(-2.0 * cones.slack(found)[None])
+        return np.asarray(-2.0 * Cones(offsets, -added, self.rows).solved().slack[None])
 
 
 def inspected_set(measured: Measured, world: World) -> Array:

@@ -11,10 +11,10 @@ from typing import Final
 import numpy as np
 
 from tol3d.assembly.model import Axis, Datum, Feature, Plane, RoundPlane, Slot
-from tol3d.assembly.torsors.centring import Cones, largest_slack
-from tol3d.assembly.torsors.room import Room
+from tol3d.assembly.torsors.room import Room, changes, least_slack
 from tol3d.assembly.torsors.terms import Form
-from tol3d.assembly.torsors.torsor import height_at, ordered_product, ordered_sum, shift_at, turn_about
+from tol3d.assembly.torsors.torsor import height_at, ordered_product, shift_at, turn_about
+from tol3d.contact.programme import Programme
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
@@ -42,26 +42,22 @@ def least_growth(offsets: Array, clearances: Array, rows: Array, ends: int) -> t
         rows: their change (places, 2, freedoms).
         ends: number of the first.
     """
-    count, trials = rows.shape[2], offsets.shape[2]
-    radii, clearances = clearances[:ends], clearances.copy()
-    grown, steps, going = (-radii).max(axis=0), np.zeros((count, trials)), np.arange(trials if count else 0)
-    closed = np.zeros((count, count, trials))
+    trials, seen = offsets.shape[2], np.abs(rows).max(axis=(1, 2), initial=0.0) > SEEN
+    radii, clearances, own = clearances[:ends], clearances[seen], int(seen[:ends].sum())
+    grown, going = (-radii).max(axis=0), np.arange(trials if seen.any() else 0)
+    programme = Programme.of(int(seen.sum()), rows.shape[2], trials)
     for _ in range(STEPS):
         if not len(going):
             break
-        clearances[:ends] = radii + grown
-        now = Cones(offsets[:, :, going], clearances[:, going], rows)
-        repeated = rows[..., None] * np.ones(len(going))
-        counts = np.ones(now.clearances.shape, dtype=bool)
-        found, multipliers = largest_slack(now.offsets, now.clearances, repeated, counts, closed[..., going])
-        steps[:, going] = found
-        share = multipliers[:ends].sum(axis=0)
-        step = np.where(share > FREE, np.maximum(-now.slack(found), 0.0) / np.where(share > FREE, share, 1.0), 0.0)
+        limits = clearances[:, going]
+        limits[:own] += grown[going]
+        programme.solve(offsets[seen][..., going], limits, rows[seen][..., None], trials=going, rounds=1)
+        share, lacks = programme.multipliers[:own, going].sum(axis=0), -programme.slack[going]
+        step = np.where((share > FREE) & (lacks > 0.0), lacks / np.where(share > FREE, share, 1.0), 0.0)
         grown[going] += step
         going = going[step > SHORT]
-    at = Cones(offsets, clearances, rows).at(steps)[:ends] if count else offsets[:ends]
-    far = (np.sqrt(at[:, 0] ** 2 + at[:, 1] ** 2) - radii).max(axis=0)
-    return np.maximum(grown, far), steps
+    at = (offsets + changes(rows, programme.steps))[:ends]
+    return np.maximum(grown, -least_slack(at, radii)), programme.steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +84,7 @@ class Ask:
     def offsets(self, read: Array, steps: Array) -> Array:
         """Distances that it lacks after steps (freedoms, trials), (places, 2, trials) [mm]."""
         places = len(self.rows)
-        found = read[: 2 * places].reshape(places, 2, -1) + _times(self.rows, steps)
+        found = read[: 2 * places].reshape(places, 2, -1) + changes(self.rows, steps)
         if len(self.corners):
             tops = read[2 * places :] + ordered_product(self.corners, steps)
             found[0, 0] += np.hypot(tops[0], tops[1]) if self.is_round else np.abs(tops).max(axis=0)
@@ -123,15 +119,11 @@ class LaterDatums:
         for k, ask in enumerate(self.asks):
             own = ask.offsets(read[first : first + len(ask.forms)], steps)
             first += len(ask.forms)
-            every = np.concatenate([own, offsets + _times(rows, steps)])
+            every = np.concatenate([own, offsets + changes(rows, steps)])
             room = np.concatenate([np.zeros((len(own), read.shape[1])), clearances + k * SPARE])
             some = least_growth(every, room, np.concatenate([ask.rows, rows]) @ ask.open, len(own))[1]
             steps = steps + ordered_product(ask.open @ ask.held, some)
         return steps
-
-
-def _times(rows: Array, steps: Array) -> Array:
-    return ordered_sum(rows[:, :, i, None] * steps[i] for i in range(len(steps)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,8 +155,8 @@ class RoomAfter:
         rows, left, places = self.room.rows, self.later.left, len(self.room.rows)
         offsets, clearances = its[: 2 * places].reshape(places, 2, -1), its[2 * places : 3 * places]
         steps = self.later.nearest(own, offsets, clearances, rows)
-        offsets = offsets + _times(rows, steps)
-        slack = Cones(offsets, clearances, rows).slack(np.zeros(steps.shape))
+        offsets = offsets + changes(rows, steps)
+        slack = least_slack(offsets, clearances)
         if left.shape[1]:
             some = replace(self.room, rows=rows @ left, directions=left.T @ self.room.directions, push=left[0] * 0.0)
             found = some.values(np.concatenate([offsets.reshape(2 * places, -1), its[2 * places :]]))

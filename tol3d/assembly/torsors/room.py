@@ -1,48 +1,83 @@
-"""Position of a body with play within its clearance, as a term: a part on its pins, or gauges of a datum frame."""
+"""Position of a body with play within its clearance, as a term: a part on its pins, or gauges of a datum frame.
+
+A place k asks |b_k + B_k q| <= c_k - s. The largest s of freedoms q, the farthest q along a direction, and what they
+leave open are convex programmes, see contact/.
+"""
 
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.model import Floating
-from tol3d.assembly.torsors.centring import DECIDES, Cones, centred, largest_slack, narrowed, refined
-from tol3d.assembly.torsors.interior_points import climbed
-from tol3d.assembly.torsors.quick_centring import quickly_centred
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import ordered_product, ordered_sum
+from tol3d.contact.programme import Programme
 from tol3d.numerics.arrays import Array
 
 HALVINGS: Final = 55
 """Halvings of the height of a segment, 1 at first: rounding is reached."""
-DOUBLINGS: Final = 40
-NEWTONS: Final = 30
-"""Steps to the limit of a bolt's fit, 3 to 6 in practice."""
-BEYOND: Final = 1e-13
-"""Slack [mm] of a bolt that is none."""
 SOME: Final = 1e-4
 """Share of a shift or turn of length 1 that freedoms let it have, and counts as some."""
 NONE: Final = 1e-9
 """Change of an offset per unit freedom that counts as none."""
 
 
-def support_point(cones: Cones, q: Array, push: Array) -> Array:
-    """Pushed to the limit along a direction of the freedoms (freedoms,); the remaining freedoms are centred."""
-    trials = q.shape[1]
-    rows = cones.rows[..., None] * np.ones(trials)
-    counts = np.repeat((np.abs(cones.rows).max(axis=(1, 2)) > NONE)[:, None], trials, axis=1)
-    primal = np.concatenate([cones.clearances[:, None], cones.at(q)], axis=1)
-    dual = np.zeros(primal.shape)
-    dual[:, 0] = 1.0 / counts.sum(axis=0)
-    closed = np.zeros((len(q), len(q), trials))
-    step, multipliers, goal = np.empty(q.shape), np.empty(counts.shape), push[:, None] * np.ones(trials)
-    climbed(primal, dual, rows, counts, closed, goal, 0, step, multipliers)
-    near = np.ones(trials, dtype=bool)
-    offsets, clearances = np.ascontiguousarray(cones.at(q)), np.ascontiguousarray(cones.clearances)
-    quickly_centred(offsets, clearances, rows, counts, closed, goal, 0, step, multipliers, near)
-    decides = counts & (multipliers > DECIDES)
-    everything = np.eye(len(q))[:, :, None] * np.ones(trials)
-    return refined(cones, q + step, narrowed(everything, rows, decides), decides)
+@dataclass(frozen=True, eq=False)
+class Cones:
+    """Limits of the freedoms, in some trials.
+
+    Args:
+        offsets: b (places, 2, trials) [mm].
+        clearances: c (places, trials) [mm].
+        rows: B (places, 2, freedoms), of all trials.
+        bolt_of: bolt held at each place, -1 for none; empty if there are no bolts. The last freedoms are four of each
+            bolt, centred as long as the others are.
+    """
+
+    offsets: Array
+    clearances: Array
+    rows: Array
+    bolt_of: tuple[int, ...] = ()
+
+    @property
+    def bolts(self) -> int:
+        """Their number."""
+        return max(self.bolt_of, default=-1) + 1
+
+    @property
+    def parts(self) -> int:
+        """Number of the part's own freedoms."""
+        return int(self.rows.shape[2]) - 4 * self.bolts
+
+    def of(self, trials: NDArray[np.bool_]) -> "Cones":
+        """Those of some of the trials."""
+        return Cones(self.offsets[:, :, trials], self.clearances[:, trials], self.rows, self.bolt_of)
+
+    def at(self, q: Array) -> Array:
+        """Offsets (places, 2, trials) after freedoms (freedoms, trials)."""
+        return self.offsets + changes(self.rows, q)
+
+    def solved(self, push: Array | None = None) -> Programme:
+        """Freedoms of the largest least slack, then of the largest least of the rest, and so on.
+
+        Pushed where there is slack: as far along a direction of the freedoms (freedoms,) as it goes, the rest centred.
+        """
+        places, _, freedoms = self.rows.shape
+        programme, goal = Programme.of(places, freedoms, self.offsets.shape[2]), None if push is None else push[:, None]
+        programme.solve(self.offsets, self.clearances, self.rows[..., None], goal=goal, parts=self.parts)
+        return programme
+
+
+def changes(rows: Array, steps: Array) -> Array:
+    """Change of offsets (places, 2, trials) by rows (places, 2, freedoms) and steps (freedoms, trials)."""
+    return np.stack([ordered_product(rows[:, r], steps) for r in (0, 1)], axis=1)
+
+
+def least_slack(offsets: Array, clearances: Array) -> Array:
+    """That of offsets (places, 2, trials) in clearances (places, trials), in each trial [mm]."""
+    return np.asarray((clearances - np.sqrt(offsets[:, 0] ** 2 + offsets[:, 1] ** 2)).min(axis=0))
 
 
 def anywhere(cones: Cones, q: Array, floating: Floating, directions: Array, drawn: Array) -> Array:
@@ -59,7 +94,7 @@ def anywhere(cones: Cones, q: Array, floating: Floating, directions: Array, draw
     order = [k for k in range(6) if _rank(directions[:, : k + 1]) > _rank(directions[:, :k])]
     basis, corner = np.linalg.qr(directions[:, order])
     axes = basis * np.sign(np.diagonal(corner))
-    uniforms = floating.sweeps(drawn, order, (cones.freedoms - parts) // 4)
+    uniforms = floating.sweeps(drawn, order, cones.bolts)
     stated = np.isnan(uniforms[0])
     gone = ordered_product(axes, 2.0 * uniforms[-parts:] - 1.0)
     if not stated.all():
@@ -112,18 +147,13 @@ def _swept(cones: Cones, at: Array, axes: Array, uniforms: Array) -> Array:
         along = ways[k % parts]
         back, ahead = _way(cones, at, -along), _way(cones, at, along)
         step = (share * (back + ahead) - back) * along
-        gone, at = gone + step, at + _change(cones, step)
+        gone, at = gone + step, at + changes(rows, step)
     return gone
-
-
-def _change(cones: Cones, steps: Array) -> Array:
-    """Change of offsets (places, 2, trials) by steps of the part (freedoms, trials)."""
-    return np.stack([ordered_product(cones.rows[:, r, : cones.parts], steps) for r in (0, 1)], axis=1)
 
 
 def _way(cones: Cones, at: Array, along: Array) -> Array:
     """Distance from offsets along directions (freedoms, trials) up to where the room ends (trials,)."""
-    gone = _change(cones, along)
+    gone = changes(cones.rows[:, :, : cones.parts], along)
     held = np.array(cones.bolt_of or (-1,) * len(at)) < 0
     # the larger root of |at + t gone|^2 = clearance^2
     a, half_b, c = (
@@ -132,46 +162,26 @@ def _way(cones: Cones, at: Array, along: Array) -> Array:
     bent = a > (NONE * ordered_sum(along**2) ** 0.5) ** 2
     root = np.sqrt(np.maximum(half_b**2 - a * (c - cones.clearances**2), 0.0))
     way = np.where(bent, (root - half_b) / np.where(bent, a, 1.0), np.inf)[held].min(axis=0, initial=np.inf)
-    for bolt in range((cones.freedoms - cones.parts) // 4):
+    for bolt in range(cones.bolts):
         way = np.minimum(way, _bolt_way(cones, bolt, at, gone))
-    return np.where(np.isfinite(way), np.maximum(way, 0.0), 0.0)
+    return np.where(np.isinf(way), 0.0, np.maximum(way, 0.0))
 
 
 def _bolt_way(cones: Cones, bolt: int, at: Array, gone: Array) -> Array:
     """Distance along rays up to which a bolt fits both its holes (trials,), inf if nothing stops it.
 
-    The largest slack over the bolt's own four freedoms is concave in that distance and positive at its start: the
-    distance is doubled until there is no slack, then refined by Newton steps.
+    A programme of that distance and of the bolt's own four freedoms.
     """
     own = np.flatnonzero(np.array(cones.bolt_of) == bolt)
-    columns = slice(cones.parts + 4 * bolt, cones.parts + 4 * bolt + 4)
-    rows = cones.rows[own][:, :, columns, None] * np.ones(at.shape[2])
-    at, gone, clearances = at[own], gone[own], cones.clearances[own]
-    counts, closed = np.ones(clearances.shape, dtype=bool), np.zeros((4, 4, at.shape[2]))
-
-    def slack(way: Array) -> tuple[Array, Array]:
-        offsets = at + way * gone
-        step, multipliers = largest_slack(offsets, clearances, rows, counts, closed)
-        ends = offsets + ordered_sum(rows[:, :, k] * step[k] for k in range(4))
-        lengths = np.sqrt(ends[:, 0] ** 2 + ends[:, 1] ** 2)
-        along = (ends * gone).sum(axis=1) / np.where(lengths > 0.0, lengths, 1.0)
-        return (clearances - lengths).min(axis=0), -(multipliers * along).sum(axis=0)
-
-    speed = np.sqrt((gone**2).sum(axis=1)).max(axis=0)
+    first, trials = cones.parts + 4 * bolt, at.shape[2]
+    speed = np.sqrt((gone[own] ** 2).sum(axis=1)).max(axis=0)
     moves = speed > NONE
-    way = np.where(moves, 2.0 * clearances.max(axis=0) / np.where(moves, speed, 1.0), 0.0)
-    for _ in range(DOUBLINGS):
-        left, change = slack(way)
-        if not (short := moves & (left > 0.0)).any():
-            break
-        way = np.where(short, 2.0 * way, way)
-    for _ in range(NEWTONS):
-        beyond = moves & (left < -BEYOND) & (change < 0.0)
-        if not beyond.any():
-            break
-        way = np.where(beyond, way - left / np.where(beyond, change, 1.0), way)
-        left, change = slack(way)
-    return np.where(moves, way, np.inf)
+    speed = np.where(moves, speed, 1.0)
+    its = np.repeat(cones.rows[own][:, :, first : first + 4, None], trials, axis=3)
+    rows = np.concatenate([gone[own][:, :, None] / speed, its], axis=2)
+    programme, ahead = Programme.of(len(own), 5, trials), np.eye(5)[:, :1]
+    programme.solve(at[own], cones.clearances[own], rows, goal=ahead, parts=1, asked=moves, rounds=1)
+    return np.where(moves, np.where(programme.slack <= 0.0, 0.0, programme.steps[0] / speed), np.inf)
 
 
 def by_pairs(cones: Cones, q: Array, drawn: Array) -> Array:
@@ -264,21 +274,16 @@ class Room:
 
     def values(self, read: Array) -> Array:
         """(freedoms + 1, trials) [mm]."""
-        places = len(self.rows)
+        offsets, clearances, drawn = np.split(read, np.cumsum([2 * len(self.rows), len(self.rows)]))
+        cones = Cones(offsets.reshape(-1, 2, read.shape[1]), clearances, self.rows, self.bolt_of)
         if not self.rows.shape[2]:  # held by relations: at its one pose
-            offsets = read[: 2 * places].reshape(places, 2, -1)
-            lengths = np.hypot(offsets[:, 0], offsets[:, 1])
-            return np.asarray((read[2 * places : 3 * places] - lengths).min(axis=0)[None])
-        cones = Cones(read[: 2 * places].reshape(places, 2, -1), read[2 * places : 3 * places], self.rows, self.bolt_of)
-        q = centred(cones)
-        slack = cones.slack(q)
-        inside = slack > 0.0
-        if inside.any() and self.floating.kind != "centred":
+            return least_slack(cones.offsets, clearances)[None]
+        programme = cones.solved(self.push if self.floating.kind == "toward" else None)
+        q, inside = programme.steps, programme.slack > 0.0
+        if inside.any() and self.floating.kind == "random":
             own = cones.of(inside)
-            if self.floating.kind == "toward":
-                q[:, inside] = support_point(own, q[:, inside], self.push)
-            elif self.floating.by_pairs:
-                q[:, inside] = by_pairs(own, q[:, inside], read[3 * places :, inside])
+            if self.floating.by_pairs:
+                q[:, inside] = by_pairs(own, q[:, inside], drawn[:, inside])
             else:
-                q[:, inside] = anywhere(own, q[:, inside], self.floating, self.directions, read[3 * places :, inside])
-        return np.concatenate([q[: len(self.directions)], slack[None]])
+                q[:, inside] = anywhere(own, q[:, inside], self.floating, self.directions, drawn[:, inside])
+        return np.concatenate([q[: len(self.directions)], programme.slack[None]])
