@@ -181,8 +181,7 @@ def _solved(made: Seated, going: _Going, nominal: bool, count: int, programme: P
     steps = np.where(found, np.take(programme.steps, trials, axis=-1), 0.0)
     size = np.abs(steps[: room.parts]).max(axis=0, initial=0.0)
     ends = size * np.minimum(1.0, size / going.previous) <= MET
-    if count == 0 and len(steps) > room.parts:
-        ends[:] = False  # bolts may still move
+    ends &= np.abs(steps[room.parts :]).max(axis=0, initial=0.0) < LOST  # bolts may still move
     pose = room.moved(going.pose, tangents, steps)
     _note(made, trials, pose, place, found & (ends | ((count + 1 == ROUNDS) & (size < LOST))))
     after = _Going(trials, room, pose, tangents, np.maximum(size, NONE), going.gone)
