@@ -295,7 +295,7 @@ class Response:
             return {own.name: each for own, each in zip(measures, numbers, strict=True)}
 
         redrawn = [_Redrawn(own, self.draws[own.name]) for own in self.contributors]
-        found = ranges(redrawn, self.slices, self.mean[None], self.measures, values)
+        found = ranges(redrawn, self.slices, self.mean[None], self.measures, values, self.simulation.system.cost)
         unknown = np.full(len(redrawn), np.nan)
         return np.array([found.get(own.name, unknown) for own in self.measures])
 

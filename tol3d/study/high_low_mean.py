@@ -11,7 +11,7 @@ move a measure most have theirs built, the others have what they do to first ord
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -33,7 +33,12 @@ MOST_ENDS: Final = 2**14
 MOST_EXACT: Final = 15
 """Contributors of a measure whose ends are built where all would be more than that."""
 TOGETHER: Final = 4096
-"""Builds for all measures at once; more are made for each measure those that it asks for."""
+"""Builds for all measures at once at most; else each measure has those made that it asks for."""
+CALL: Final = 20_000
+"""Contacts that take as long as what a method does for any number of builds."""
+
+Cost = Callable[[Sequence[Measure]], int]
+"""Contacts per build that measures ask for; see System.cost."""
 
 
 def high_low_mean_ranges(system: System, measures: Sequence[Measure], values: Values) -> Mapping[str, Ranges]:
@@ -80,7 +85,7 @@ def _named_ranges(
 ) -> dict[str, Ranges]:
     """Ranges of measures that share the mean build and the directions that turn at random."""
     mean = mean_deviations(system, measures[0].positions)
-    found = _ranges_of(_alone(system, turning, mean), mean, measures, values)
+    found = _ranges_of(_alone(system, turning, mean), mean, measures, values, system.cost)
     names = [contributor.name for contributor in system.contributors]
     unknown: Ranges = dict.fromkeys(names)  # where a build beside the mean cannot be assembled
     return {
@@ -92,7 +97,12 @@ def _named_ranges(
 
 
 def ranges(
-    contributors: Sequence[Named], slices: Mapping[str, slice], mean: Array, measures: Sequence[Measure], values: Values
+    contributors: Sequence[Named],
+    slices: Mapping[str, slice],
+    mean: Array,
+    measures: Sequence[Measure],
+    values: Values,
+    cost: Cost,
 ) -> Mapping[str, Array]:
     """Range of measures over each contributor by itself: largest less smallest of both ends and the mean build.
 
@@ -102,21 +112,22 @@ def ranges(
         mean: deviations of the mean build (1, components).
         measures: one number of each.
         values: see `high_low_mean_ranges`.
+        cost: of measures.
 
     Returns:
         By measure (contributors,) in its unit, nan where a build fails; no entry where the mean build fails.
     """
     alone = [_Alone(own, slices[own.name], turning=False, mean=mean) for own in contributors]
-    return _ranges_of(alone, mean, measures, values)
+    return _ranges_of(alone, mean, measures, values, cost)
 
 
 def _ranges_of(
-    alone: Sequence["_Alone"], mean: Array, measures: Sequence[Measure], values: Values
+    alone: Sequence["_Alone"], mean: Array, measures: Sequence[Measure], values: Values, cost: Cost
 ) -> Mapping[str, Array]:
     """The range of each contributor (contributors,) by the measures whose mean build seats."""
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
-    found = _Ranges({own.contributor.name: place for place, own in enumerate(alone)}, seated, middle, values)
+    found = _Ranges({own.contributor.name: place for place, own in enumerate(alone)}, seated, middle, values, cost)
     asking = [own for own in alone if own.plain_ends is None]
     if seated:
         found.build([(own, ends) for own in alone if (ends := own.plain_ends) is not None], mean)
@@ -139,6 +150,7 @@ class _Ranges:
         seated: the measures whose mean build seats.
         middle: values of the measures there.
         values: measures of deviations.
+        cost: of measures.
         by_measure: the range of each contributor (contributors,), nan where it is not known.
     """
 
@@ -146,6 +158,7 @@ class _Ranges:
     seated: Sequence[Measure]
     middle: Mapping[str, float]
     values: Values
+    cost: Cost
     by_measure: dict[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -193,7 +206,7 @@ class _Ranges:
 
     def _answer(self, asking: Sequence["_Alone"]) -> None:
         while any(own.waiting for own in asking):
-            _answer(asking, self.seated, self.values)
+            _answer(asking, self.seated, self.values, self.cost)
 
     def _take(self, own: "_Alone", name: str) -> None:
         """Take the range between ends that were built."""
@@ -319,22 +332,24 @@ def _refuse_to_read(rows: Array) -> Array:
 _Wanted = tuple[_Alone, bytes, Array]
 
 
-def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values) -> None:
+def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values, cost: Cost) -> None:
     """Build what contributors wait for, together what the same measures ask, and let those go on that read it."""
+    known = {measure.name: measure for measure in measures}
     groups: dict[tuple[str, ...], list[_Wanted]] = {}
     for own in asked:
         for key, (row, names) in own.waiting.items():
             groups.setdefault(tuple(dict.fromkeys(names)), []).append((own, key, row))
         own.waiting = {}
     every = [each for wanted in groups.values() for each in wanted]
-    if len(groups) > 1 and len(every) <= TOGETHER:
-        groups = {tuple(own.name for own in measures): every}
-    elif len(groups) > len(measures):  # ends lie elsewhere for each measure
+    if len(groups) > len(measures):  # ends lie elsewhere for each measure
         groups = {
             (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
             for own in measures
         }
-    known = {measure.name: measure for measure in measures}
+    if len(groups) > 1 and len(every) <= TOGETHER:
+        apart = sum(CALL + len(wanted) * cost([known[name] for name in names]) for names, wanted in groups.items())
+        if len(every) * cost(measures) <= apart:
+            groups = {tuple(known): every}
     for asking, wanted in groups.items():
         rows = np.repeat(asked[0].mean, len(wanted), axis=0)
         for k, (own, _, row) in enumerate(wanted):
