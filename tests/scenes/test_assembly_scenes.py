@@ -21,10 +21,12 @@ LONG = (
     "hole_and_slot",
     "housed_gears",
     "lid_by_a_wall",
-    "robot_arm",
 )
-EACH = [pytest.param(own, marks=pytest.mark.slow) if own in LONG else own for own in SCENES]
-"""Those that take seconds, and those whose numbers tests of their own work out by hand, are slow ones here."""
+"""Those that take seconds, and those whose numbers tests of their own work out by hand."""
+DEAR = "robot_arm"
+"""A run takes a minute and a half; tests/machine/test_robot_arm.py works its numbers out in seconds."""
+MARKS = {DEAR: pytest.mark.nightly, **dict.fromkeys(LONG, pytest.mark.slow)}
+EACH = [pytest.param(own, marks=MARKS[own]) if own in MARKS else own for own in SCENES]
 SEEN = 1e-5  # um or arcmin: another machine's bits, of lengths up to 100 mm
 ARCMIN = 10800 / math.pi
 
