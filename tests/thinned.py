@@ -26,7 +26,7 @@ def sort_into_sets(items: Iterable[pytest.Item]) -> None:
     seen: Counter[tuple[str, str]] = Counter()
     for item in items:
         test = item.nodeid.partition("[")[0]
-        if test in SLOW and not item.get_closest_marker("slow"):
+        if test in SLOW and not (item.get_closest_marker("slow") or item.get_closest_marker("nightly")):
             seen["slow", test] += 1
             if _left_out(seen["slow", test] - 1, SLOW[test]):
                 item.add_marker(pytest.mark.slow)
