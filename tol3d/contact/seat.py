@@ -38,23 +38,27 @@ class Place(NamedTuple):
 
 
 class Room(Protocol):
-    """Places in some trials, and motions that keep the part's relations.
-
-    Attributes:
-        parts: number of the first unknowns that are the part's.
-        reach: length over which a turn counts [mm].
-        steps: nominal motions, turn times reach and shift (6, parts, 1).
-        rows: nominal change of offsets by the unknowns (places, 2, unknowns, 1).
-    """
+    """Places in some trials, and motions that keep the part's relations."""
 
     @property
-    def parts(self) -> int: ...
+    def parts(self) -> int:
+        """Number of the first unknowns that are the part's."""
+        ...
+
     @property
-    def reach(self) -> float: ...
+    def reach(self) -> float:
+        """Length over which a turn counts [mm]."""
+        ...
+
     @property
-    def steps(self) -> Array: ...
+    def steps(self) -> Array:
+        """Nominal motions, turn times reach and shift (6, parts, 1)."""
+        ...
+
     @property
-    def rows(self) -> Array: ...
+    def rows(self) -> Array:
+        """Nominal change of offsets by the unknowns (places, 2, unknowns, 1)."""
+        ...
 
     def of(self, trials: Places) -> Self:
         """The same in some of its trials."""
