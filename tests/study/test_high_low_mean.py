@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from formulas import formula
 from numpy.typing import NDArray
+from places import SCENES
 
 from tol3d import Overrides, Scene, load_scene, run_scene
 from tol3d.distributions.uniform import Uniform
@@ -198,3 +199,23 @@ def test_ranges_are_counted_from_the_mean_build_wherever_that_is() -> None:
     squares = np.array([1.0, 36.0, 576.0])
     shares = dict(zip(("x0", "x1", "x2"), 100 * squares / squares.sum(), strict=True))
     assert high_low_mean_percents(found) == pytest.approx(shares, rel=1e-9)
+
+
+def test_ranges_are_the_same_whether_measures_are_built_for_apart_or_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Zones act along a direction of each measure's own; values read of no measure that did not ask where apart."""
+    simulation = simulation_of(load_scene(SCENES / "cover_on_base.yaml"))
+    system, method = simulation.system, method_of(simulation, materials_of(simulation))
+    found, read = [], []
+    for call in (10**12, -(10**12)):
+        asked: list[int] = []
+
+        def values(rows: Array, measures: Sequence[Measure], asked: list[int] = asked) -> Mapping[str, Array]:
+            asked.append(len(rows) * len(measures))
+            return Evaluation(system, method).values(rows, measures)
+
+        monkeypatch.setattr(high_low_mean, "CALL", call)
+        found.append(high_low_mean_ranges(system, system.measures, values))
+        read.append(sum(asked))
+    together, apart = found
+    assert apart == together
+    assert read[1] < read[0]

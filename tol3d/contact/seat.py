@@ -26,7 +26,7 @@ NONE: Final = 1e-300
 """Step before the first."""
 
 Pose = tuple[Array, ...]
-"""Where a part and its bolts are, in arrays with the trial last."""
+"""Poses of a part and its bolts, in arrays with the trial last."""
 
 
 class Place(NamedTuple):

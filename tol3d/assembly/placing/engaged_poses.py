@@ -129,7 +129,7 @@ class EngagedRoom:
         return turn, shift, bolts + steps[self.parts :].reshape(bolts.shape)
 
     def kept_at(self, turn: Array, shift: Array) -> Array:
-        """What relations keep, n . (R p + s t), at a pose (kept, n)."""
+        """Quantities that relations keep, n . (R p + s t), at a pose (kept, n)."""
         kept, found = self.kept, np.empty((len(self.kept.shifts), shift.shape[1]))
         for own, vector, normal, by_shift in zip(found, kept.vectors, kept.normals, kept.shifts, strict=True):
             own[:] = dot(normal, rotated(turn, vector) + by_shift * shift)
