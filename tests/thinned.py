@@ -12,8 +12,14 @@ SETS: Mapping[str, Any] = tomllib.loads((Path(__file__).parent / "sets.toml").re
 SLOW: Mapping[str, int] = SETS["slow"]
 """Tests that the default leaves out (0), or of which it runs the first case and each nth after it."""
 
-NIGHTLY: Mapping[str, dict[str, Any]] = {entry["test"]: entry for entry in SETS["nightly"]}
-"""Tests that CI leaves out, or of whose slow cases it runs the first, each nth after it (`every`) and some more."""
+CI: Mapping[str, int] = SETS["ci"]
+"""Tests of whose slow cases CI runs the first and each nth after it; the others are nightly."""
+
+KEPT: Mapping[str, list[str]] = SETS["kept"]
+"""Cases of these, by their names in brackets, that CI runs besides."""
+
+NIGHTLY: Mapping[str, dict[str, str]] = {entry["test"]: entry for entry in SETS["nightly"]}
+"""Tests that are nightly whole."""
 
 
 def thinned(cases: Iterable[Any], every: int) -> list[Any]:
@@ -30,17 +36,12 @@ def sort_into_sets(items: Iterable[pytest.Item]) -> None:
             seen["slow", test] += 1
             if _left_out(seen["slow", test] - 1, SLOW[test]):
                 item.add_marker(pytest.mark.slow)
-        if test in NIGHTLY and item.get_closest_marker("slow"):
+        if (test in CI or test in NIGHTLY) and item.get_closest_marker("slow"):
             seen["nightly", test] += 1
-            if _left_out(seen["nightly", test] - 1, NIGHTLY[test].get("every", 0)) and not _is_kept(item):
+            case = item.nodeid.removeprefix(test).strip("[]")
+            if _left_out(seen["nightly", test] - 1, CI.get(test, 0)) and case not in KEPT.get(test, ()):
                 item.own_markers = [mark for mark in item.own_markers if mark.name != "slow"]
                 item.add_marker(pytest.mark.nightly)
-
-
-def _is_kept(item: pytest.Item) -> bool:
-    """True for a case that CI keeps besides, by its name in brackets."""
-    test, _, case = item.nodeid.partition("[")
-    return case.removesuffix("]") in NIGHTLY[test].get("cases", ())
 
 
 def _left_out(place: int, every: int) -> bool:
