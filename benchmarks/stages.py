@@ -1,20 +1,26 @@
 """Cost of a trial of an exact study, stage by stage, on one core.
 
-    python benchmarks/stages.py [--trials 65536] [--rounds 7]
+    python benchmarks/stages.py [--trials 65536] [--kept 20000] [--rounds 7]
 
 Prints µs of processor time a trial for the draws, the builds, the contact, the stack-up, the whole block of columns and
 its statistics, least of several rounds, for the spur and the bevel pair. For the imports see startup.py.
+
+Then ms for so many kept draws of three scenes where one tolerance changes: all drawn, the changed one drawn again (mean
+over the contributors that can be half as wide), the values of all measures and those of the first one.
 """
 
 import argparse
+import contextlib
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
-from tol3d import load_scene
+from tol3d import InputError, load_scene
+from tol3d.analyses.response import Response, response_of
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.meshing.backlash import turning_gear
 from tol3d.gearing.methods.analytic import analytic_values
@@ -29,6 +35,8 @@ from tol3d.study.task import materials_of, method_of
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 SYSTEMS = ("spur_pair", "bevel_pair")
+TO_MS = 1000  # trials whose cost in µs is that of one in ms
+REDRAWN = ("bracket_in_box", "door", "spur_pair")
 
 
 def cost(stage: Callable[[], object], trials: int, rounds: int) -> float:
@@ -68,18 +76,46 @@ def stages(scene: Path, trials: int, rounds: int) -> dict[str, float]:
     return {name: cost(stage, trials, rounds) for name, stage in work.items()}
 
 
+def redrawn(scene: Path, trials: int, rounds: int) -> dict[str, float]:
+    """Cost of kept draws [ms]."""
+    response = response_of(simulation_of(load_scene(scene)))
+    kept, others = response.kept(trials), [*_halved(response)]
+    first = response.of(response.names[0])
+    again = [cost(partial(kept.redrawn, other.draws), TO_MS, rounds) for other in others]
+    return {
+        "contributors that can be half as wide": len(others),
+        "all drawn": cost(lambda: others[0].drawn(trials), TO_MS, rounds),
+        "one drawn again": sum(again) / len(again),
+        "values of all measures": cost(lambda: response.values(kept.deviations, kept.positions), TO_MS, rounds),
+        "values of the first measure": cost(lambda: first.values(kept.deviations, kept.positions), TO_MS, rounds),
+    }
+
+
+def _halved(response: Response) -> Iterator[Response]:
+    for name in response.slices:
+        with contextlib.suppress(InputError):
+            yield response.scaled({name: 0.5})
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--trials", type=int, default=65_536)
+    parser.add_argument("--kept", type=int, default=20_000)
     parser.add_argument("--rounds", type=int, default=7)
     given = parser.parse_args(arguments)
     found = {name: stages(SCENES / f"{name}.yaml", given.trials, given.rounds) for name in SYSTEMS}
-    table = Table(title=f"µs of one core a trial, blocks of {given.trials}")
+    _print(f"µs of one core a trial, blocks of {given.trials}", found)
+    found = {name: redrawn(SCENES / f"{name}.yaml", given.kept, given.rounds) for name in REDRAWN}
+    _print(f"ms of one core, {given.kept} draws", found)
+
+
+def _print(title: str, found: Mapping[str, Mapping[str, float]]) -> None:
+    table = Table(title=title)
     table.add_column("stage")
     for name in found:
         table.add_column(name, justify="right")
-    for stage in found["spur_pair"]:
+    for stage in next(iter(found.values())):
         table.add_row(stage, *(f"{costs[stage]:.3f}" for costs in found.values()))
     Console().print(table)
 

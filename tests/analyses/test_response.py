@@ -14,7 +14,8 @@ from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
-from tol3d.system.draw import Ball, Draw, Planar, Scalar
+from tol3d.study import draws
+from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
 
 QUICK = ("spur_pair", "hole_and_slot", "gearbox_in_housing")
@@ -159,3 +160,64 @@ def test_a_draw_that_does_not_say_what_its_uniforms_are_is_told() -> None:
 def test_measures_are_chosen_by_name() -> None:
     with pytest.raises(InputError, match="got 'normal backlas'; did you mean"):
         response("spur_pair").of("normal backlas")
+
+
+REDRAWN = ("spur_pair", "bolted_cover", "every_field")  # plain, read by others, correlated
+
+
+@pytest.mark.parametrize(
+    "name",
+    [own if own in REDRAWN else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())],
+)
+def test_builds_drawn_again_are_those_of_the_other_tolerances_to_the_bit(name: str) -> None:
+    """Each contributor that can be another one, from the kept draws and from those of the one before; then back."""
+    own = response(name)
+    kept = own.kept(16)
+    last = kept
+    for contributor in own.slices:
+        try:
+            other = own.scaled({contributor: 0.9})
+        except InputError:
+            continue
+        expected, positions = other.drawn(16)
+        last = last.redrawn(other.draws)
+        for found in (kept.redrawn(other.draws), last):
+            assert np.array_equal(found.deviations, expected), contributor
+            assert found.positions.keys() == positions.keys()
+            assert all(np.array_equal(found.positions[key], positions[key]) for key in positions)
+        assert not np.array_equal(last.deviations, kept.deviations), contributor
+    assert np.array_equal(last.redrawn(own.draws).deviations, own.drawn(16)[0])
+
+
+def test_only_what_changes_is_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hole's position reads the size that gives its bonus: with the size both are drawn, alone the position only."""
+    own, drawn = response("bolted_cover"), list[str]()
+    size, hole = "base hole 1 size", "base hole 1"
+    kept, others = own.kept(4), {name: own.scaled({name: 0.9}) for name in (size, hole)}
+    monkeypatch.setattr(draws, "fill", lambda columns, slices, some, uniforms: drawn.extend(each.name for each in some))
+    for name, expected in ((size, [size, hole]), (hole, [hole])):
+        drawn.clear()
+        kept.redrawn(others[name].draws)
+        assert drawn == expected
+    drawn.clear()
+    kept.redrawn(own.draws)
+    assert drawn == []
+
+
+def test_draws_of_another_system_or_with_more_uniforms_are_refused() -> None:
+    own = response("spur_pair")
+    kept, wide = own.kept(4), own.with_draws({"wheel eccentricity": Each(Normal(0.0, 1.0), ("a", "b"))})
+    with pytest.raises(InputError, match="expected draws of the same contributors"):
+        kept.redrawn(response("door").draws)
+    assert kept.redrawn(wide.draws).deviations.shape == (4, own.components)
+    with pytest.raises(InputError, match="centre distance: expected a draw of 1 uniform at most, got one of 2"):
+        own.with_draws({"centre distance": Sum()}).drawn(4)
+
+
+class Sum(Scalar):
+    """A length of two uniforms, where the scene has one of one."""
+
+    uniforms = 2
+
+    def __init__(self) -> None:
+        super().__init__(Normal(0.0, 1.0))

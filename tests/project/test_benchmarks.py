@@ -33,7 +33,7 @@ FEW: Mapping[str, tuple[str, ...]] = {
     "rare": ("--seeds", "2", "--level", "1000"),
     "rig_records": ("--rows", "4000"),
     "scale": ("--sizes", "3x2z", "--trials", "100"),
-    "stages": ("--trials", "1024", "--rounds", "1"),
+    "stages": ("--trials", "1024", "--kept", "64", "--rounds", "1"),
     "startup": ("--runs", "1", "--ways", "without both", "--packages", "colorsys", "no_such_package"),
     "studies": ("--naive", "1", "--rounds", "1", "--most", "100", "--warm", "--systems", "spur pair"),
     "structure": ("--trials", "16", "--route"),

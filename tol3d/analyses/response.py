@@ -20,14 +20,14 @@ from tol3d.numerics.arrays import Array
 from tol3d.scene.nearest import hint
 from tol3d.study.acting import acting, nothing_acts
 from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
-from tol3d.study.draws import sampler_of, streams_of
+from tol3d.study.draws import KeptDraws, fill, kept_draws
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.high_low_mean import ranges
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, method_of
 from tol3d.system.contributor import Contributor
 from tol3d.system.copula import Copula
-from tol3d.system.dependent import Dependent, in_draw_order
+from tol3d.system.dependent import Dependent, DrawnAs, in_draw_order
 from tol3d.system.draw import Draw
 from tol3d.system.measure import Measure
 from tol3d.system.method import ANALYTIC_METHOD, Method
@@ -294,7 +294,7 @@ class Response:
             numbers = np.where(found.seated, found.values, np.nan).T
             return {own.name: each for own, each in zip(measures, numbers, strict=True)}
 
-        redrawn = [_Redrawn(own, self.draws[own.name]) for own in self.contributors]
+        redrawn = [DrawnAs(*own) for own in self.draws.items()]
         found = ranges(redrawn, self.slices, self.mean[None], self.measures, values, self.simulation.system.cost)
         unknown = np.full(len(redrawn), np.nan)
         return np.array([found.get(own.name, unknown) for own in self.measures])
@@ -348,38 +348,30 @@ class Response:
             normals = normals.copy()
             normals[:, places] = np.array(mixed).T
         found = np.zeros((self.components, len(normals)))
-        asked = [_Redrawn(own, self.draws[own.name]) for own in self.contributors if own.name in wanted]
-        for own in in_draw_order(asked):
-            uniforms = uniforms_of(own.draw, list(normals[:, self.normals[own.name]].T))
-            found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
+        asked = [DrawnAs(name, self.draws[name]) for name in self.slices if name in wanted]
+
+        def uniforms(name: str, count: int) -> Sequence[Array]:
+            return uniforms_of(self.draws[name], list(normals[:, self.normals[name]].T))
+
+        fill(found, self.slices, in_draw_order(asked), uniforms)
         return np.ascontiguousarray(found.T)
+
+    def kept(self, count: int, seed: int | None = None) -> KeptDraws:
+        """Builds as the study draws them, kept so that other tolerances of a few contributors are drawn at once.
+
+        `kept.redrawn(response.scaled({name: 0.5}).draws)` are the builds of the other response, to the bit.
+
+        Args:
+            count: of builds.
+            seed: another one than the study's.
+        """
+        study = self.simulation.study if seed is None else replace(self.simulation.study, seed=seed)
+        return kept_draws(replace(self.simulation, study=study), count, self.draws)
 
     def drawn(self, count: int, seed: int | None = None) -> tuple[Array, Mapping[str, Array]]:
         """Deviations and positions as the study draws them, with its own seed or another one."""
-        study = self.simulation.study if seed is None else replace(self.simulation.study, seed=seed)
-        simulation = replace(self.simulation, study=study)
-        streams = streams_of(simulation.system)
-        sampler = sampler_of(simulation, len(streams))
-        positions = simulation.system.positions(
-            {key: sampler.uniforms(streams[key], 0, count) for key in simulation.system.streams}
-        )
-        mixed = self.copula.uniforms(
-            {name: sampler.uniforms(streams[name, "0"], 0, count) for name in self.copula.names}
-        )
-        found = np.empty((self.components, count))
-        for own in in_draw_order([_Redrawn(each, self.draws[each.name]) for each in self.contributors]):
-            keys = [(own.name, str(k)) for k in range(own.draw.uniforms)]
-            uniforms = [sampler.uniforms(streams[key], 0, count) for key in keys]
-            uniforms = [mixed[own.name]] if own.name in mixed else uniforms
-            found[self.slices[own.name]] = self._drawn(own.draw, uniforms, found)
-        return np.ascontiguousarray(found.T), positions
-
-    def _drawn(self, draw: Draw, uniforms: list[Array], found: Array) -> Array:
-        if isinstance(draw, Dependent):
-            given = {name: found[self.slices[name]] for name in draw.reads}
-            return np.array([*draw.deviations_given(given, *uniforms)])
-        columns = draw.deviations(*uniforms)
-        return np.array([np.broadcast_to(own, found.shape[1]) for own in columns]).reshape(len(columns), found.shape[1])
+        kept = self.kept(count, seed)
+        return kept.deviations, kept.positions
 
     def drawn_by(self, name: str) -> Draw:
         """Draw of a contributor.
@@ -471,18 +463,6 @@ def _sized(draw: Draw, width: float) -> Draw:
     if not isinstance(draw, Zoned):
         raise InputError(f"expected a contributor that lies in a zone, got a {type(draw).__name__}")
     return draw.sized(width)
-
-
-@dataclass(frozen=True, eq=False)
-class _Redrawn:
-    """A contributor that is drawn otherwise; what `in_draw_order` reads of it."""
-
-    own: Contributor
-    draw: Draw
-
-    @property
-    def name(self) -> str:
-        return self.own.name
 
 
 def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:

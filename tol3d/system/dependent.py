@@ -4,6 +4,7 @@ They are drawn after those; their uniforms stay their own, so that a trial is a 
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -30,6 +31,14 @@ class Named(Protocol):
     def draw(self) -> Draw:
         """See Contributor."""
         ...
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnAs:
+    """A contributor by its name, and how it is drawn: as its system says, or by another tolerance."""
+
+    name: str
+    draw: Draw
 
 
 Own = TypeVar("Own", bound=Named)
