@@ -14,7 +14,7 @@ from tol3d.assembly.placing import method as placing
 from tol3d.assembly.torsors import method as torsors
 from tol3d.contact.certify import certificate
 from tol3d.contact.cones import climbed
-from tol3d.contact.programme import Programme
+from tol3d.contact.programme import Programme, least_growth
 from tol3d.contact.rooms import new_rooms, started
 
 Array = NDArray[np.float64]
@@ -89,6 +89,27 @@ def test_a_push_goes_on_from_the_places_that_decided_at_the_pose_before_or_from_
         offsets = offsets + np.einsum("kcfn,fn->kcn", rows, programme.steps) + rng.normal(0.0, 0.004, offsets.shape)
     assert (programme.steps[:, :5] == 0.0).all()
     assert 20 < others < 200
+
+
+def test_the_least_growth_is_the_distance_from_a_point_to_a_disc() -> None:
+    """Of a disc about the point, beside one that nothing moves; another disc holds the first in all but 40 trials."""
+    rng, count = np.random.default_rng(11), 200
+    point, centre, beside, other = rng.normal([[[0.0]], [[0.0]], [[0.0]], [[5.0]]], 1.0, (4, 2, count))
+    own, still, room, wide = rng.uniform(0.1, 0.8, (4, count))
+    off, lying, apart = (np.hypot(*each) for each in (point - centre, beside, centre - other))
+    closed, asked = np.arange(count) < 40, np.arange(count) != 50
+    wide = np.where(closed, 0.7 * (apart - room), 100.0 + wide)
+    offsets = np.array([point, beside, centre, other])
+    rows = np.zeros((4, 2, 2))
+    rows[[0, 2, 3]] = way = rng.normal(size=(2, 2))
+    least, steps, empty = least_growth(offsets, np.array([own, still, room, wide]), rows, 2, asked)
+    np.testing.assert_array_equal(empty, closed)
+    expected = np.maximum(np.maximum(off - room, 0.0) - own, lying - still)
+    some = asked & ~closed
+    np.testing.assert_allclose(least[some], expected[some], rtol=0, atol=1e-10)  # GAP of 100 mm
+    between = centre + (room + 0.15 * (apart - room)) / apart * (other - centre)
+    np.testing.assert_allclose((-way @ steps)[:, empty], between[:, empty], rtol=0, atol=1e-9)
+    assert not steps[:, 50].any()
 
 
 @pytest.mark.parametrize("at", [[(0.02, -0.05)], [(0.02, -0.05), (0.02, -0.05)]], ids=["one", "two alike"])

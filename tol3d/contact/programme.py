@@ -11,6 +11,16 @@ from tol3d.numerics.arrays import Array, Places
 
 ALL: Final = 1 << 40
 """Rounds of centring: as many as there are."""
+STEPS: Final = 60
+"""Newton steps of a growth at most; in practice 2 to 8."""
+SHORT: Final = 1e-12
+"""Step [mm] at which they are done."""
+FREE: Final = 1e-9
+"""Share of what grows in the slack's multipliers, below which the room alone decides: it is empty."""
+UNSEEN: Final = 1e-6
+"""Change of an offset per unit freedom that counts as none."""
+SPARE: Final = 1e-11
+"""Clearance [mm] that a least growth leaves to what is asked next at the limit of its room, more than rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,3 +92,43 @@ class Programme:
     def multipliers(self) -> Array:
         """Shares of the places in the first round's slack, which sum to 1 (places, n)."""
         return np.where(self.rounds == 1, self.duals[:, 0], 0.0)
+
+
+def least_growth(
+    offsets: Array, clearances: Array, rows: Array, grown: int, asked: NDArray[np.bool_] | None = None,
+    rounds: int = ALL,
+) -> tuple[Array, Array, NDArray[np.bool_]]:  # fmt: skip
+    """The least w (n,) [mm] by which the first clearances grow until all places are open at once, and steps to there.
+
+    The largest common slack is concave in w and grows with it: Newton's steps from below, by the share of what grows in
+    its multipliers, never pass the least w. Where the others have no place in common, told last (n,), steps are to
+    where they lack least.
+
+    Args:
+        offsets: o_k (places, 2, n) [mm].
+        clearances: c_k (places, n) [mm], of either sign.
+        rows: B_k (places, 2, unknowns).
+        grown: number of the places that grow, the first.
+        asked: mask of the trials; all by default. The others are left.
+        rounds: of centring, at most, which settle what the places that decide w leave open of the steps.
+    """
+    trials, seen = offsets.shape[2], np.abs(rows).max(axis=(1, 2), initial=0.0) > UNSEEN
+    lacking = np.sqrt((offsets * offsets).sum(axis=1)) - clearances
+    least = np.where(seen[:grown, None], -clearances[:grown], lacking[:grown]).max(axis=0)
+    empty = lacking[grown:][~seen[grown:]].max(axis=0, initial=-np.inf) > SHORT
+    offsets, limits, its_rows, own = offsets[seen], clearances[seen], rows[seen][..., None], int(seen[:grown].sum())
+    programme = Programme.of(len(offsets), rows.shape[2], trials)
+    going = np.flatnonzero(np.full(trials, seen.any()) if asked is None else asked & seen.any())
+    for _ in range(STEPS):
+        if not len(going):
+            break
+        wider = limits[:, going]
+        wider[:own] += least[going]
+        programme.solve(offsets[..., going], wider, its_rows, trials=going, rounds=rounds)
+        share, short = programme.multipliers[:own, going].sum(axis=0), -programme.slack[going]
+        grows = share > FREE
+        empty[going] |= ~programme.found[going] | (~grows & (short > SHORT))
+        step = np.where(grows & (short > 0.0), short / np.where(grows, share, 1.0), 0.0)
+        least[going] += step
+        going = going[step > SHORT]
+    return least, np.where(programme.found, programme.steps, 0.0), empty

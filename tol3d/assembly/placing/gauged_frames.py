@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.model import Engage, Floating, Gauges
 from tol3d.assembly.model.statuses import FITS, NO_BUILD, OK, SINGULAR
@@ -18,7 +19,6 @@ from tol3d.assembly.placing.alignment import Seat
 from tol3d.assembly.placing.chords import ray, way_along
 from tol3d.assembly.placing.datum_seats import Actual, DatumSeats
 from tol3d.assembly.placing.floats import axes_of
-from tol3d.assembly.placing.growth import Mask, centred
 from tol3d.assembly.placing.later_datums import LaterDatums, later_datums
 from tol3d.assembly.placing.poses import IDENTITY, Codes, Pose, full
 from tol3d.assembly.placing.seen_motions import SeenMotions, seen_motions
@@ -122,11 +122,14 @@ class GaugedFrame(SeenMotions):
         lost = ~(programme.found & (lacking < LOST))
         return pose, np.where((codes == OK) & lost, SINGULAR, codes).astype(np.int8)
 
-    def _floating(self, offsets: Array, clearances: Array, rows: Array, columns: Array, asked: Mask) -> Array:
+    def _floating(
+        self, offsets: Array, clearances: Array, rows: Array, columns: Array, asked: NDArray[np.bool_]
+    ) -> Array:
         """Steps (left, n) to where the part lies in the freedoms that later datums leave."""
-        steps, slacks = centred(offsets, clearances, rows, asked)
+        centred = Programme.of(len(rows), rows.shape[2], columns.shape[1])
+        centred.solve(offsets, clearances, rows[..., None], asked=asked)
         floats = replace(self.floats, freedoms=self.floats.freedoms @ self.later.left)
-        return floats.steps(offsets, clearances, rows, steps, slacks, columns)
+        return floats.steps(offsets, clearances, rows, centred.steps, centred.slack, columns)
 
     def clearances(self, features: Sequence[ActualFeature], columns: Array) -> Array:
         """Clearance of each offset (cones, n) [mm]."""

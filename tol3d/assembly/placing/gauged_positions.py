@@ -1,6 +1,6 @@
 """Positions in a datum frame on gauges, which take the best place in their common clearance.
 
-The least growth of the ends' cones (`growth`) is that of the offsets at a pose. They are then read anew at that place,
+The least growth of the ends' cones is that of the offsets at a pose. They are then read anew at that place,
 until nothing moves.
 """
 
@@ -12,10 +12,10 @@ import numpy as np
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.placing.actual_feature import ActualFeature
 from tol3d.assembly.placing.gauged_frames import MET, ROUNDS, GaugedFrame
-from tol3d.assembly.placing.growth import SPARE, centred, least_growth
 from tol3d.assembly.placing.poses import IDENTITY, Pose, column, dot, full
 from tol3d.assembly.placing.seen_motions import point_row
 from tol3d.assembly.placing.world import World
+from tol3d.contact.programme import SPARE, Programme, least_growth
 from tol3d.numerics.arrays import Array, times
 
 
@@ -95,11 +95,14 @@ def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Arr
             ]
         )
         offsets = gauged.offsets(pose, features, world.trials)
-        fits = centred(offsets, room, gauged.rows, every)[1] >= 0.0 if after else True
+        centred = Programme.of(len(room), gauged.rows.shape[2], world.trials)
+        if after:
+            centred.solve(offsets, room, gauged.rows[..., None])
         steps = gauged.later.nearest(pose, after, offsets, room, gauged.rows, every)
-        ends, offsets = ends + times(found.rows, steps), offsets + times(gauged.rows, steps)
-        spare = room + len(after) * SPARE
-        grown, some = least_growth(ends, radii, found.rows @ left, offsets, spare, gauged.rows @ left)
+        rows, spare = np.concatenate([found.rows, gauged.rows]), np.concatenate([radii, room + len(after) * SPARE])
+        offsets = np.concatenate([ends, offsets]) + times(rows, steps)
+        grown, some, empty = least_growth(offsets, spare, rows @ left, len(ends))
+        fits = ~empty & (centred.slack >= 0.0)
         steps, least = steps + times(left, some), np.where(going, np.where(fits, grown, np.nan), least)
         going = going & (np.abs(steps).max(axis=0, initial=0.0) >= MET)
         if not going.any():

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tol3d.assembly.model import Axis, Datum, DatumFrame, Slot
 from tol3d.assembly.placing.actual_feature import ActualFeature
-from tol3d.assembly.placing.growth import SPARE, Mask, least_growth
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.seen_motions import SeenMotions, point_row
+from tol3d.contact.programme import SPARE, least_growth
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array, times
 
@@ -113,8 +114,9 @@ class LaterDatums:
         return tuple(own.ask.feature for own in self.taken)
 
     def nearest(
-        self, pose: Pose, features: Sequence[ActualFeature], offsets: Array, clearances: Array, rows: Array, asked: Mask
-    ) -> Array:
+        self, pose: Pose, features: Sequence[ActualFeature], offsets: Array, clearances: Array, rows: Array,
+        asked: NDArray[np.bool_],
+    ) -> Array:  # fmt: skip
         """Steps (freedoms, n) to where each is met as nearly as the room lets it.
 
         Args:
@@ -128,10 +130,9 @@ class LaterDatums:
         steps = np.zeros((rows.shape[2], trials))
         for k, (own, feature) in enumerate(zip(self.taken, features, strict=True)):
             its = own.ask.offsets(pose, feature, trials) + times(own.rows, steps)
-            room = offsets + times(rows, steps)
-            none = np.zeros((len(its), trials))
-            spare = clearances + k * SPARE
-            _, some = least_growth(its, none, own.rows @ own.open, room, spare, rows @ own.open, asked)
+            every = np.concatenate([its, offsets + times(rows, steps)])
+            room = np.concatenate([np.zeros((len(its), trials)), clearances + k * SPARE])
+            _, some, _ = least_growth(every, room, np.concatenate([own.rows, rows]) @ own.open, len(its), asked)
             steps = steps + times(own.open @ own.held, some)
         return steps
 

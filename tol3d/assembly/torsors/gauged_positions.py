@@ -7,11 +7,12 @@ import numpy as np
 
 from tol3d.assembly.model import Axis, Measured, RoundPlane
 from tol3d.assembly.torsors.columns import without_rounding
-from tol3d.assembly.torsors.later_datums import SPARE, LaterDatums, least_growth
-from tol3d.assembly.torsors.room import changes
+from tol3d.assembly.torsors.later_datums import LaterDatums
+from tol3d.assembly.torsors.room import changes, least_slack
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import perpendicular, shift_at
 from tol3d.assembly.torsors.world import World
+from tol3d.contact.programme import SPARE, least_growth
 from tol3d.numerics.arrays import Array
 
 
@@ -19,8 +20,7 @@ from tol3d.numerics.arrays import Array
 class LeastOnGauges:
     """Twice the least growth of cones about ends at which all cones have a common point.
 
-    From below, for the largest common slack is concave in the growth. If the clearance is empty: twice the growth
-    needed where the lack of clearance is least.
+    If the clearance is empty: twice the growth needed where the lack of clearance is least.
 
     Args:
         forms: offsets (ends * 2), radii (ends), offsets of the room (places * 2), its clearances (places), and those of
@@ -46,7 +46,8 @@ class LeastOnGauges:
             steps = self.later.nearest(asked, offsets[ends:], room, rows[ends:])
             offsets, rows = offsets + changes(rows, steps), rows @ self.later.left
             room = room + len(self.later.asks) * SPARE
-        return np.asarray(2.0 * least_growth(offsets, np.concatenate([radii, room]), rows, ends)[0][None])
+        least, steps, _ = least_growth(offsets, np.concatenate([radii, room]), rows, ends, rounds=1)
+        return 2.0 * np.maximum(least, -least_slack((offsets + changes(rows, steps))[:ends], radii))[None]
 
 
 def on_gauges(measured: Measured, world: World, bonuses: Sequence[Array]) -> Array:

@@ -14,50 +14,12 @@ from tol3d.assembly.model import Axis, Datum, Feature, Plane, RoundPlane, Slot
 from tol3d.assembly.torsors.room import Room, changes, least_slack
 from tol3d.assembly.torsors.terms import Form
 from tol3d.assembly.torsors.torsor import height_at, ordered_product, shift_at, turn_about
-from tol3d.contact.programme import Programme
+from tol3d.contact.programme import SPARE, least_growth
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 
-STEPS: Final = 40
-"""Newton steps at most; in practice 2 to 8."""
-SHORT: Final = 1e-12
-"""Step [mm] at which they are done."""
-FREE: Final = 1e-9
-"""Share of the ends in the multipliers, below which the clearance alone decides."""
 SEEN: Final = 1e-6
 """Change of what is asked by a freedom of length 1 [mm] that is none."""
-SPARE: Final = 1e-11
-"""Clearance [mm] that each ask leaves to those after it beside what it takes, more than rounding."""
-
-
-def least_growth(offsets: Array, clearances: Array, rows: Array, ends: int) -> tuple[Array, Array]:
-    """The least growth of the first cones (trials,) [mm] at which all have a place in common, and the steps to it.
-
-    From below, for the largest common slack is concave in the growth. If the others have none in common: the growth
-    needed where they lack least.
-
-    Args:
-        offsets: (places, 2, trials) [mm].
-        clearances: (places, trials) [mm]; of the first the radii.
-        rows: their change (places, 2, freedoms).
-        ends: number of the first.
-    """
-    trials, seen = offsets.shape[2], np.abs(rows).max(axis=(1, 2), initial=0.0) > SEEN
-    radii, clearances, own = clearances[:ends], clearances[seen], int(seen[:ends].sum())
-    grown, going = (-radii).max(axis=0), np.arange(trials if seen.any() else 0)
-    programme = Programme.of(int(seen.sum()), rows.shape[2], trials)
-    for _ in range(STEPS):
-        if not len(going):
-            break
-        limits = clearances[:, going]
-        limits[:own] += grown[going]
-        programme.solve(offsets[seen][..., going], limits, rows[seen][..., None], trials=going, rounds=1)
-        share, lacks = programme.multipliers[:own, going].sum(axis=0), -programme.slack[going]
-        step = np.where((share > FREE) & (lacks > 0.0), lacks / np.where(share > FREE, share, 1.0), 0.0)
-        grown[going] += step
-        going = going[step > SHORT]
-    at = (offsets + changes(rows, programme.steps))[:ends]
-    return np.maximum(grown, -least_slack(at, radii)), programme.steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +83,7 @@ class LaterDatums:
             first += len(ask.forms)
             every = np.concatenate([own, offsets + changes(rows, steps)])
             room = np.concatenate([np.zeros((len(own), read.shape[1])), clearances + k * SPARE])
-            some = least_growth(every, room, np.concatenate([ask.rows, rows]) @ ask.open, len(own))[1]
+            some = least_growth(every, room, np.concatenate([ask.rows, rows]) @ ask.open, len(own), rounds=1)[1]
             steps = steps + ordered_product(ask.open @ ask.held, some)
         return steps
 
