@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,9 @@ from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
 from tol3d.study.task import materials_of, method_of
-from tol3d.system.draw import Scalar
+from tol3d.system.draw import Planar, Scalar
 from tol3d.system.measure import Measure
+from tol3d.system.plain import PlainMeasure, PlainSystem
 from tol3d.system.stated import mean_deviations
 
 Array = NDArray[np.float64]
@@ -219,3 +221,33 @@ def test_ranges_are_the_same_whether_measures_are_built_for_apart_or_together(mo
     together, apart = found
     assert apart == together
     assert read[1] < read[0]
+
+
+def test_a_measure_that_cannot_be_built_beside_the_mean_asks_for_nothing_where_others_ask_apart(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Three lengths in a plane; two of three measures, each time other ones, act along the same direction of each."""
+    law = Uniform(-0.01, 0.03)
+    alike, apart = np.array([1.0, 2.0]), np.array([-3.0, 0.5])
+    slopes = {
+        "a": np.concatenate([alike, alike, apart]),
+        "b": np.concatenate([alike, apart, alike]),
+        "c": np.concatenate([apart, alike, alike]),
+    }
+    own = formula(lambda x: x[:, 0], [Planar(law, None)] * 3)
+    names = (*slopes, "never")
+    assert isinstance(own.simulation.system, PlainSystem)
+    system = replace(own.simulation.system, measures=tuple(PlainMeasure(name, name, unit="1") for name in names))
+
+    def values(rows: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
+        assert len(rows)
+        every = {name: rows @ slope for name, slope in slopes.items()}
+        every["never"] = np.where(rows.any(axis=1), np.nan, 0.0)
+        return {measure.name: every[measure.name] for measure in measures}
+
+    monkeypatch.setattr(high_low_mean, "CALL", -(10**12))
+    found = high_low_mean_ranges(system, system.measures, values)
+    for name, slope in slopes.items():
+        expected = 2 * law.radius * np.hypot(slope[::2], slope[1::2])
+        assert [*found[name].values()] == pytest.approx(expected, rel=1e-9)
+    assert set(found["never"].values()) == {None}

@@ -343,8 +343,9 @@ def _answer(asked: Sequence[_Alone], measures: Sequence[Measure], values: Values
     every = [each for wanted in groups.values() for each in wanted]
     if len(groups) > len(measures):  # ends lie elsewhere for each measure
         groups = {
-            (own.name,): [each for names, wanted in groups.items() if own.name in names for each in wanted]
+            (own.name,): wanted
             for own in measures
+            if (wanted := [each for names, its in groups.items() if own.name in names for each in its])
         }
     if len(groups) > 1 and len(every) <= TOGETHER:
         apart = sum(CALL + len(wanted) * cost([known[name] for name in names]) for names, wanted in groups.items())
