@@ -9,6 +9,7 @@ import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.j
 
 const CREASE = 0.6; // rad; edges between faces that lean less are shown round
 const MARGIN = 1.1; // of the picture, around the model
+const LINE = 15; // pixels between words of two names
 const FROM = new Vector3(0.9, 0.75, 1.1);
 
 function bytes(base64) {
@@ -37,6 +38,9 @@ class View {
     this.scene.add(this.camera);
     this.controls = new OrbitControls(this.camera, renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
+    this.names = document.createElement("div");
+    this.names.className = "names";
+    renderer.domElement.after(this.names);
     this.#bind();
     this.pose();
     this.fit();
@@ -68,7 +72,11 @@ class View {
     this.factor = find("factor");
     this.build.addEventListener("change", () => this.pose());
     this.factor.addEventListener("input", () => this.pose());
+    this.number = this.figure.querySelector("output[data-factors]");
     find("fit").addEventListener("click", () => this.fit());
+    find("names").addEventListener("change", (event) => {
+      this.names.hidden = !event.target.checked;
+    });
     for (const box of this.figure.querySelectorAll('[name="part"]')) {
       box.addEventListener("change", () => {
         this.parts[Number(box.value)].visible = box.checked;
@@ -88,7 +96,16 @@ class View {
       part.matrix.copy(new Matrix4().fromArray(state.poses[index]));
       part.updateMatrixWorld(true);
     });
+    this.number.value = this.number.dataset.factors.split(" ")[states.indexOf(state)];
+    this.factor.setAttribute("aria-valuetext", `${this.number.value} times`);
     this.figure.querySelector(".state").textContent = state.words;
+    this.names.replaceChildren(...Object.entries(state.names).map(([name, place]) => {
+      const label = document.createElement("span");
+      label.append(document.createElement("b"));
+      label.firstChild.textContent = name;
+      label.place = new Vector3().fromArray(place);
+      return label;
+    }));
     this.draw();
   }
 
@@ -143,6 +160,21 @@ class View {
 
   draw() {
     this.renderer.render(this.scene, this.camera);
+    const { clientWidth: width, clientHeight: height } = this.names;
+    const placed = [...this.names.children].map((label) => {
+      const seen = label.place.clone().project(this.camera);
+      return { label, x: ((seen.x + 1) / 2) * width, y: ((1 - seen.y) / 2) * height };
+    });
+    placed.sort((one, other) => one.y - other.y);
+    let free = -LINE; // words below each other; their dots stay
+    for (const { label, x, y } of placed) {
+      label.hidden = x < 0 || y < 0 || x > width || y > height;
+      if (label.hidden) continue;
+      const line = Math.max(y, free);
+      free = line + LINE;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      label.firstChild.style.top = `${(line - y).toFixed(1)}px`;
+    }
   }
 }
 

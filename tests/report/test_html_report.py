@@ -24,10 +24,12 @@ from tol3d.analyses.methods import methods
 from tol3d.analyses.subject import SECTIONS, Subject
 from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
 from tol3d.notebook import write_report
+from tol3d.report.bars import Bars
 from tol3d.report.compare import comparison_report
 from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.convergence import running
 from tol3d.report.distribution import samples_of
+from tol3d.report.drawn_sample import DrawnSample
 from tol3d.report.html import view_3d
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
@@ -116,7 +118,7 @@ def test_bars_hold_every_trial_and_name_some_of_theirs(spur: Run, text: str) -> 
     page = _no_way_out(text)
     counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
     measures = len(spur.found.measures)
-    assert sum(counted) == 2 * measures * spur.trials, "each in its histogram, and in that of the differences"
+    assert sum(counted) == 2 * 2 * measures * spur.trials, "for two widths: in its histogram, and in the differences'"
     data = [json.loads(text) for text in page.inside("script") if text.startswith(BARS)]
     assert len(data) == measures
     edges = [own for own in page.elements if own[1].get("data-bar")]
@@ -273,7 +275,8 @@ def test_a_run_with_failed_trials_says_how_many_and_why(tmp_path: Path) -> None:
         text for _, text in page.texts
     )
     counted = [int(own[1]) for text in page.inside("title") if (own := re.search(r": (\d+) trials$", text))]
-    assert sum(counted) <= 2 * sum(own.seated for own in run.found.measures.values()), "none of them is in a bar"
+    seated = sum(own.seated for own in run.found.measures.values())
+    assert sum(counted) <= 2 * 2 * seated, "none of them is in a bar, for either width"
 
 
 def test_a_run_without_limits_has_no_verdict_and_no_line_for_one(tmp_path: Path) -> None:
@@ -290,7 +293,15 @@ def test_a_bar_across_a_limit_that_no_trial_is_beyond_is_not_out(tmp_path: Path)
     assert own.geometric is not None
     assert own.geometric.sample_max is not None
     assert own.geometric.sample_max < 150 < leading.bars.edges[-1], "um, the upper limit lies in the last bar"
-    assert not leading.outside.any()
+    assert not leading.pieces.outside.any()
+
+
+def test_a_bar_across_a_limit_is_out_from_the_limit_on() -> None:
+    bars = Bars(np.array([0.0, 1.0, 2.0, 4.0]), np.array([3.0, 5.0, 2.0]), 10)
+    pieces = DrawnSample(None, "blue", bars, limits=(0.25, 2.0)).pieces
+    assert pieces.edges.tolist() == [0.0, 0.25, 1.0, 2.0, 4.0]
+    assert pieces.bars.tolist() == [0, 0, 1, 2]
+    assert pieces.outside.tolist() == [True, False, False, True]
 
 
 def test_curves_stand_over_their_positions(tmp_path: Path) -> None:

@@ -296,17 +296,19 @@ def test_lines_of_an_overview_cross_their_whole_histogram_and_those_below_words_
 
 
 def test_bars_of_one_sample_are_told_apart_and_several_samples_each_have_their_outline() -> None:
-    """Bars in white edges, as many as counted; of two runs each is one outline in its own colour, and no bar."""
+    """Bars in white edges, one cut at a limit; of two runs each is one outline in its own colour, and no bar."""
     measure = measure_of(normals(2000), lower_limit=48.0)
     axes = axes_of(draw_distribution, typed_measure(measure))
     bars = [each for each in axes.collections if isinstance(each, PolyCollection)]
     drawn = bars_of(typed_measure(measure))["geometric"]
     boxes = sorted([*path.get_extents().extents] for own in bars for path in own.get_paths())
-    corners = zip(drawn.edges[:-1], np.zeros(len(drawn.density)), drawn.edges[1:], drawn.density, strict=True)
+    across = np.searchsorted(drawn.edges, 48.0) - 1
+    edges, heights = np.insert(drawn.edges, across + 1, 48.0), np.insert(drawn.density, across, drawn.density[across])
+    corners = zip(edges[:-1], np.zeros(len(heights)), edges[1:], heights, strict=True)
     assert boxes == [pytest.approx(box) for box in corners]
     assert {to_hex(colour) for own in bars for colour in np.asarray(own.get_edgecolor())} == {"#ffffff"}
     beyond = [own for own in bars if to_hex(np.asarray(own.get_facecolor())[0]) == OUTSIDE.lower()]
-    assert [len(own.get_paths()) for own in beyond] == [int((drawn.middles < 48.0).sum())]
+    assert [len(own.get_paths()) for own in beyond] == [across + 1]
     runs = [run_of(f"/{name}", {"play": measure_of(normals(500, seed))}) for seed, name in enumerate("ab")]
     both = comparison_figure(runs).axes[0]
     outlines = [step for step in both.patches if isinstance(step, StepPatch) and not step.get_fill()]

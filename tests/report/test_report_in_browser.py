@@ -17,6 +17,8 @@ from tol3d.simulate import Overrides
 
 READY = "document.querySelector('figure.view').dataset.ready === 'yes'"
 STAGE = ".stage"
+SCALES = """Math.min(...[...document.querySelectorAll('.chart')].filter(own => own.clientWidth)
+    .map(own => own.clientWidth / own.viewBox.baseVal.width))"""
 LARGEST = 2_000_000
 """Bytes of the page of a bevel pair, and of gears in a housing."""
 SOON = 3.0
@@ -102,12 +104,12 @@ def test_parts_are_seen_whole_in_their_colours_and_can_be_hidden(page: Page, wri
 
 
 @pytest.mark.slow
-def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, written: Path) -> None:
+def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, spur: Run, written: Path) -> None:
     page.open(written)
     page.wait(READY)
     choices = page.ask("[...document.querySelectorAll('[name=build] option')].map(own => own.textContent)")
     assert choices == ["nominal", "worst", "trial 5"]
-    moved = []
+    moved, told = [], []
     for factor in (0, 2):
         page.ask(
             "(() => { const of = name => document.querySelector(`[name=${name}]`); of('build').value = 1;"
@@ -115,7 +117,13 @@ def test_builds_stand_as_they_were_seated_and_deviations_grow(page: Page, writte
             "of('factor').dispatchEvent(new Event('input')); })()"
         )
         moved.append(page.picture(STAGE))
-    assert "magnified" in page.ask("document.querySelector('.state').textContent")
+        told.append(page.ask("['.state', 'output', '.names'].map(own => document.querySelector(own).textContent)"))
+    (plain, times, names), (words, more, _) = told
+    worst = float(spur.columns("geometric:normal backlash")["geometric:normal backlash"].min())
+    assert f": normal backlash {worst:.3f} µm, lost motion " in plain
+    assert names == f"contactgap {worst:.3f} µm", "of one pair the measure is its gap"
+    assert (times, more) == ("1", "100")
+    assert "magnified" in words
     assert np.abs(moved[0] - moved[1]).max() > 60
 
 
@@ -128,6 +136,9 @@ def test_a_page_says_nothing_asks_nothing_and_fits(page: Page, written: Path) ->
             page.open(written, width, dark=dark)
             page.wait(READY)
             assert page.ask("document.documentElement.scrollWidth <= innerWidth"), "no part of it is beside the screen"
+            assert page.ask(SCALES) > 0.98, "letters of charts have the size that they are drawn for"
+            cells = "[...document.querySelectorAll('.cards td')].map(own => own.getBoundingClientRect().right)"
+            assert max(page.ask(cells)) <= width, "the verdict is seen whole"
             brightness = float(np.median(page.picture("h1")))
             assert brightness < 60 if dark else brightness > 200
     assert page.told == []

@@ -113,6 +113,7 @@ class World:
         points: what pictures name besides the bodies, (3,) [mm].
         arrows: what pictures show besides the bodies, by name.
         up: unit vector (3,) to the top of a picture.
+        marks: contacts and gaps, which a page's 3D view names too, (3,) [mm].
     """
 
     name: str
@@ -121,6 +122,7 @@ class World:
     points: Mapping[str, Array] = field(default_factory=dict)
     arrows: Mapping[str, Arrow] = field(default_factory=dict)
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    marks: Mapping[str, Array] = field(default_factory=dict)
 
 
 def built_body(

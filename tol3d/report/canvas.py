@@ -117,9 +117,9 @@ def label_angles(axis: Axis, unit: str) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, position: minutes_seconds(value)))
 
 
-def angle_step(low: float, high: float) -> float | None:
-    """The step [arc seconds] between ticks of an axis in arc minutes; None where it is too long for one."""
-    return next((step for step in ANGLE_STEPS if (high - low) * 60 <= MOST_TICKS * step), None)
+def angle_step(low: float, high: float, most: int = MOST_TICKS) -> float | None:
+    """The step [arc seconds] between `most` ticks of an axis in arc minutes; None where it is too long for one."""
+    return next((step for step in ANGLE_STEPS if (high - low) * 60 <= most * step), None)
 
 
 def minutes_seconds(arcmin: float) -> str:

@@ -29,6 +29,21 @@ LEAST_ROOM: Final = 0.06  # less, and they stand together
 
 
 @dataclass(frozen=True, eq=False)
+class Pieces:
+    """Bars cut at limits.
+
+    Args:
+        edges: (pieces + 1,) rising.
+        bars: (pieces,) index of the bar that each is of.
+        outside: (pieces,) which of them lie beyond a limit.
+    """
+
+    edges: Array
+    bars: NDArray[np.intp]
+    outside: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
 class DrawnSample:
     """A sample as a histogram shows it; values in one unit.
 
@@ -57,11 +72,16 @@ class DrawnSample:
         return [(word, value) for word, value in words if value is not None]
 
     @property
-    def outside(self) -> NDArray[np.bool_]:
-        """Which bars lie beyond a limit."""
+    def pieces(self) -> "Pieces":
+        """Its bars, those that a limit runs through cut there."""
         lower, upper = self.limits
+        first, last = self.bars.edges[0], self.bars.edges[-1]
+        within = [limit for limit in self.limits if limit is not None and first < limit < last]
+        edges = np.unique(np.concatenate([self.bars.edges, within]))
+        middles = (edges[:-1] + edges[1:]) / 2
         below, above = -math.inf if lower is None else lower, math.inf if upper is None else upper
-        return np.asarray((self.bars.middles < below) | (self.bars.middles > above))
+        bars = np.clip(np.searchsorted(self.bars.edges, middles) - 1, 0, len(self.bars.counts) - 1)
+        return Pieces(edges, bars, np.asarray((middles < below) | (middles > above)))
 
 
 def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -> None:
@@ -89,7 +109,8 @@ def draw_samples(axes: Axes, samples: Sequence[DrawnSample], per: float = 1.0) -
 
 def _draw_bars(axes: Axes, sample: DrawnSample, heights: Array) -> None:
     """Bars as two collections: a hundred rectangles by themselves take five times as long."""
-    beyond, (lefts, rights) = sample.outside, (sample.bars.edges[:-1], sample.bars.edges[1:])
+    pieces = sample.pieces
+    beyond, lefts, rights, heights = pieces.outside, pieces.edges[:-1], pieces.edges[1:], heights[pieces.bars]
     none = np.zeros_like(heights)
     corners = np.array([[lefts, none], [lefts, heights], [rights, heights], [rights, none]]).transpose(2, 0, 1)
     for chosen, colour, opacity in ((~beyond, sample.colour, FILL_OPACITY), (beyond, OUTSIDE, OUTSIDE_OPACITY)):
@@ -105,9 +126,11 @@ def _draw_bars(axes: Axes, sample: DrawnSample, heights: Array) -> None:
 
 
 def _draw_area(axes: Axes, sample: DrawnSample, heights: Array) -> None:
-    edges, beyond = sample.bars.edges, np.where(sample.outside, heights, 0.0)
+    pieces = sample.pieces
+    edges, heights = pieces.edges, heights[pieces.bars]
+    beyond = np.where(pieces.outside, heights, 0.0)
     axes.stairs(heights - beyond, edges, fill=True, color=sample.colour, alpha=FILL_OPACITY, label=sample.label)
-    if sample.outside.any():
+    if pieces.outside.any():
         axes.stairs(beyond, edges, fill=True, color=OUTSIDE, alpha=OUTSIDE_OPACITY)
     axes.stairs(heights, edges, color=sample.colour, linewidth=1.0)
 

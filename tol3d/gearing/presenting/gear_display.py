@@ -65,9 +65,7 @@ def _world(build: SeatedBuild) -> World:
     for train in whole_trains(build):
         if any(mesh.driver.name in train.shaft_of for mesh in build.meshes):
             return train.world
-    seated = build.meshes[0]
-    parts = ((seated.driver, DRIVER_COLOUR), (seated.driven, DRIVEN_COLOUR))
-    return World(seated.mesh.name, tuple(gear_body(part, colour) for part, colour in parts), one_file=False)
+    return _pair(build.meshes[0])
 
 
 def _shown(build: SeatedBuild, world: World) -> SeatedBuild:
@@ -256,5 +254,9 @@ class GearDisplay:
 
 
 def _pair(seated: SeatedMesh) -> World:
+    """A mesh's gears, with the contact on the working flank and the gap of the other one named."""
     parts = ((seated.driver, DRIVER_COLOUR), (seated.driven, DRIVEN_COLOUR))
-    return World(seated.mesh.name, tuple(gear_body(part, colour) for part, colour in parts), one_file=False)
+    bodies = tuple(gear_body(part, colour) for part, colour in parts)
+    marks = {"contact": seated.contact, seated.gap_words: seated.gap.mean(axis=0)}
+    known = {name: place for name, place in marks.items() if np.isfinite(place).all()}
+    return World(seated.mesh.name, bodies, one_file=False, marks=known)

@@ -9,7 +9,6 @@ import numpy as np
 import pyvista as pv
 
 from tol3d.gearing.engines import OK, STATUS_TEXT
-from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
 from tol3d.gearing.presenting.whole_trains import WholeTrain
 from tol3d.gearing.shown.display import SeatedBuild
 from tol3d.gearing.shown.placed import SeatedMesh
@@ -31,7 +30,6 @@ from tol3d.report.drawn_solids import (
     set_background,
 )
 from tol3d.report.label import legible
-from tol3d.report.number import measured_text
 from tol3d.report.presenter import Panel
 from tol3d.report.whole import draw_whole
 
@@ -160,7 +158,7 @@ class CloseUp:
             for end in ends:
                 plotter.add_mesh(pv.Sphere(radius=mark, center=end), color=GAP_COLOUR)
             beside = np.array([0.5 * module, 0.0, 0.0])
-            add_label(plotter, (ends[0] + ends[1]) / 2 + beside, _gap_text(seated), GAP_COLOUR)
+            add_label(plotter, (ends[0] + ends[1]) / 2 + beside, seated.gap_words, GAP_COLOUR)
             middle = (contact + (ends[0] + ends[1]) / 2) / 2
         add_names_below(plotter, f"{legible(seated.driver.name)} (driver)", f"{legible(seated.driven.name)} (driven)")
         add_title(plotter, self.title, self.title_size)
@@ -197,7 +195,7 @@ class CloseUp:
             plotter.add_mesh(pv.Line(*ends), color=GAP_COLOUR, line_width=4, lighting=False)
         plotter.add_points(ends, color=GAP_COLOUR, point_size=12, render_points_as_spheres=True)
         right = np.cross([0.0, 1.0, 0.0], section.towards)
-        add_label(plotter, section.middle + 0.3 * high * right, _gap_text(seated), GAP_COLOUR)
+        add_label(plotter, section.middle + 0.3 * high * right, seated.gap_words, GAP_COLOUR)
         add_title(plotter, f"cut across the gap, {2000 * high:.0f} µm high", SIDE_TITLE)
         look(plotter, section.middle, high, section.towards)
 
@@ -247,8 +245,3 @@ def _title(build: SeatedBuild, seated: SeatedMesh, driver: str) -> str:
 def _build_text(build: SeatedBuild, status: str = "") -> str:
     magnified = f", deviations x {build.magnify:g}" if build.magnify != 1.0 else ""
     return f"{build.label}{status}{magnified}"
-
-
-def _gap_text(seated: SeatedMesh) -> str:
-    word = "gap" if seated.gap_value > -ROOT_FINDING_NOISE else "overlap"
-    return f"{word} {measured_text(1000 * abs(seated.gap_value), 'um')}"

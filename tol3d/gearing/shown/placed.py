@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gearing.engines import OK
+from tol3d.gearing.meshing.mesh import ROOT_FINDING_NOISE
 from tol3d.gearing.model import Mesh
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
@@ -95,6 +96,12 @@ class SeatedMesh:
     gap: Array
     gap_value: float
     status: int
+
+    @property
+    def gap_words(self) -> str:
+        """The gap with its length, or the overlap."""
+        word = "gap" if self.gap_value > -ROOT_FINDING_NOISE else "overlap"
+        return f"{word} {measured_text(1000 * abs(self.gap_value), 'um')}"
 
     @property
     def tip_clearance(self) -> float:

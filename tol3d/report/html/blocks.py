@@ -1,10 +1,14 @@
 """Pages as HTML: the same lines and tables as on a terminal, and no second list of numbers."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
 
 from tol3d.report.html.tags import Inside, Markup, lines, tag, together
 from tol3d.report.page import TITLE, Branch, Heading, Line, Page, PageItem, Row, Shown, Table
 
+SCROLLS: Final = "wide"
+CARDS: Final = "wide cards"
+"""CSS classes of tables on narrow pages: one that scrolls, and one that is a card for each row."""
 SHORT, LONG = 16, 40
 """Signs of a cell that is not broken, and of a word that is broken."""
 
@@ -14,18 +18,18 @@ def page_html(page: Page) -> str:
     return str(page_blocks(page.blocks))
 
 
-def page_blocks(blocks: Iterable[PageItem], level: int = 3) -> Markup:
-    """Blocks below each other; titles are headings of a level."""
-    return together(*(_block(own, level) for own in blocks if not _is_blank(own)))
+def page_blocks(blocks: Iterable[PageItem], level: int = 3, narrow: str = SCROLLS) -> Markup:
+    """Blocks below each other; titles are headings of a level, tables SCROLLS or CARDS on narrow pages."""
+    return together(*(_block(own, level, narrow) for own in blocks if not _is_blank(own)))
 
 
 def _is_blank(block: PageItem) -> bool:
     return isinstance(block, Line) and not str(block).strip()
 
 
-def _block(block: PageItem, level: int) -> Markup:
+def _block(block: PageItem, level: int, narrow: str) -> Markup:
     if isinstance(block, Table):
-        return table(block)
+        return table(block, narrow)
     if isinstance(block, Branch):
         return tag("ul", _branch(block), class_="tree")
     return _line(block, level)
@@ -50,21 +54,24 @@ def _pieces(pieces: Sequence[tuple[str, str]]) -> Iterator[Inside]:
         yield tag("span", own, class_=style) if style else own
 
 
-def table(own: Table) -> Markup:
+def table(own: Table, narrow: str = SCROLLS) -> Markup:
     """A table; numbers are right-aligned, each with its value to copy, and omissions are stated."""
-    shown = own.shown
+    shown, roles = own.shown, narrow == CARDS  # rows that are blocks are no rows to a screen reader unless it is said
     head = tag("tr", tag("th", shown.corner, scope="col"), *(_head(heading) for heading in shown.headings))
-    body = together(*(_row(row, shown.headings) for row in shown.rows))
-    return tag("div", tag("table", tag("thead", head), tag("tbody", body)), class_="wide")
+    body = together(*(_row(row, shown.headings, roles=roles) for row in shown.rows))
+    return tag(
+        "div", tag("table", tag("thead", head), tag("tbody", body), role="table" if roles else None), class_=narrow
+    )
 
 
 def _head(heading: Heading) -> Markup:
     return tag("th", heading.text, scope="col", class_="words" if heading.words else "number")
 
 
-def _row(row: Row, headings: Sequence[Heading]) -> Markup:
-    cells = (_cell(cell, heading, row) for cell, heading in zip(row.cells, headings, strict=True))
-    return tag("tr", tag("th", row.label, scope="row"), *cells, class_=row.style or None)
+def _row(row: Row, headings: Sequence[Heading], *, roles: bool) -> Markup:
+    cells = (_cell(cell, heading, row, roles=roles) for cell, heading in zip(row.cells, headings, strict=True))
+    head = tag("th", row.label, scope="row", role="rowheader" if roles else None)
+    return tag("tr", head, *cells, class_=row.style or None, role="row" if roles else None)
 
 
 def _class_of(text: str) -> str:
@@ -74,11 +81,13 @@ def _class_of(text: str) -> str:
     return "words long" if max(map(len, text.split()), default=0) > LONG else "words"
 
 
-def _cell(cell: str, heading: Heading, row: Row) -> Markup:
+def _cell(cell: str, heading: Heading, row: Row, *, roles: bool) -> Markup:
     value = cell.value if isinstance(cell, Shown) else None
     return tag(
         "td",
         cell,
         class_=_class_of(cell) if heading.words else "number",
         data_value=None if value is None else repr(float(value)),
+        data_label=heading.text if roles else None,
+        role="cell" if roles else None,
     )

@@ -2,22 +2,22 @@
 
 from tol3d.report.compare import Difference
 from tol3d.report.comparison_picture import DIFFERENCE_UNITS
-from tol3d.report.html.axis import LEFT, RIGHT, WIDTH, Axis, below, beside, chart
+from tol3d.report.html.axis import Axis, Frame, below, beside, chart
 from tol3d.report.html.tags import Markup, tag
 from tol3d.runs.summary.measure import MeasureSummary
 
 TOP, BOTTOM, FOOT = 14.0, 170.0, 44.0
 
 
-def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
+def difference_chart(measure: MeasureSummary, own: Difference, frame: Frame) -> Markup:
     """The histogram of the 3D simulation less the analytic method."""
     unit, factor = DIFFERENCE_UNITS[measure.unit]
     bars = own.bars.times(factor)
-    x = Axis(float(bars.edges[0]), float(bars.edges[-1]))
+    x = frame.across(float(bars.edges[0]), float(bars.edges[-1]))
     y = Axis(0.0, 1.05 * float(bars.counts.max()) or 1.0, start=BOTTOM, end=TOP)
     inside = [
         *below(x, TOP, BOTTOM, f"3D simulation − analytic, trial by trial [{unit}]"),
-        *beside(y, LEFT, WIDTH - RIGHT, "trials"),
+        *beside(y, frame, "trials"),
     ]
     for k, count in enumerate(bars.counts):
         if count:
@@ -35,4 +35,4 @@ def difference_chart(measure: MeasureSummary, own: Difference) -> Markup:
                     class_="geometric",
                 )
             )
-    return chart("difference of both methods", BOTTOM + FOOT, *inside)
+    return chart(frame, "difference of both methods", BOTTOM + FOOT, *inside)

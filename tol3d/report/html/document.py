@@ -4,8 +4,8 @@ import base64
 import hashlib
 import json
 import shlex
-from collections.abc import Iterator, Mapping, Sequence, Set
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from functools import cache, partial
 from importlib import resources
 from pathlib import Path
 from typing import Final
@@ -14,17 +14,18 @@ import numpy as np
 
 from tol3d.errors import InputError, RunError, SceneError
 from tol3d.report.bars import Bars
-from tol3d.report.column import unexplained_words
+from tol3d.report.column import shares_of, unexplained_words
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.convergence import convergence_of
 from tol3d.report.distribution import samples_of
 from tol3d.report.heading import WORST_FIRST, shown_measures
-from tol3d.report.html.blocks import page_blocks
+from tol3d.report.html.axis import Frame, of_both_widths
+from tol3d.report.html.blocks import CARDS, page_blocks
 from tol3d.report.html.convergence_chart import POINTS, convergence_chart
 from tol3d.report.html.curve_chart import curve_chart
 from tol3d.report.html.difference_chart import difference_chart
 from tol3d.report.html.histogram_chart import histogram_chart
-from tol3d.report.html.matrix_chart import FEWEST, Shares, matrix, matrix_chart
+from tol3d.report.html.matrix_chart import FEWEST, Shares, matrix_chart, shares_in
 from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.html.view_3d import view_3d
@@ -146,8 +147,8 @@ def _single(
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
-    if chart := matrix_chart(shown):
-        sections["which tolerance matters where"] = _matrix(chart)
+    if shares := shares_in(shown):
+        sections["which tolerance matters where"] = _matrix(shares)
     if pairs := page_blocks(correlation_blocks(found)):
         sections[CORRELATIONS] = pairs
     sections |= kept
@@ -163,12 +164,12 @@ def _single(
 
 def _kept(analyses: Mapping[str, Page], shares: Mapping[str, Shares]) -> Mapping[str, Markup]:
     """Sections of analyses, with the matrix of contributors and measures where they have one."""
-    matrices = {title: [_matrix(matrix(own))] for title, own in shares.items() if len(own) >= FEWEST}
+    matrices = {title: [_matrix(own)] for title, own in shares.items() if len(own) >= FEWEST}
     return {title: together(page_blocks(page.blocks), *matrices.get(title, [])) for title, page in analyses.items()}
 
 
-def _matrix(chart: Markup) -> Markup:
-    return tag("figure", chart, tag("figcaption", "share of the variance [%]"))
+def _matrix(shares: Shares) -> Markup:
+    return tag("figure", of_both_widths(partial(matrix_chart, shares)), tag("figcaption", "share of the variance [%]"))
 
 
 def _presenter(run: RunSummary) -> Presenter:
@@ -187,7 +188,7 @@ def _verdict(run: RunSummary, accepted: Accepted, best: str) -> Markup:
     blocks = verdict_report(run, accepted, blame=True)
     asked = tag("p", f"accepted: {accepted_text(accepted, run.measures.values())}", class_="dim")
     advice = [tag("p", f"what to change: {best}", class_="advice")] if best else []
-    return together(asked, *advice, page_blocks([*map(warning, run.warnings), *blocks[1:]]))
+    return together(asked, *advice, page_blocks([*map(warning, run.warnings), *blocks[1:]], narrow=CARDS))
 
 
 def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Markup]:
@@ -200,11 +201,12 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
         first = next((k for k, own in enumerate(blocks) if isinstance(own, Table)), len(blocks))
         yield page_blocks(blocks[:first])
         if measure.take == "curve":
-            yield _figure(curve_chart(name, measure), measure)
+            yield _figure(partial(curve_chart, name, measure), measure)
         else:
-            yield _figure(histogram_chart(name, measure), measure, *_bar_trials(run, name, measure, number))
+            yield _figure(partial(histogram_chart, name, measure), measure, *_bar_trials(run, name, measure, number))
         yield page_blocks(blocks[first:], 4)
-        if pareto := pareto_chart(measure) if measure.take != "curve" else None:
+        if measure.take != "curve" and any(own.method != "published" for own in shares_of(measure)):
+            pareto = of_both_widths(partial(pareto_chart, measure))
             words = [tag("span", text)] if (text := unexplained_words(measure)) else []
             yield tag("figure", pareto, tag("figcaption", *words, *_legend(_methods(measure))))
         if (
@@ -212,19 +214,18 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
             and (difference := difference_of(run, name))
             and measure.unit == run.found.measures[name].unit
         ):
-            yield _figure(difference_chart(measure, difference), None)
-        if settled := _convergence(run, name, measure):
-            yield _figure(settled, None)
+            yield _figure(partial(difference_chart, measure, difference), None)
+        yield from _convergence(run, name, measure)
     yield page_blocks(map(note, meanings(shown)))
 
 
-def _convergence(run: Run, name: str, measure: MeasureSummary) -> Markup | None:
-    """Convergence of mean and sigma; None for a curve, for few trials, and for a run that kept none."""
+def _convergence(run: Run, name: str, measure: MeasureSummary) -> Iterator[Markup]:
+    """Convergence of mean and sigma; nothing for a curve, for few trials, and for a run that kept none."""
     try:
         found = convergence_of(run, name, POINTS)
     except (InputError, RunError):
-        return None
-    return convergence_chart(measure, found, _factor(run, name, measure))
+        return
+    yield _figure(partial(convergence_chart, measure, found, factor=_factor(run, name, measure)), None)
 
 
 def _factor(run: Run, name: str, measure: MeasureSummary) -> float:
@@ -232,12 +233,12 @@ def _factor(run: Run, name: str, measure: MeasureSummary) -> float:
     return 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
 
 
-def _figure(chart: Markup, measure: MeasureSummary | None, *behind: Markup, **data: str) -> Markup:
+def _figure(drawn: Callable[[Frame], Markup], measure: MeasureSummary | None, *behind: Markup, **data: str) -> Markup:
     marks = _marks(measure) if measure is not None else ()
     trials = "trials" if behind else None
     caption = [tag("figcaption", *marks)] if marks else []
     attributes = {"data_trials": _id_of(behind[0])} if trials else {}
-    return tag("figure", chart, *caption, *behind, **attributes)
+    return tag("figure", of_both_widths(drawn), *caption, *behind, **attributes)
 
 
 def _id_of(data: Markup) -> str:
@@ -319,7 +320,7 @@ def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
             own = shown_run(run.found).measures[measure.name]
             drawn = curve_chart if own.take == "curve" else histogram_chart
             yield tag("h3", f"{measure.name} · {label}")
-            yield _figure(drawn(measure.name, own), own)
+            yield _figure(partial(drawn, measure.name, own), own)
     yield tag("section", tag("h2", "in 3D"), tag("p", NOT_TOGETHER, class_="note"), id="section-2")
 
 

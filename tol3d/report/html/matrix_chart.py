@@ -5,7 +5,7 @@ from typing import Final
 
 from tol3d.report.heading import largest, shown_measures
 from tol3d.report.heat_map import LEAST_WRITTEN, of_scalars, percents_of
-from tol3d.report.html.axis import WIDTH, chart
+from tol3d.report.html.axis import Frame, chart
 from tol3d.report.html.tags import Markup, tag
 from tol3d.report.label import legible
 from tol3d.runs.summary.run import RunSummary
@@ -14,8 +14,8 @@ Shares = Mapping[str, Mapping[str, float]]
 """Shares of contributors [%], by measure."""
 
 MOST_COLUMNS, MOST_ROWS = 24, 40
-NAMES, CELL = 230.0, 18.0
-LONGEST, LONGEST_HEAD = 38, 26
+CELL: Final = 18.0
+LONGEST_HEAD: Final = 26
 SIGN: Final = 6.2
 """Width of a sign of a name."""
 DARK: Final = 0.75
@@ -24,23 +24,24 @@ FEWEST: Final = 2
 """Measures of a matrix; of one the contributors' bars say all."""
 
 
-def matrix_chart(run: RunSummary) -> Markup | None:
-    """Shares of the variance [%] of the largest contributors in the worst measures; None of fewer than two."""
+def shares_in(run: RunSummary) -> Shares:
+    """Shares of the variance in the worst measures of a run; none of fewer than two."""
     every = of_scalars(run)
     if len(every) < FEWEST:
-        return None
-    return matrix({name: percents_of(every[name]) for name in shown_measures(every, MOST_COLUMNS)})
+        return {}
+    return {name: percents_of(every[name]) for name in shown_measures(every, MOST_COLUMNS)}
 
 
-def matrix(shares: Shares) -> Markup:
+def matrix_chart(shares: Shares, frame: Frame) -> Markup:
     """Shares [%] by measure and contributor, the largest contributors in the first measures."""
-    names = [*shares][:MOST_COLUMNS]
+    room = frame.width - frame.names - 10
+    names = [*shares][: min(MOST_COLUMNS, int(room / CELL))]
     sums: dict[str, float] = {}
     for name in names:
         for contributor, share in shares[name].items():
             sums[contributor] = sums.get(contributor, 0.0) + share
     rows = largest(sorted(sums, key=lambda each: -sums[each]), sums, MOST_ROWS)
-    wide = min(CELL * 2, (WIDTH - NAMES - 10) / len(names))
+    wide = min(CELL * 2, room / len(names))
     most = max([share for own in shares.values() for share in own.values()], default=0.0) or 1.0
     heads = SIGN * max(len(legible(name, LONGEST_HEAD)) for name in names) + 12
     inside = [
@@ -49,7 +50,7 @@ def matrix(shares: Shares) -> Markup:
             tag("title", name),
             legible(name, LONGEST_HEAD),
             class_="name",
-            transform=f"translate({NAMES + wide * (k + 0.65):.1f} {heads - 6:.0f}) rotate(-90)",
+            transform=f"translate({frame.names + wide * (k + 0.65):.1f} {heads - 6:.0f}) rotate(-90)",
             text_anchor="start",
         )
         for k, name in enumerate(names)
@@ -60,8 +61,8 @@ def matrix(shares: Shares) -> Markup:
             tag(
                 "text",
                 tag("title", contributor),
-                legible(contributor, LONGEST),
-                x=NAMES - 8,
+                legible(contributor, frame.letters),
+                x=frame.names - 8,
                 y=y + CELL / 2,
                 text_anchor="end",
                 class_="name",
@@ -73,7 +74,7 @@ def matrix(shares: Shares) -> Markup:
             share = shares[name][contributor]
             words = f"{contributor}, {name}: {share:.1f} %"
             strength = max(0.0, min(1.0, share / most))
-            place = {"x": NAMES + wide * k, "y": y}
+            place = {"x": frame.names + wide * k, "y": y}
             inside.append(
                 tag(
                     "rect",
@@ -90,4 +91,9 @@ def matrix(shares: Shares) -> Markup:
                 inside.append(
                     tag("text", f"{share:.0f}", x=place["x"] + wide / 2, y=y + 13, text_anchor="middle", class_=dark)
                 )
-    return chart("shares of the variance of contributors in measures", heads + CELL * len(rows) + 8, *inside)
+    bottom = heads + CELL * len(rows) + 8
+    if len(names) < len(shares):
+        words = f"the first {len(names)} of {len(shares)} measures; a wider window shows more"
+        bottom += 14
+        inside.append(tag("text", words, x=4.0, y=bottom - 6, class_="label"))
+    return chart(frame, "shares of the variance of contributors in measures", bottom, *inside)

@@ -3,9 +3,10 @@
 import base64
 import gzip
 import json
+import re
 import tempfile
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any, Final, cast
@@ -19,10 +20,14 @@ from tol3d.errors import Tol3dError
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body, Surface, World
 from tol3d.report.drawn_solids import poly_data
+from tol3d.report.heading import shown_measures
 from tol3d.report.html.tags import Markup, tag
+from tol3d.report.number import measured_text
 from tol3d.report.presenter import Display, Presenter, Which
+from tol3d.report.shown_unit import shown_run
 from tol3d.report.view import view_run
 from tol3d.runs.run import Run
+from tol3d.system.outcome import value_column
 
 FACTORS: Final = (1.0, 10.0, 100.0)
 """Magnifications of a trial's deviations; a build that does not allow one says so."""
@@ -37,6 +42,7 @@ LEAST_LEFT: Final = 0.02
 """Share of a mesh's triangles that is left at least."""
 ALIKE: Final = 2e-3
 """Fraction of a part's size: shapes that differ by less are drawn as one, at their best fit."""
+TRIAL: Final = re.compile(r"trial-(\d+)")
 STILL_WIDTH, STILL_QUALITY = 1100, 80
 GRID: Final = 2.0**-13
 """mm; places of corners are rounded to it, an eighth of a micrometre, so that they pack."""
@@ -47,13 +53,15 @@ class _State:
     """A build as it is shown.
 
     Args:
-        words: description and notes.
+        words: its measures, and notes.
         meshes, poses: of each part, which of the model's meshes, and where (16 numbers, column by column) [mm].
+        names: of contacts, gaps and other places (3 numbers) [mm].
     """
 
     words: str
     meshes: tuple[int, ...]
     poses: tuple[list[float], ...]
+    names: dict[str, list[float]]
 
 
 @dataclass(eq=False)
@@ -140,11 +148,34 @@ def _states(
             continue
         placed = [model.place(body.name, _surface(body)) for body in world.bodies]
         poses = tuple(_pose(body, on) for body, (_, on) in zip(world.bodies, placed, strict=True))
-        words = "; ".join((display.label, *display.notes))
-        found.append(_State(words, tuple(mesh for mesh, _ in placed), poses))
+        measured = _measured(run, which, display.label) if factor == FACTORS[0] else display.label
+        words = "; ".join((measured, *display.notes))
+        names = {
+            name: [float(f"{own:.9g}") for own in place] for name, place in {**world.points, **world.marks}.items()
+        }
+        found.append(_State(words, tuple(mesh for mesh, _ in placed), poses, names))
     if shown is None or not found:
         raise Tol3dError(f"{which}: there is nothing to show in 3D")
     return found, shown
+
+
+def _measured(run: Run, which: Which, label: str) -> str:
+    """A build with the values of the measures that are shown, of the best method there is."""
+    shown = shown_run(run.found).measures
+    trial = TRIAL.fullmatch(label)
+    values = dict[str, float | None]()
+    for name in shown_measures(shown):
+        measure = shown[name]
+        if measure.take == "curve":
+            continue
+        if which == "nominal":
+            values[name] = measure.nominal.value(measure.best_method)
+        elif trial:
+            column = value_column(measure.best_method, name)
+            per = 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
+            values[name] = per * float(run.columns(column)[column][int(trial[1])])
+    told = [f"{name} {measured_text(own, shown[name].unit)}" for name, own in values.items() if own is not None]
+    return f"{label}: {', '.join(told)}" if told else label
 
 
 def _world_of(display: Display, shown: World | None) -> World | None:
@@ -181,7 +212,7 @@ def _undeviated(
     deviate = {k for _, states in builds for own in states for k, mesh in enumerate(own.meshes) if mesh != nominal[k]}
     fewer = _Model([model.surfaces[mesh] for mesh in nominal])
     places = tuple(range(len(nominal)))
-    kept = [(name, [_State(own.words, places, own.poses) for own in states]) for name, states in builds]
+    kept = [(name, [replace(own, meshes=places) for own in states]) for name, states in builds]
     return kept, fewer, tuple(world.bodies[k].name for k in sorted(deviate))
 
 
@@ -243,10 +274,7 @@ def _figure(
     told: dict[str, Any] = {
         "up": list(world.up),
         "parts": [{"colour": own.colour, "opacity": own.opacity} for own in world.bodies],
-        "builds": [
-            {"states": [{"words": own.words, "meshes": own.meshes, "poses": own.poses} for own in states]}
-            for _, states in builds
-        ],
+        "builds": [{"states": [asdict(own) for own in states]} for _, states in builds],
     }
     data = json.dumps(told, sort_keys=True, separators=(",", ":")).replace("<", "\\u003c")
     picture = tag("img", src=f"data:image/jpeg;base64,{still}", alt="the parts, as tol3d view shows them")
@@ -265,10 +293,12 @@ def _figure(
 def _controls(world: World, builds: Sequence[tuple[str, list[_State]]]) -> Iterator[Markup]:
     options = (tag("option", name, value=number) for number, (name, _) in enumerate(builds))
     slider = tag("input", type="range", name_="factor", min=0, max=len(FACTORS) - 1, value=0, step=1)
+    number = tag("output", f"{FACTORS[0]:g}", data_factors=" ".join(f"{own:g}" for own in FACTORS))
     yield tag(
         "div",
         tag("label", "build ", tag("select", *options, name_="build")),
-        tag("label", "deviations × ", slider),
+        tag("label", "deviations × ", number, " ", slider),
+        tag("label", tag("input", type="checkbox", name_="names", checked=""), " names"),
         tag("button", "fit", type="button", name_="fit"),
         tag("span", "drag turns, wheel zooms, double click fits", class_="dim"),
         class_="controls",
