@@ -1,5 +1,6 @@
 """Other tolerances of a response: its deviations are those of a scene that says so, bit for bit."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,16 @@ from tol3d.scene.bundled import bundled_scenes
 from tol3d.scene.edit import with_tolerances, write_scene
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.simulate import load, simulation_of
+from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw, Planar, Scalar
 from tol3d.system.other_laws import naturally_stays, scaled
 
 TRIALS = 40
+
+
+@cache
+def simulation(name: str) -> Simulation:
+    return simulation_of(load(name))
 
 
 def meant(scene: Scene, response: Response, entry: str) -> list[str]:
@@ -73,7 +80,7 @@ def _alike(found: Array, expected: Array) -> bool:
 )
 def test_a_scene_with_other_tolerances_draws_the_same(name: str, entries: tuple[str, ...]) -> None:
     scene = load(name)
-    response = response_of(simulation_of(scene))
+    response = response_of(simulation(name))
     for entry in entries:
         assert _same(scene, response, entry, 0.5)
 
@@ -82,15 +89,14 @@ def test_a_scene_with_other_tolerances_draws_the_same(name: str, entries: tuple[
 @pytest.mark.parametrize("name", sorted(bundled_scenes()))
 def test_every_scene_with_other_tolerances_draws_the_same(name: str) -> None:
     scene = load(name)
-    response = response_of(simulation_of(scene))
+    response = response_of(simulation(name))
     held = [_same(scene, response, entry, factor) for entry in scene.tolerances for factor in (0.5, 0.9)]
     assert any(held) or not held
 
 
 def test_a_bonus_follows_the_size_that_gives_it() -> None:
     """Half of a size's tolerance leaves at most half of the bonus: the axes of a hole at MMC lie nearer."""
-    scene = load("bolted_cover")
-    response = response_of(simulation_of(scene))
+    response = response_of(simulation("bolted_cover"))
     size, hole = "base hole 1 size", "base hole 1"
     law = response.draws[size].distribution
     assert isinstance(law, Normal)
@@ -105,7 +111,7 @@ def test_a_bonus_follows_the_size_that_gives_it() -> None:
 
 
 def test_tolerances_that_act_elsewhere_too_are_refused() -> None:
-    response = response_of(simulation_of(load("bolted_cover")))
+    response = response_of(simulation("bolted_cover"))
     with pytest.raises(InputError, match="cover hole 1 size: expected a tolerance that acts by its deviation alone"):
         response.scaled({"cover hole 1 size": 0.5})
 
@@ -146,3 +152,58 @@ def test_what_cannot_be_is_refused() -> None:
         own.scaled({"x7": 1.2})
     with pytest.raises(InputError, match="x0: expected a contributor that lies in a zone, got a Scalar"):
         own.sized({"x0": 1.2})
+
+
+# scope ------------------------------------------------------------------------------------------------------
+
+SCOPED = ("spur_pair", "bolted_cover", "three_stage_train")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [own if own in SCOPED else pytest.param(own, marks=pytest.mark.slow) for own in sorted(bundled_scenes())],
+)
+def test_a_scope_offers_what_scaling_accepts_and_ends_where_it_refuses(name: str) -> None:
+    """Of every contributor: its ends and factors between them, and just beyond and farther, by `scaled` alone."""
+    response = response_of(simulation(name))
+    kept = response.kept(4)
+    for own in response.slices:
+        scope = response.scope(own)
+        low, high = scope.factors or (1.0, 1.0)
+        for factor in (low, low**0.7, low**0.3, 1.0, high**0.3, high**0.7, high):
+            assert (factor in scope) == _accepted(response, own, factor) == (scope.factors is not None), own
+            if factor in scope:
+                assert np.isfinite(kept.redrawn(response.scaled({own: factor}).draws).columns).all(), own
+        for end, why, way in ((low, scope.below, 1 / 1.00001), (high, scope.above, 1.00001)):
+            assert bool(why) or end in (0.001, 1000.0), own
+            for factor in (end * way, end * way**20_000, end * way**200_000) if why else ():
+                assert factor not in scope, own
+                assert not _accepted(response, own, factor), own
+
+
+def _accepted(response: Response, name: str, factor: float) -> bool:
+    try:
+        response.scaled({name: factor})
+    except InputError:
+        return False
+    return True
+
+
+def test_a_scope_ends_where_a_length_would_be_below_0_and_says_so() -> None:
+    own = stack([1.0, 1.0], [0.0, 0.0], least=0.0, laws=[Normal(0.016, 0.014 / 3, (0.002, 0.030)), Constant(0.1)])
+    scope, fixed = own.scope("x0"), own.scope("x1")
+    assert scope.factors == pytest.approx((0.001, 16 / 14), rel=1e-9)
+    assert scope.below == ""
+    assert scope.above == "x0: expected at least 0 um, for less is not physical, got down to -1.6 um"
+    assert str(scope) == f"0.001 to 1.14286 ({scope.above})"
+    assert fixed.factors is None
+    assert (
+        str(fixed) == "cannot be scaled: x1: expected a law that can be scaled, got a constant, which does not spread"
+    )
+
+
+def test_a_line_has_the_scope_that_all_its_contributors_have() -> None:
+    response = response_of(simulation_of(load("box_with_discs")))
+    line, several = next((name, own) for name, own in response.lines.items() if len(own) > 1)
+    lows, highs = zip(*(response.scope(own).factors or (1.0, 1.0) for own in several), strict=True)
+    assert response.scope(line).factors == pytest.approx((max(lows), min(highs)), rel=1e-9)

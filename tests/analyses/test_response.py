@@ -1,20 +1,27 @@
 """Analyses read scenes: the same values as their runs have, and the same laws from standard normals."""
 
 import math
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from linear_stacks import stack
 from scipy.stats import ks_2samp, norm
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.response import Response, Values, response_of
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
+from tol3d.numerics.arrays import Array
 from tol3d.scene.bundled import bundled_scenes
 from tol3d.simulate import load, simulation_of
 from tol3d.study import draws
+from tol3d.study.simulation import Simulation
+from tol3d.system.dependent import DrawnAs
 from tol3d.system.draw import Ball, Draw, Each, Planar, Scalar
 from tol3d.system.normals import groups_of, normal_count, uniforms_of
 
@@ -23,7 +30,12 @@ TRIALS = 200
 
 
 def response(name: str, trials: int = TRIALS, *, analytic: bool = False) -> Response:
-    return response_of(simulation_of(load(name), Overrides(trials=trials)), analytic=analytic)
+    return response_of(simulation(name, trials), analytic=analytic)
+
+
+@cache
+def simulation(name: str, trials: int) -> Simulation:
+    return simulation_of(load(name), Overrides(trials=trials))
 
 
 def _same_as_a_run(name: str, folder: Path, trials: int) -> None:
@@ -162,7 +174,7 @@ def test_measures_are_chosen_by_name() -> None:
         response("spur_pair").of("normal backlas")
 
 
-REDRAWN = ("spur_pair", "bolted_cover", "every_field")  # plain, read by others, correlated
+REDRAWN = ("spur_pair", "every_field")  # plain, correlated
 
 
 @pytest.mark.parametrize(
@@ -194,11 +206,17 @@ def test_only_what_changes_is_drawn_again(monkeypatch: pytest.MonkeyPatch) -> No
     own, drawn = response("bolted_cover"), list[str]()
     size, hole = "base hole 1 size", "base hole 1"
     kept, others = own.kept(4), {name: own.scaled({name: 0.9}) for name in (size, hole)}
-    monkeypatch.setattr(draws, "fill", lambda columns, slices, some, uniforms: drawn.extend(each.name for each in some))
-    for name, expected in ((size, [size, hole]), (hole, [hole])):
+    expected, fill = {name: other.drawn(4)[0] for name, other in others.items()}, draws.fill
+
+    def told(columns: Array, slices: Any, some: Sequence[DrawnAs], uniforms: draws.Uniforms) -> None:
+        drawn.extend(each.name for each in some)
+        fill(columns, slices, some, uniforms)
+
+    monkeypatch.setattr(draws, "fill", told)
+    for name, names in ((size, [size, hole]), (hole, [hole])):
         drawn.clear()
-        kept.redrawn(others[name].draws)
-        assert drawn == expected
+        assert np.array_equal(kept.redrawn(others[name].draws).deviations, expected[name])
+        assert drawn == names
     drawn.clear()
     kept.redrawn(own.draws)
     assert drawn == []
@@ -221,3 +239,97 @@ class Sum(Scalar):
 
     def __init__(self) -> None:
         super().__init__(Normal(0.0, 1.0))
+
+
+# pieces, slopes and frames --------------------------------------------------------------------------------
+
+
+def test_values_in_pieces_are_those_of_all_at_once_to_the_bit() -> None:
+    """At positions and with builds that cannot be assembled; every row once, in order, the first 64 of them first."""
+    own = response("spur_pair")
+    deviations, positions = own.drawn(400)
+    deviations[::7] *= -20.0
+    expected = own.values(deviations, positions)
+    assert not expected.seated.all()
+    pieces = [*own.pieces(deviations, positions)]
+    assert [rows.start for rows, _ in pieces] == [0, *(rows.stop for rows, _ in pieces[:-1])]
+    assert (pieces[0][0].stop, pieces[-1][0].stop) == (64, 400)
+    assert np.array_equal(np.concatenate([each.values for _, each in pieces]), expected.values, equal_nan=True)
+    assert np.array_equal(np.concatenate([each.codes for _, each in pieces]), expected.codes)
+
+
+@pytest.mark.parametrize(
+    ("fixed", "each", "sizes"),
+    [
+        (0.018, 2e-5, [64, 331, 1344, 2994, 3844, 1423]),  # 0.1 / (0.018 + 64 · 2e-5) · 64 = 331, and so on
+        (0.14, 1e-3, [64, 128, 128, 128]),  # a row at 128 costs 0.66 of one at 64, but 0.268 s is long enough
+        (0.14, 1e-4, [64, 128, 256, 512, 1024, 1024]),  # fixed costs: twice as many until a row is no cheaper
+        (0.0, 1e-2, [64, 64, 64]),
+    ],
+)
+def test_pieces_grow_to_a_tenth_of_a_second(
+    fixed: float, each: float, sizes: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a clock that only evaluations move: so many seconds a call and a build."""
+    own, clock = stack([1.0], [1.0]), [0.0]
+    measure = Response.values
+
+    def timed(asked: Response, deviations: Array, positions: object = None) -> Values:
+        clock[0] += fixed + each * len(deviations)
+        return measure(asked, deviations)
+
+    monkeypatch.setattr(Response, "values", timed)
+    monkeypatch.setattr("time.perf_counter", lambda: clock[0])
+    rows = [rows for rows, _ in own.pieces(own.drawn(sum(sizes))[0])]
+    assert [one.stop - one.start for one in rows] == sizes
+
+
+def test_slopes_of_some_contributors_are_those_among_all_and_cost_their_builds_alone() -> None:
+    own = response("spur_pair").of("lost motion")
+    builds, positions = own.drawn(3)
+    everything, names = own.gradient(builds, positions), ["wheel eccentricity", "centre distance"]
+    before = own.evaluations
+    found = own.gradient(builds, positions, names)
+    assert own.evaluations - before == 3 * 2 * 3  # builds, both sides, components
+    columns = [k for name in names for k in range(own.slices[name].start, own.slices[name].stop)]
+    assert np.array_equal(found, everything[:, :, columns])
+    assert np.abs(found).min() > 0.0
+
+
+@pytest.mark.parametrize("engine", ["exact", "analytic"])
+def test_a_frame_of_drawn_builds_is_that_of_their_run(engine: str, tmp_path: Path) -> None:
+    run = run_scene("spur_pair", overrides=Overrides(trials=8, witness=0, engine=engine), out=tmp_path / "run")
+    own = response_of(simulation_of(load("spur_pair"), Overrides(trials=8, engine=engine)))
+    found = own.frame(*own.drawn(8))
+    assert {"centre distance [um]", "position:gear pair [deg]"} < {*found.columns}
+    assert len(found.columns) == 11 + (4 if engine == "exact" else 2)
+    assert found.equals(run.frame()[[*found.columns]])
+
+
+def test_a_response_shows_itself_in_a_line() -> None:
+    own, five = response("door"), "upper gap, lower gap, roof gap, upper flush, lower flush, …"
+    assert repr(own) == f"<Response of door in its body opening, exact: {five}; 17 contributors>"
+    assert ": roof gap; 17" in repr(own.of("roof gap"))
+    assert ", analytic: " in repr(response("door", analytic=True))
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        (lambda own: own.slices["centre distanse"], "expected a contributor, .*did you mean .centre distance"),
+        (lambda own: own.scaled({"x": 2.0}).draws["y"], "expected a contributor, got 'x'; known here"),
+        (lambda own: own.draws["y"], "expected a contributor, got 'y'"),
+        (lambda own: own.lines["y"], "expected a line of the scene that states a tolerance, got 'y'"),
+        (lambda own: own.scaled({}, {"y": "low"}), "expected a contributor, got 'y'"),
+        (lambda own: own.scope("y"), "expected a contributor, got 'y'"),
+        (lambda own: own.gradient(own.mean, names=["y"]), "expected a contributor, got 'y'"),
+        (lambda own: own.deviations(np.zeros(own.dimension), ["y"]), "expected a contributor, got 'y'"),
+        (lambda own: own.drawn(-1), "expected a number of builds, got -1"),
+        (lambda own: own.values(np.zeros(3)), r"expected deviations \(n, 10\), got \(1, 3\)"),
+        (lambda own: own.values(own.mean, {}), "expected positions {'gear pair': .*, by name, got {}"),
+        (lambda own: own.values(own.drawn(2)[0], own.drawn(3)[1]), "expected positions .*2,.*got .*3,"),
+    ],
+)
+def test_wrong_names_and_shapes_are_refused_in_words(ask: Callable[[Response], object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        ask(response("spur_pair"))

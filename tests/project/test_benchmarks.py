@@ -103,7 +103,11 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"whole study, both methods +│ +1 │ +{NUMBER} │ +{NUMBER}",
     ),
     "scale": (rf"3x2z │ +100 │ +{NUMBER} │ +{NUMBER} │ +[\d.]+ │ +[\d.]+ │ +{NUMBER}",),
-    "stages": (rf"draws +│ +{NUMBER} │ +{NUMBER}", rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}"),
+    "stages": (
+        rf"draws +│ +{NUMBER} │ +{NUMBER}",
+        rf"statistics, regressors included +│ +{NUMBER} │ +{NUMBER}",
+        rf"one drawn again +│ +{NUMBER} │ +{NUMBER} │ +{NUMBER}",
+    ),
     "rare": (
         rf"importance sampling: {NUMBER} of 2 intervals hold 0.0507 ppm",
         rf"mean {NUMBER} ppm, spread {NUMBER} %",

@@ -13,6 +13,7 @@ from toys.rods import RODS
 from toys.rods.system import RodsSystem, Scaled
 
 from tol3d import Overrides, Run, replay, run_scene
+from tol3d.analyses.response import response_of
 from tol3d.distributions import Distribution
 from tol3d.distributions.uniform import Uniform
 from tol3d.execution.pools import Execution
@@ -101,6 +102,19 @@ def test_uniforms_are_keyed_by_name_and_in_the_scene_s_order(sampler: str) -> No
     assert np.array_equal(trials[:, 2], plain[:, 2])
     assert trials[:, 1] == pytest.approx(plain[:, 1] * (1 + 10 * plain[:, 2]), rel=1e-15)
     assert trials[:, 0] == pytest.approx(plain[:, 0] * trials[:, 1] / 0.01, rel=1e-14)
+
+
+def test_what_reads_a_changed_length_is_drawn_again_with_it() -> None:
+    """The mark reads the tip, the tip the length: by their factors from the length's own uniforms, half as far."""
+    response = response_of(simulation_of(load(SCENE)))
+    kept = response.kept(500)
+    other = response.with_draws({"length": Scalar(Uniform(0.0, 0.05))})
+    mark, tip, length = kept.redrawn(other.draws).columns
+    old_mark, old_tip, old_length = kept.columns
+    assert length == pytest.approx(old_length / 2, rel=1e-12)
+    assert tip == pytest.approx(old_tip * (1 + 10 * length) / (1 + 10 * old_length), rel=1e-12)
+    assert mark == pytest.approx(old_mark * tip / old_tip, rel=1e-12)
+    assert np.array_equal(kept.redrawn(other.draws).deviations, other.drawn(500)[0])
 
 
 def test_extremes_move_what_is_read_along() -> None:

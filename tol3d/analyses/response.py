@@ -4,24 +4,28 @@ A response is a simulation, one of its methods and some of its measures. It know
 of the contributors, positions those of the system's streams.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass, replace
 from functools import cached_property, partial
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal, NoReturn, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.analyses.kept_batches import KeptBatches
+from tol3d.analyses.scope import Scope, scope_of
 from tol3d.distributions import Distribution
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.runs.frame import frame_of
 from tol3d.scene.nearest import hint
 from tol3d.study.acting import acting, nothing_acts
+from tol3d.study.columns import drawn_columns
 from tol3d.study.curve_tally import ENDS, HIGHEST, LOWEST
 from tol3d.study.draws import KeptDraws, fill, kept_draws
-from tol3d.study.evaluation import Evaluation
+from tol3d.study.evaluation import BATCH, Evaluation
 from tol3d.study.high_low_mean import ranges
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, method_of
@@ -35,10 +39,15 @@ from tol3d.system.normals import groups_of, normal_count, uniforms_of
 from tol3d.system.other_laws import Following, Zoned, refuse_held, refuse_impossible, with_law
 from tol3d.system.other_laws import scaled as scaled_draw
 from tol3d.system.other_laws import shifted as shifted_draw
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, status_column, value_column
 from tol3d.system.stated import component_count, component_slices, mean_deviations, stated
 from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+T = TypeVar("T")
 Codes = NDArray[np.int8]
 Standing = Literal["rest", "averaged", "drawn"]
 """Positions of rows: at rest, the same drawn ones in all rows that are compared, or each row's own."""
@@ -47,6 +56,16 @@ NOTHING_STAYS: Final[Mapping[str, Stays]] = {}
 
 NUDGE: Final[Mapping[str, float]] = {"um": 1e-3, "arcmin": 1e-5, "K": 0.1, "1": 1e-3}
 """Steps of central differences [mm, rad, K or shares], by the unit of a contributor's columns."""
+
+SHOWN: Final = 5
+"""Measures that a response names where it shows itself."""
+FIRST_PIECE: Final = 64
+"""Builds of the first piece."""
+PIECE: Final = 0.1
+"""Seconds to which pieces grow."""
+MOST_GROWTH: Final = 16.0
+CHEAPER: Final = 0.75
+"""Cost of a build over that in the piece before, below which a piece grows on: most of it does not grow with builds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +96,23 @@ class Count:
     evaluations: int = 0
 
 
-@dataclass(frozen=True, eq=False)
+class _Known(dict[str, T]):
+    """By name; an unknown one is refused as a user's mistake.
+
+    Args:
+        what: a name stands for, with its article.
+        named: the content.
+    """
+
+    def __init__(self, what: str, named: Mapping[str, T]) -> None:
+        super().__init__(named)
+        self.what = what
+
+    def __missing__(self, name: str) -> NoReturn:
+        raise InputError(f"expected {self.what}, got {name!r}{hint(str(name), self)}")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Response:
     """The response of a scene to deviations.
 
@@ -99,6 +134,11 @@ class Response:
     count: Count = field(default_factory=Count)
     batches: KeptBatches | None = None
 
+    def __repr__(self) -> str:
+        shown = ", ".join(self.names[:SHOWN]) + (", …" if len(self.names) > SHOWN else "")
+        how = ANALYTIC if self.method is None else self.simulation.study.engine
+        return f"<Response of {self.simulation.system.name}, {how}: {shown}; {len(self.draws)} contributors>"
+
     @property
     def evaluations(self) -> int:
         """Number of builds evaluated."""
@@ -119,7 +159,8 @@ class Response:
         """Contributors by the line of the scene that states their tolerance, and is changed for all of them at once."""
         found = {own.name: own.contributors for own in self.simulation.lines}
         stated = {name for own in found.values() for name in own}
-        return found | {own.name: (own.name,) for own in self.contributors if own.name not in stated}
+        found |= {own.name: (own.name,) for own in self.contributors if own.name not in stated}
+        return _Known("a line of the scene that states a tolerance", found)
 
     def source(self, measure: Measure) -> Measure:
         """The system's own measure: of an end of a curve the curve."""
@@ -156,7 +197,7 @@ class Response:
     @cached_property
     def slices(self) -> Mapping[str, slice]:
         """Columns of each contributor."""
-        return component_slices(self.simulation.system)
+        return _Known("a contributor", component_slices(self.simulation.system))
 
     def of(self, *names: str) -> "Response":
         """The same of some measures.
@@ -210,11 +251,11 @@ class Response:
         Args:
             deviations: (n, components) [mm, rad, K].
             positions: of the system's streams, (n,) each; default: at rest.
+
+        Raises:
+            InputError: other columns than the components, or positions that are not those of the system.
         """
-        system, deviations = self.simulation.system, np.atleast_2d(np.asarray(deviations, dtype=np.float64))
-        if deviations.shape[1] != self.components:
-            raise InputError(f"expected deviations (n, {self.components}), got {deviations.shape}")
-        trials = stated(system, deviations) if positions is None else Trials(deviations, positions)
+        system, trials = self.simulation.system, self._trials(deviations, positions)
         if self.batches is None:
             values, codes = self._evaluated(trials)
         else:
@@ -225,6 +266,40 @@ class Response:
         values[(codes != OK) & ~kept] = np.nan
         self.count.evaluations += len(trials)
         return Values(values, codes, system.statuses.texts)
+
+    def _trials(self, deviations: Array, positions: Mapping[str, Array] | None) -> Trials:
+        system, deviations = self.simulation.system, np.atleast_2d(np.asarray(deviations, dtype=np.float64))
+        if deviations.ndim != 2 or deviations.shape[1] != self.components:
+            raise InputError(f"expected deviations (n, {self.components}), got {deviations.shape}")
+        if positions is None:
+            return stated(system, deviations)
+        trials = Trials(deviations, positions)
+        wanted = dict.fromkeys(self._positions, (len(trials),))
+        if (got := {name: np.shape(own) for name, own in positions.items()}) != wanted:
+            raise InputError(f"expected positions {wanted}, by name, got {got}")
+        return trials
+
+    @cached_property
+    def _positions(self) -> tuple[str, ...]:
+        """Names of the positions."""
+        return tuple(self.positions(1, "rest"))
+
+    def frame(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> "pd.DataFrame":
+        """Builds and their measures as a DataFrame of pandas, a row a build, under the names of a run's columns.
+
+        Args:
+            deviations, positions: as of `values`.
+
+        Raises:
+            InputError: as `values`. MissingPackageError: pandas is not installed.
+        """
+        system, found = self.simulation.system, self.values(deviations, positions)
+        columns = drawn_columns(system, self._trials(deviations, positions))
+        for name, values, codes in zip(self.names, found.values.T, found.codes.T, strict=True):
+            columns[value_column(ANALYTIC if self.method is None else GEOMETRIC, name)] = values
+            if self.method is not None:
+                columns[status_column(name)] = system.statuses.by_code[codes]
+        return frame_of(columns, {})
 
     def _evaluated(self, trials: Trials) -> tuple[Array, Codes]:
         """Values and codes (n, measures) of builds."""
@@ -243,25 +318,72 @@ class Response:
                     codes[rows, k] = status
         return values, codes
 
-    def gradient(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Array:
-        """Change of each measure with each component (n, measures, components), in its unit a mm, rad or K.
+    def pieces(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Iterator[tuple[slice, Values]]:
+        """Measures of builds piece by piece, with the rows of each: the same bits as `values` gives all at once.
 
-        By central differences, all in one batch: within their square of the step.
+        Between two pieces the caller shows what there is, or stops. The first has 64 builds; the others grow to 0.1 s
+        each, or further where that makes a build much cheaper and they stay below 0.5 s.
 
         Args:
             deviations, positions: as of `values`.
         """
+        builds = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
+        first, count, before = 0, FIRST_PIECE, np.inf
+        while first < len(builds):
+            rows = slice(first, min(first + count, len(builds)))
+            begun = time.perf_counter()
+            values = self.values(builds[rows], _at(positions, rows))
+            took = max(time.perf_counter() - begun, 1e-6)
+            yield rows, values
+            first, each = rows.stop, took / count
+            if took < PIECE:
+                count = int(count * min(PIECE / took, MOST_GROWTH))
+            elif took < 2.5 * PIECE and each < CHEAPER * before:
+                count *= 2
+            before = each
+
+    def gradient(
+        self,
+        deviations: Array,
+        positions: Mapping[str, Array] | None = None,
+        names: Sequence[str] | None = None,
+    ) -> Array:
+        """Change of each measure with each component (n, measures, components), in its unit a mm, rad or K.
+
+        By central differences, in batches that fit the memory: within their square of the step.
+
+        Args:
+            deviations, positions: as of `values`.
+            names: contributors whose components alone are moved, and returned in this order; default: all, of which
+                those that act on no measure are not moved.
+
+        Raises:
+            InputError: no such contributor.
+        """
         rows = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
-        steps, acting = self._steps, self.acting_columns
-        shifts = np.zeros((2 * len(acting), self.components))
-        shifts[np.arange(len(acting)), acting] = steps[acting]
-        shifts[len(acting) + np.arange(len(acting)), acting] = -steps[acting]
-        builds = (rows[:, None] + shifts).reshape(-1, self.components)
-        places = None if positions is None else {k: np.repeat(own, len(shifts), axis=0) for k, own in positions.items()}
-        found = self.values(builds, places).values.reshape(len(rows), 2, len(acting), len(self.measures))
-        gradient = np.zeros((len(rows), len(self.measures), self.components))
-        gradient[:, :, acting] = np.moveaxis((found[:, 0] - found[:, 1]) / (2 * steps[acting][:, None]), 1, 2)
-        return gradient
+        if names is None:
+            found = np.zeros((len(rows), len(self.measures), self.components))
+            found[:, :, self.acting_columns] = self._slopes(rows, positions, self.acting_columns)
+            return found
+        own = [self.slices[name] for name in names]
+        columns = [k for one in own for k in range(one.start, one.stop)]
+        return self._slopes(rows, positions, np.array(columns, dtype=np.int64))
+
+    def _slopes(self, rows: Array, positions: Mapping[str, Array] | None, columns: NDArray[np.int64]) -> Array:
+        """Slopes by some components (n, measures, columns)."""
+        steps, pairs = self._steps[columns], np.arange(len(columns))
+        shifts = np.zeros((2 * len(columns), self.components))
+        shifts[pairs, columns], shifts[len(columns) + pairs, columns] = steps, -steps
+        many = max(1, BATCH // max(shifts.size, 1))
+        found = np.empty((len(rows), len(self.measures), len(columns)))
+        for first in range(0, len(rows), many):
+            some = slice(first, first + many)
+            builds = (rows[some, None] + shifts).reshape(-1, self.components)
+            places = {name: np.repeat(own, len(shifts), axis=0) for name, own in (_at(positions, some) or {}).items()}
+            values = self.values(builds, None if positions is None else places).values
+            either = values.reshape(len(rows[some]), 2, len(columns), len(self.measures))
+            found[some] = np.moveaxis((either[:, 0] - either[:, 1]) / (2 * steps[:, None]), 1, 2)
+        return found
 
     @cached_property
     def _steps(self) -> Array:
@@ -309,7 +431,7 @@ class Response:
             count = normal_count(self.draws[own.name])
             found[own.name] = slice(first, first + count)
             first += count
-        return found
+        return _Known("a contributor", found)
 
     @property
     def dimension(self) -> int:
@@ -365,6 +487,8 @@ class Response:
             count: of builds.
             seed: another one than the study's.
         """
+        if not isinstance(count, int | np.integer) or count < 0:
+            raise InputError(f"expected a number of builds, got {count!r}")
         study = self.simulation.study if seed is None else replace(self.simulation.study, seed=seed)
         return kept_draws(replace(self.simulation, study=study), count, self.draws)
 
@@ -393,7 +517,7 @@ class Response:
             own, other = self.drawn_by(name).components, draw.components
             if len(own) != len(other):
                 raise InputError(f"{name}: expected a draw of {len(own)} components, got one of {len(other)}")
-        return replace(self, draws={**self.draws, **draws})
+        return replace(self, draws=_Known("a contributor", {**self.draws, **draws}))
 
     def with_laws(self, laws: Mapping[str, Distribution]) -> "Response":
         """The same system with other tolerances, by contributor: deviations as drawn by a scene with these tolerances.
@@ -416,8 +540,21 @@ class Response:
         Raises:
             InputError: no such contributor, one whose law cannot be scaled, or deviations that cannot be.
         """
+        for name in stays:
+            self.drawn_by(name)
         changes = {name: partial(scaled_draw, factor=factor, stays=stays.get(name)) for name, factor in factors.items()}
         return self._made_again(changes, physical=physical)
+
+    def scope(self, name: str) -> Scope:
+        """Factors that `scaled` accepts for a contributor, or for all of a line of the scene, and why no others.
+
+        Raises:
+            InputError: no such contributor or line.
+        """
+        names = self.lines.get(name, (name,))
+        for own in names:
+            self.drawn_by(own)
+        return scope_of(lambda factor: self.scaled(dict.fromkeys(names, factor)))
 
     def shifted(self, changes: Mapping[str, float]) -> "Response":
         """The same system with other means of tolerances, by contributor; their widths stay.
@@ -465,6 +602,10 @@ def _sized(draw: Draw, width: float) -> Draw:
     return draw.sized(width)
 
 
+def _at(positions: Mapping[str, Array] | None, rows: slice) -> Mapping[str, Array] | None:
+    return None if positions is None else {name: own[rows] for name, own in positions.items()}
+
+
 def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
     """The response of a simulation by its engine's method, or by the analytic one."""
     exact = not analytic and simulation.study.engine != ANALYTIC_METHOD
@@ -474,9 +615,8 @@ def response_of(simulation: Simulation, *, analytic: bool = False) -> Response:
         ends = _ends(own) if own.take == "curve" else (own,)
         measures += ends
         curves |= {end.name: own for end in ends if end is not own}
-    return Response(
-        simulation, tuple(measures), method, {own.name: own.draw for own in simulation.system.contributors}, curves
-    )
+    draws = _Known("a contributor", {own.name: own.draw for own in simulation.system.contributors})
+    return Response(simulation, tuple(measures), method, draws, curves)
 
 
 def _ends(curve: Measure) -> tuple[Measure, ...]:

@@ -103,9 +103,9 @@ def rates_of(response: Response, deviations: Array, positions: Mapping[str, Arra
     """
     rows = min(rows, len(deviations))
     places = {name: own[:rows] for name, own in positions.items()}
-    drawn = _gradients(response, deviations[:rows], places)
+    drawn = response.gradient(deviations[:rows], places)
     mean, zero = response.mean, np.zeros(response.components)
-    middle = _mean(_gradients(response, np.repeat((mean / 2)[None], rows, axis=0), places))
+    middle = _mean(response.gradient(np.repeat((mean / 2)[None], rows, axis=0), places))
     slopes, steadiness = _steady(drawn)
     off = deviations - deviations.mean(axis=0)
     variances = np.array(
@@ -174,16 +174,6 @@ def _variances(slopes: Array, draw: Draw, off: Array) -> Array:
     else:
         covariance = off.T @ off / max(len(off) - 1, 1)
     return np.asarray(np.einsum("rmi,ij,rmj->rm", slopes, covariance, slopes))
-
-
-def _gradients(response: Response, rows: Array, positions: Mapping[str, Array]) -> Array:
-    """Gradients (n, measures, components) in batches that fit the memory; NaN where a build cannot be assembled."""
-    many = max(1, AT_ONCE // max(2 * response.components**2, 1))
-    pieces = [
-        response.gradient(rows[k : k + many], {name: own[k : k + many] for name, own in positions.items()})
-        for k in range(0, len(rows), many)
-    ]
-    return np.concatenate(pieces)
 
 
 def _steady(gradients: Array) -> tuple[Array, Array]:

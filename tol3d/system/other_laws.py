@@ -148,8 +148,11 @@ def refuse_impossible(contributor: Contributor, draw: Draw) -> None:
     Raises:
         InputError: naming the contributor.
     """
-    least, law, per = contributor.least, draw.distribution, contributor.per_unit
-    if least is not None and law.low < min(least, contributor.distribution.low) - LEAST_OFF:
+    least, per = contributor.least, contributor.per_unit
+    if least is None:
+        return
+    law = draw.distribution  # of a zone with a bonus it takes long
+    if law.low < min(least, contributor.distribution.low) - LEAST_OFF:
         raise InputError(
             f"{contributor.name}: expected at least {least / per:g} {contributor.unit}, for less is not physical, "
             f"got down to {law.low / per:.4g} {contributor.unit}"
