@@ -84,6 +84,11 @@ class Values:
     texts: tuple[str, ...]
 
     @property
+    def statuses(self) -> NDArray[np.str_]:
+        """Status of each in words (n, measures)."""
+        return np.asarray(np.array(self.texts)[self.codes])
+
+    @property
     def seated(self) -> NDArray[np.bool_]:
         """True where a value is assembled and measured (n, measures)."""
         return np.asarray(self.codes == OK)

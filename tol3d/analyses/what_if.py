@@ -7,7 +7,7 @@ reweighted: in the tails that would be off by a factor.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -20,9 +20,24 @@ from tol3d.analyses.limit_state import LimitState, Side
 from tol3d.analyses.rare import DRAWS, rare_event
 from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
+from tol3d.analyses.results import results_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
-from tol3d.runs.summary.values import Count, Known, KnownNumbers, Label, Numbers, Ppm, PpmRange, Section, made
+from tol3d.runs.summary.sample import Sample
+from tol3d.runs.summary.values import (
+    LEFT_OUT,
+    Count,
+    Known,
+    KnownNumbers,
+    Label,
+    Maybe,
+    Number,
+    Numbers,
+    Ppm,
+    PpmRange,
+    Section,
+    made,
+)
 from tol3d.statistics.limits import CONFIDENCE, Proportion
 from tol3d.study.acting import looked_at
 from tol3d.system.dependent import reads_of
@@ -30,7 +45,6 @@ from tol3d.system.measure import Measure
 
 PLACES: Final = 16
 STARTS: Final = 2
-LOW, HIGH = 0.00135, 0.99865
 BINS: Final = 40
 MOST_TRIALS: Final = 100_000
 
@@ -62,7 +76,8 @@ class LimitNumbers(Section):
 class StateNumbers(Section):
     """A measure with some tolerances, in its unit.
 
-    `low` and `high` are the quantiles 0.135 % and 99.865 % of the trials; `counts` are trials a bin.
+    `low` and `high` are the quantiles 0.135 % and 99.865 % of the trials; `counts` are trials a bin. What is of the
+    trials is what a run of them has.
     """
 
     sigma_by_rates: Known
@@ -73,6 +88,7 @@ class StateNumbers(Section):
     failed: Count
     counts: Numbers
     limits: dict[str, LimitNumbers] = Field(description="low, high: those that the measure has")
+    ppk: Maybe[Number] = Field(default=LEFT_OUT, description="of the trials, by the rule of a run")
 
 
 class MeasureWhatIf(Section):
@@ -159,10 +175,15 @@ def what_if(
     states = {"before": asked, "after": changed(asked, changes)}
     activity("rates")
     rates = rates_of(asked)
-    sampled = {}
+    sampled, results = dict[str, Array](), dict[str, Mapping[str, Sample]]()
     for word, own in states.items():
         activity(f"{count} trials {word}")
-        sampled[word] = own.values(*own.drawn(count)).values if count else np.zeros((0, len(asked.measures)))
+        sampled[word], results[word] = np.zeros((0, len(asked.measures))), {}
+        if count:
+            drawn = own.drawn(count)
+            read = own.values(*drawn)
+            sampled[word] = np.where(read.seated, read.values, np.nan)
+            results[word] = results_of(own, *drawn, read)
     found = {}
     for k, one in enumerate(asked.measures):
         values = {word: own[:, k] for word, own in sampled.items()}
@@ -171,7 +192,7 @@ def what_if(
         for word, own in states.items():
             activity(f"{one.name}, limits {word}")
             alone, sigma = own.of(one.name), float(rates.sigmas(own)[k])
-            both[word] = _numbers(alone, sigma, values[word], edges, draws, seed)
+            both[word] = _numbers(alone, sigma, values[word], results[word].get(one.name), edges, draws, seed)
         found[one.name] = made(
             MeasureWhatIf,
             unit=one.unit,
@@ -216,17 +237,19 @@ def _concerned(response: Response, changes: Sequence[Change], measure: str | Non
     return found
 
 
-def _numbers(response: Response, by_rates: float, values: Array, edges: Array, draws: int, seed: int) -> StateNumbers:
+def _numbers(
+    response: Response, by_rates: float, values: Array, sample: Sample | None, edges: Array, draws: int, seed: int
+) -> StateNumbers:
     good = values[np.isfinite(values)]
-    low, high = np.quantile(good, [LOW, HIGH]) if good.size else (None, None)
     return made(
         StateNumbers,
         sigma_by_rates=by_rates if np.isfinite(by_rates) else None,
-        mean=float(good.mean()) if good.size else None,
-        sigma=float(good.std(ddof=1)) if good.size > 1 else None,
-        low=None if low is None else float(low),
-        high=None if high is None else float(high),
-        failed=len(values) - len(good),
+        mean=sample.mean if sample else None,
+        sigma=sample.sigma if sample else None,
+        low=sample.p0_135 if sample else None,
+        high=sample.p99_865 if sample else None,
+        failed=sample.trials - sample.count if sample else 0,
+        **({"ppk": sample.ppk} if sample and sample.ppk is not None else {}),
         counts=np.histogram(good, edges)[0].astype(float).tolist(),
         limits={
             side: _limit(response, side, limit, values, draws, seed, smooth=bool(np.isfinite(by_rates)))

@@ -61,6 +61,8 @@ def _answer(name: str, own: MeasureWhatIf) -> Line:
     told = [f"sigma {_named(before, own.unit)} → {_named(after, own.unit)}{_percent(before, after)}"]
     if own.before.limits:
         told.append(f"out of limits {_out(own.before)} → {_out(own.after)}")
+    if own.before.ppk is not None and own.after.ppk is not None:
+        told.append(f"Ppk {own.before.ppk:.2f} → {own.after.ppk:.2f}")
     return Line(((name, "bold"), (f": {'; '.join(told)}", "")))
 
 
@@ -113,6 +115,10 @@ def what_if_table(own: MeasureWhatIf) -> Table:
     unit = own.unit
     pairs = ((label, own.before.value(key), own.after.value(key)) for label, key in ROWS)
     rows = [_values(*pair, unit) for pair in pairs if pair[1:] != (None, None)]
+    ppks = [state.ppk for state in (own.before, own.after)]
+    if any(ppk is not None for ppk in ppks):
+        change = None if None in ppks else (ppks[1] or 0.0) - (ppks[0] or 0.0)
+        rows.append(Row("Ppk", tuple(Shown(NOTHING if ppk is None else f"{ppk:.2f}", ppk) for ppk in (*ppks, change))))
     if own.before.failed or own.after.failed:
         rows.append(Row("builds that fail", (str(own.before.failed), str(own.after.failed), "")))
     for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):

@@ -84,7 +84,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         pilot: columns of the study's first PILOT_TRIALS trials, for any number of trials.
     """
     grids = {
-        measure.name: _grid(measure, system.closed_form(measure), _values(system, measure, pilot))
+        measure.name: grid_of(measure, system.closed_form(measure), _values(system, measure, pilot))
         for measure in system.measures
         if measure.take != "curve"
     }
@@ -93,7 +93,7 @@ def grids_of(system: System, pilot: Columns) -> Mapping[str, Grid]:
         if measure.take == "curve":
             curves = _values(system, measure, pilot)
             for end in judged_ends(measure):
-                grids[end_name(measure.name, end)] = _grid(measure, None, [ENDS[end](own) for own in curves])
+                grids[end_name(measure.name, end)] = grid_of(measure, None, [ENDS[end](own) for own in curves])
     return grids
 
 
@@ -118,7 +118,8 @@ def _spectrum_grids(system: System, measure: Measure, pilot: Columns) -> dict[st
     return {grid_name(measure.name, k): Grid.empty(0.0, span / ORDER_BINS, ORDER_BINS) for k, span in enumerate(spans)}
 
 
-def _grid(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -> Grid:
+def grid_of(measure: Measure, form: ClosedForm | None, columns: Sequence[Array]) -> Grid:
+    """The empty grid of a measure, by its closed form and the pilot's values by each method (trials,), in its unit."""
     if measure.unit in FACTORS["count"]:
         return CountGrid.up_to(MOST_COUNTED)
     spans = [(form.mean * measure.per_internal, form.sigma * measure.per_internal)] if form else []

@@ -1,0 +1,44 @@
+"""Statistics of a response's trials: mean, sigma, quantiles, Ppk and fractions out of limits, as a run of them has."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from tol3d.analyses.response import Response, Values
+from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.sample import Sample as SampleSummary
+from tol3d.study.replicated import rows_of_replicates
+from tol3d.study.sample import Sample, sample_summary
+from tol3d.study.tally import PILOT_TRIALS, grid_of
+from tol3d.system.outcome import ANALYTIC, GEOMETRIC, outcome_of, status_column, value_column
+
+
+def results_of(
+    response: Response, deviations: Array, positions: Mapping[str, Array], values: Values
+) -> Mapping[str, SampleSummary]:
+    """Statistics of the study's first trials by measure, in its unit, of the method that the response reads.
+
+    The first of them are read by the analytic method too, so that quantiles are read from a run's grid.
+
+    Args:
+        response: whose measures they are.
+        deviations, positions: of the trials, as `Response.drawn` gives them: at least one.
+        values: of the trials.
+    """
+    system, study = response.simulation.system, response.simulation.study
+    first = slice(0, PILOT_TRIALS)
+    pilots = [values.values[first]]
+    if response.method is not None:
+        by_theory = replace(response, method=None)
+        pilots.append(by_theory.values(deviations[first], {name: own[first] for name, own in positions.items()}).values)
+    method = ANALYTIC if response.method is None else GEOMETRIC
+    rows, found = rows_of_replicates(study, 0, len(deviations)), {}
+    for k, measure in enumerate(response.measures):
+        columns = {
+            value_column(method, measure.name): values.values[:, k],
+            status_column(measure.name): values.statuses[:, k],
+        }
+        form = system.closed_form(measure) if response.source(measure) is measure else None
+        grid = grid_of(measure, form, [own[:, k] for own in pilots])
+        outcome = outcome_of(columns, method, measure.name, system.statuses.lacking)
+        found[measure.name] = sample_summary(measure, Sample.of(measure, outcome, grid, rows), study.ppk_by)
+    return found
