@@ -11,7 +11,7 @@ from assembly_trials import Assembled, assembled
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 
-from tol3d.assembly.placing.gauging import gauged_patterns
+from tol3d.assembly.placing.gauging import GaugedPattern
 from tol3d.assembly.torsors.common_opening import TurnedOpening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, simulation_of
@@ -188,10 +188,8 @@ def random_patterns(count: int, seed: int) -> tuple[Array, Array]:
 
 def gauged(errors: Array, radii: Array) -> Array:
     about = PLACES - PLACES.mean(axis=0)
-    worst = np.empty(len(errors))
-    x, y = (np.ascontiguousarray((about + errors)[:, :, k].T) for k in (0, 1))
-    gauged_patterns(x, y, np.ascontiguousarray(radii.T), about, worst)
-    return worst
+    x, y = (about + errors).transpose(2, 1, 0)
+    return GaugedPattern(x, y, radii.T, about).least()
 
 
 def assert_least(count: int, seed: int) -> None:

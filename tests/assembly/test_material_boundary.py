@@ -274,8 +274,7 @@ def test_circles_that_no_shift_reaches_have_no_value() -> None:
     """Places and a room by numbers: reached, reached where the room ends, and a room that is empty."""
     x = np.array([[1.0, 1.0, 1.0], [0.0, 0.0, 0.3], [0.0, 0.0, -0.3]])
     radii = np.array([[0.0, 0.1, 0.0], [2.0, 0.5, 0.2], [2.0, 0.5, 0.2]])
-    least = np.empty(3)
-    least_in_rooms(x, np.zeros((3, 3)), radii, 1, least)
+    least = least_in_rooms(x, np.zeros((3, 3)), radii, 1)
     assert least[:2] == pytest.approx([0.0, 0.4], abs=1e-11)
     assert np.isnan(least[2])
 

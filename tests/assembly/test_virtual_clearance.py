@@ -11,7 +11,7 @@ from scipy import integrate
 from scipy.optimize import minimize
 from scipy.stats import halfnorm, norm, rayleigh
 
-from tol3d.assembly.placing.common_opening import common_openings
+from tol3d.assembly.placing.common_opening import opening
 from tol3d.assembly.placing.method import features_placed
 from tol3d.assembly.torsors.common_opening import CommonOpening
 from tol3d.errors import SceneError
@@ -82,9 +82,7 @@ def test_four_holes_of_which_three_decide(tmp_path: Path, method: str) -> None:
 
 def test_the_circle_of_four_holes_lies_where_it_is_known_to() -> None:
     x, y, sizes = FOUR.T[:, :, None]
-    openings, centres = np.empty(1), np.empty((2, 1))
-    common_openings(np.ascontiguousarray(x), np.ascontiguousarray(y), sizes / 2, openings, centres)
-    assert centres[:, 0] == pytest.approx((0.0321154, 0.0369231), abs=1e-7)
+    assert opening(x, y, sizes / 2).centres[:, 0] == pytest.approx((0.0321154, 0.0369231), abs=1e-7)
 
 
 # random sets of discs ----------------------------------------------------------------------------------------
@@ -130,12 +128,11 @@ def by_programme(discs: Array) -> float:
 
 
 def by_methods(discs: Array) -> tuple[float, float]:
-    openings, centres = np.empty(1), np.empty((2, 1))
-    common_openings(*(np.ascontiguousarray(own[:, None]) for own in discs), openings, centres)
-    x, y, radii = discs
-    assert openings[0] == pytest.approx(-2 * np.max(np.hypot(x - centres[0], y - centres[1]) - radii), abs=1e-12)
+    found, (x, y, radii) = opening(*discs[:, :, None]), discs
+    off = np.hypot(x - found.centres[0], y - found.centres[1]) - radii
+    assert found.outside[0] == pytest.approx(off.max(), abs=1e-12)
     term = CommonOpening(np.zeros((3 * len(x), 1)))
-    return float(openings[0]), float(term.values(discs.T.reshape(-1, 1))[0, 0])
+    return -2.0 * float(found.outside[0]), float(term.values(discs.T.reshape(-1, 1))[0, 0])
 
 
 def assert_alike(sets: list[Array]) -> None:
@@ -160,21 +157,19 @@ def test_the_term_and_the_kernel_agree_on_many_more() -> None:
     for size, spread in ((2, 0.05), (3, 0.05), (4, 0.5), (6, 0.02)):
         x, y = rng.normal(0.0, spread, (2, size, 5_000))
         radii = 4.2 + rng.normal(0.0, 0.02, (size, 5_000))
-        openings, centres = np.empty(5_000), np.empty((2, 5_000))
-        common_openings(x, y, radii, openings, centres)
         read = np.stack([x, y, radii], axis=1).reshape(3 * size, -1)
-        assert CommonOpening(np.zeros((3 * size, 1))).values(read)[0] == pytest.approx(openings, abs=1e-11)
+        expected = CommonOpening(np.zeros((3 * size, 1))).values(read)[0]
+        assert -2.0 * opening(x, y, radii).outside == pytest.approx(expected, abs=1e-11)
 
 
 def test_a_trial_s_bits_are_its_own() -> None:
     rng = np.random.default_rng(4)
     rows = [*rng.normal(0.0, 0.05, (2, 5, 300)), 4.2 + rng.normal(0.0, 0.02, (5, 300))]
-    openings, centres = np.empty(300), np.empty((2, 300))
-    common_openings(*rows, openings, centres)
+    together = opening(*rows)
     for k in (0, 17, 299):
-        alone, centre = np.empty(1), np.empty((2, 1))
-        common_openings(*(np.ascontiguousarray(own[:, k : k + 1]) for own in rows), alone, centre)
-        assert alone[0] == openings[k]
+        alone = opening(*(own[:, k : k + 1] for own in rows))
+        assert alone.outside[0] == together.outside[k]
+        np.testing.assert_array_equal(alone.weights[:, 0], together.weights[:, k])
 
 
 # holes that lean, on parts that turn -------------------------------------------------------------------------

@@ -24,9 +24,7 @@ from tol3d.assembly.placing import common_opening
 from tol3d.numerics import compiled
 assert all(common_opening.__file__.startswith(tree) for tree in sys.argv[1:])
 x, y = np.random.default_rng(1).normal(size=(2, 4, 50))
-openings, centres = np.empty(50), np.empty((2, 50))
-common_opening.common_openings(x, y, np.full((4, 50), 3.0), openings, centres)
-print(openings.tobytes().hex())
+print(common_opening.opening(x, y, np.full((4, 50), 3.0)).outside.tobytes().hex())
 """
 
 

@@ -16,7 +16,7 @@ from tol3d.simulate import Overrides, load, simulation_of
 from tol3d.study.draws import drawn
 from tol3d.study.simulation import Simulation
 
-CEILINGS = {"hole_and_slot": (1, 24), "cover_on_base": (1, 7), "door": (1, 7)}
+CEILINGS = {"hole_and_slot": (1, 24), "cover_on_base": (1, 7), "door": (1, 7), "bolted_cover": (1, 7)}
 
 
 def parts_of(function: Any, known: frozenset[Any] = frozenset()) -> frozenset[Any]:

@@ -7,11 +7,13 @@ Sharir and Welzl): of all points that one, two or three of them may decide, the 
 least.
 """
 
+from dataclasses import dataclass
 from math import sqrt
 from typing import Any, Final
 
 import numpy as np
 
+from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.compiled import kernel, nested
 
 MET: Final = 1e-13
@@ -152,23 +154,50 @@ def opened(discs: Any, i: int, found: Any, deciding: Any, rooms: Any) -> Any:
     return largest
 
 
-@nested
-def new_rooms() -> Any:
-    """Work arrays for `opened`."""
-    return np.empty(4, dtype=np.int64), (np.empty(2), np.empty((2, 2)))
+@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[::1], float64[:,::1], int64[:,::1]")
+def common_openings(x: Any, y: Any, radii: Any, outside: Any, centres: Any, deciding: Any) -> None:
+    """Largest circles in discs; see `Opening`."""
+    discs, rooms = (x, y, radii), (np.empty(4, dtype=np.int64), (np.empty(2), np.empty((2, 2))))
+    found, decided = np.empty(2), np.empty(3, dtype=np.int64)
+    for i in range(outside.shape[0]):
+        outside[i] = opened(discs, i, found, decided, rooms)
+        centres[0, i], centres[1, i] = found[0], found[1]
+        for c in range(3):
+            deciding[c, i] = decided[c]
 
 
-@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[::1], float64[:,::1]")
-def common_openings(x: Any, y: Any, radii: Any, openings: Any, centres: Any) -> None:
-    """Diameters of the largest circles in all discs; below 0 where they have no point in common.
+@dataclass(frozen=True, eq=False)
+class Opening:
+    """Largest circles that lie in all discs of a trial.
 
     Args:
-        x, y: centres (discs, n) [mm].
-        radii: (discs, n) [mm].
-        openings: found (n,) [mm].
-        centres: of the circles, found (2, n) [mm].
+        outside: how far their centres lie outside of the discs (n,) [mm]: minus the radius, above 0 where discs have no
+            point in common.
+        centres: (2, n) [mm].
+        weights: of the discs that decide, with which their pulls on a centre balance; they sum to 1 (3, n).
+        deciding: which these are (3, n).
+        pulls: directions from them to the centre (2, 3, n); 0 of one that decides alone.
     """
-    discs, rooms, deciding, found = (x, y, radii), new_rooms(), np.empty(3, dtype=np.int64), np.empty(2)
-    for i in range(openings.shape[0]):
-        openings[i] = -2.0 * opened(discs, i, found, deciding, rooms)
-        centres[0, i], centres[1, i] = found[0], found[1]
+
+    outside: Array
+    centres: Array
+    weights: Array
+    deciding: Places
+    pulls: Array
+
+
+def opening(x: Array, y: Array, radii: Array) -> Opening:
+    """The largest circles in discs of centres x, y and radii (discs, n) [mm]."""
+    x, y, radii = (np.ascontiguousarray(own) for own in (x, y, radii))
+    outside, centres, deciding = np.empty(x.shape[1]), np.empty((2, x.shape[1])), np.empty((3, x.shape[1]), np.int64)
+    common_openings(x, y, radii, outside, centres, deciding)
+    decides, deciding = deciding >= 0, np.maximum(deciding, 0)
+    off = np.where(decides, centres[:, None] - [np.take_along_axis(own, deciding, axis=0) for own in (x, y)], 0.0)
+    length = np.sqrt(off[0] ** 2 + off[1] ** 2)
+    pulls = off / np.where(length > 0.0, length, 1.0)
+    (a, b, c), (d, e, f) = pulls
+    areas = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
+    total = areas[0] + areas[1] + areas[2]
+    even = decides / (1.0 + decides[1] + decides[2])
+    weights = np.where(decides[2] & (total != 0.0), areas / np.where(total != 0.0, total, 1.0), even)
+    return Opening(outside, centres, weights, deciding, pulls)

@@ -1,168 +1,91 @@
 """A pattern over a gauge that may shift and turn: offset of its worst hole at the best pose, trial by trial.
 
 For each turn the shift is that of a common opening. The remaining function of the turn alone is the minimum of convex
-ones, with a slope from the discs that decide: turns are bracketed by the signs of slopes, and the next one is where the
-tangents at both ends meet, or the middle if they gain less than half.
+ones, with a slope from the discs that decide: turns are bracketed by the signs of slopes, and the next one is in
+alternation where the slope would vanish if it were linear, and where the tangents at both ends meet. The programme of
+contact/ would do the same by a kernel that takes nine times as long to compile as that of common openings.
 """
 
-from math import cos, sin, sqrt
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from tol3d.assembly.model import Axis, Measured
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size
-from tol3d.assembly.placing.common_opening import new_rooms, opened
+from tol3d.assembly.placing.common_opening import opening
 from tol3d.assembly.placing.poses import Pose, column, dot
 from tol3d.assembly.placing.world import World
-from tol3d.numerics.arrays import Array
-from tol3d.numerics.compiled import kernel, nested
+from tol3d.numerics.arrays import Array, Places
 
 MET: Final = 1e-12
-"""mm; largest gap below the tangents of both ends of the bracket at the end."""
+"""mm; largest gap below the tangents of both ends of the bracket at the end, and of circles without a common point."""
+BEYOND: Final = 1e-3
+"""Share of a bracket by which a turn goes beyond the one that is hoped for, so that its nearer end moves as well."""
 LEAST: Final = 1e-16
-"""rad; width of a bracket at the end."""
+"""Width of a bracket at the end [rad]."""
 WIDEST: Final = 0.5
-"""rad; limit of the search for a bracket."""
+"""Limit of the search for a bracket [rad]."""
 TURNS: Final = 200
-"""In practice 5 to 15."""
+"""In practice 10 to 30, of the trial that takes the most."""
 
 
-@nested
-def weights_of(discs: Any, deciding: Any, found: Any, pulls: Any) -> int:
-    """Number of deciding discs; fills pulls (3, 3) with directions from centre to point and balancing weights.
-
-    Args:
-        discs: one trial.
-        deciding: indices of those that decide (3,).
-        found: the point (2,).
-        pulls: filled; 0 if a single one decides, in its centre.
-    """
-    count = 0
-    for c in range(3):
-        k = deciding[c]
-        if k < 0:
-            continue
-        a, b = found[0] - discs[0][k, 0], found[1] - discs[1][k, 0]
-        length = sqrt(a * a + b * b)
-        share = 1.0 / length if length > 0.0 else 0.0
-        pulls[count, 0], pulls[count, 1], pulls[count, 2] = a * share, b * share, 1.0
-        count += 1
-    if count == 2:
-        pulls[0, 2], pulls[1, 2] = 0.5, 0.5
-    if count == 3:
-        total = 0.0
-        for c in range(3):
-            d, e = (c + 1) % 3, (c + 2) % 3
-            pulls[c, 2] = pulls[d, 0] * pulls[e, 1] - pulls[d, 1] * pulls[e, 0]
-            total += pulls[c, 2]
-        for c in range(3):
-            pulls[c, 2] = pulls[c, 2] / total if total != 0.0 else 1.0 / 3.0
-    return count
-
-
-@nested
-def slope_of(discs: Any, deciding: Any, found: Any, rises: Any, pulls: Any) -> Any:
-    """Change of the least violation with the turn.
-
-    Those that decide pull the point with weights that balance; each violation grows as its centre moves away.
-
-    Args:
-        discs: one trial.
-        deciding: which decide (3,).
-        found: the point (2,).
-        rises: how the centres move with the turn (discs, 2).
-        pulls: work array for directions and weights (3, 3).
-    """
-    if weights_of(discs, deciding, found, pulls) < 2:
-        return 0.0
-    slope, count = 0.0, 0
-    for c in range(3):
-        k = deciding[c]
-        if k >= 0:
-            slope -= pulls[count, 2] * (pulls[count, 0] * rises[k, 0] + pulls[count, 1] * rises[k, 1])
-            count += 1
-    return slope
-
-
-@nested
-def turned(pattern: Any, i: int, turn: float, rooms: Any) -> Any:
-    """The least violation with the gauge turned, and its slope."""
-    x, y, radii, nominal = pattern
-    discs, rises, found, deciding, pulls, others = rooms
-    c, s = cos(turn), sin(turn)
-    for k in range(x.shape[0]):
-        p, q = nominal[k, 0], nominal[k, 1]
-        discs[0][k, 0], discs[1][k, 0] = x[k, i] - (c * p - s * q), y[k, i] - (s * p + c * q)
-        discs[2][k, 0] = radii[k, i]
-        rises[k, 0], rises[k, 1] = s * p + c * q, s * q - c * p
-    least = opened(discs, 0, found, deciding, others)
-    return least, slope_of(discs, deciding, found, rises, pulls)
-
-
-@nested
-def gauged(pattern: Any, i: int, step: float, rooms: Any) -> Any:
-    """The least violation over all turns."""
-    least, slope = turned(pattern, i, 0.0, rooms)
-    if slope == 0.0:
-        return least
-    near, near_value, near_slope = 0.0, least, slope
-    far = -step if slope > 0.0 else step
-    far_value, far_slope = turned(pattern, i, far, rooms)
-    while far_slope * slope > 0.0 and abs(far) < WIDEST:
-        near, near_value, near_slope = far, far_value, far_slope
-        far = 2.0 * far
-        far_value, far_slope = turned(pattern, i, far, rooms)
-    least = min(least, near_value, far_value)
-    for _ in range(TURNS):
-        width = far - near
-        if far_slope == 0.0 or abs(width) <= LEAST:
-            break
-        meet = (far_value - near_value - far_slope * width) / (near_slope - far_slope)  # from `near`
-        if not near_value + near_slope * meet < least - MET:
-            break
-        if not 0.0 < meet / width < 1.0:
-            meet = 0.5 * width
-        middle = near + meet
-        value, slope = turned(pattern, i, middle, rooms)
-        least = min(least, value)
-        if slope * near_slope > 0.0:
-            near, near_value, near_slope = middle, value, slope
-        else:
-            far, far_value, far_slope = middle, value, slope
-        if abs(far - near) > 0.5 * abs(width):
-            middle = 0.5 * (near + far)
-            value, slope = turned(pattern, i, middle, rooms)
-            least = min(least, value)
-            if slope * near_slope > 0.0:
-                near, near_value, near_slope = middle, value, slope
-            else:
-                far, far_value, far_slope = middle, value, slope
-    return least
-
-
-@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], float64[:,::1], float64[::1]")
-def gauged_patterns(x: Any, y: Any, radii: Any, nominal: Any, worst: Any) -> None:
-    """Largest distance outside its disc of any place, over the best shift and turn of the nominal places.
+@dataclass(frozen=True, eq=False)
+class GaugedPattern:
+    """Places over a gauge.
 
     Args:
         x, y: actual places (places, n) [mm].
         radii: of the discs about the nominal ones (places, n) [mm].
         nominal: places (places, 2), about their middle [mm].
-        worst: found (n,) [mm]; 0 or less where each is within its disc.
     """
-    size = x.shape[0]
-    reach = 0.0
-    for k in range(size):
-        reach = max(reach, sqrt(nominal[k, 0] ** 2 + nominal[k, 1] ** 2))
-    discs = (np.empty((size, 1)), np.empty((size, 1)), np.empty((size, 1)))
-    rooms = (discs, np.empty((size, 2)), np.empty(2), np.empty(3, dtype=np.int64), np.empty((3, 3)), new_rooms())
-    pattern = (x, y, radii, nominal)
-    for i in range(worst.shape[0]):
-        off = 0.0
-        for k in range(size):
-            off = max(off, abs(x[k, i] - nominal[k, 0]), abs(y[k, i] - nominal[k, 1]))
-        worst[i] = gauged(pattern, i, 0.25 * off / reach + LEAST, rooms)
+
+    x: Array
+    y: Array
+    radii: Array
+    nominal: Array
+
+    def turned(self, trials: Places, turn: Array) -> Array:
+        """Turns of the gauge, the least violation there, and its slope (3, trials).
+
+        Those that decide pull the point with weights that balance; each violation grows as its centre moves away.
+        """
+        square = turn * turn
+        tangent = turn * (1.0 + square / 3.0 * (1.0 + 0.4 * square))  # its series, short of turn^7 / 19
+        p, q = self.nominal.T[..., None] / np.sqrt(1.0 + tangent * tangent)
+        x, y = p - tangent * q, tangent * p + q
+        found = opening(self.x[:, trials] - x, self.y[:, trials] - y, self.radii[:, trials])
+        own, its = (np.take_along_axis(each, found.deciding, axis=0) for each in (x, y))
+        slopes = found.weights * (found.pulls[1] * own - found.pulls[0] * its)
+        return np.stack([turn, found.outside, slopes[0] + slopes[1] + slopes[2]])
+
+    def least(self) -> Array:
+        """Largest distance outside its disc of any place, over the best shift and turn (n,) [mm]."""
+        off = np.maximum(np.abs(self.x - self.nominal[:, :1]), np.abs(self.y - self.nominal[:, 1:])).max(axis=0)
+        step = 0.25 * off / (np.sqrt((self.nominal**2).sum(axis=1)).max() or 1.0) + LEAST
+        first = self.turned(np.arange(len(step)), 0.0 * step)
+        least, going = first[1], np.flatnonzero(first[2])
+        near = first[:, going]
+        far = self.turned(going, -np.sign(near[2]) * step[going])
+        while (ahead := (far[2] * near[2] > 0.0) & (np.abs(far[0]) < WIDEST)).any():
+            near[:, ahead] = far[:, ahead]
+            far[:, ahead] = self.turned(going[ahead], 2.0 * far[0, ahead])
+        least[going] = np.minimum(least[going], np.minimum(near[1], far[1]))
+        for k in range(TURNS):
+            width, bend = far[0] - near[0], near[2] - far[2]
+            meet = (far[1] - near[1] - far[2] * width) / np.where(bend != 0.0, bend, 1.0)  # from `near`
+            on = (far[2] * near[2] < 0.0) & (np.abs(width) > LEAST) & (near[1] + near[2] * meet < least[going] - MET)
+            going, near, far = going[on], near[:, on], far[:, on]
+            if not len(going):
+                break
+            share = meet[on] / width[on] if k % 2 else near[2] / bend[on]
+            share = np.where((share > 0.0) & (share < 1.0), share, 0.5)
+            share += np.where(share < 0.5, BEYOND, -BEYOND)
+            middle = self.turned(going, near[0] + share * width[on])
+            least[going] = np.minimum(least[going], middle[1])
+            follows = middle[2] * near[2] > 0.0
+            near, far = np.where(follows, middle, near), np.where(follows, far, middle)
+        return np.asarray(least)
 
 
 STEPS: Final = 100
@@ -171,44 +94,27 @@ FREE: Final = 1e-12
 """Weight of places below which the clearance alone decides: it is empty."""
 
 
-@kernel(arrays="float64[:,::1], float64[:,::1], float64[:,::1], int64, float64[::1]")
-def least_in_rooms(x: Any, y: Any, radii: Any, places: Any, least: Any) -> None:
-    """The least growth of circles about places at which all circles have a common point; NaN if there is none.
+def least_in_rooms(x: Array, y: Array, radii: Array, places: int) -> Array:
+    """The least growth of circles about places at which all circles have a common point (n,) [mm]; NaN if none has.
 
     Args:
         x, y: centres, of the places, then of the clearances (circles, n) [mm].
         radii: of the places without growth, of either sign, then of the clearances (circles, n) [mm].
         places: number of places among them.
-        least: found (n,) [mm].
     """
-    size = x.shape[0]
-    alone = (np.empty((places, 1)), np.empty((places, 1)), np.empty((places, 1)))
-    discs = (np.empty((size, 1)), np.empty((size, 1)), np.empty((size, 1)))
-    found, deciding, pulls, rooms = np.empty(2), np.empty(3, dtype=np.int64), np.empty((3, 3)), new_rooms()
-    for i in range(least.shape[0]):
-        for k in range(size):
-            discs[0][k, 0], discs[1][k, 0], discs[2][k, 0] = x[k, i], y[k, i], radii[k, i]
-        for k in range(places):
-            alone[0][k, 0], alone[1][k, 0], alone[2][k, 0] = x[k, i], y[k, i], radii[k, i]
-        grown = opened(alone, 0, found, deciding, rooms)
-        least[i] = np.nan
-        for _ in range(STEPS):
-            for k in range(places):
-                discs[2][k, 0] = radii[k, i] + grown
-            missing = opened(discs, 0, found, deciding, rooms)
-            if missing <= MET:
-                least[i] = grown
-                break
-            count, weight = weights_of(discs, deciding, found, pulls), 0.0
-            own = 0
-            for c in range(3):
-                if deciding[c] >= 0:
-                    if deciding[c] < places:
-                        weight += pulls[own, 2]
-                    own += 1
-            if count < 1 or not weight > FREE:
-                break
-            grown += missing / weight
+    least, going = opening(x[:places], y[:places], radii[:places]).outside, np.arange(x.shape[1])
+    for _ in range(STEPS):
+        wider = radii[:, going]
+        wider[:places] += least[going]
+        found = opening(x[:, going], y[:, going], wider)
+        weight = np.where(found.deciding < places, found.weights, 0.0).sum(axis=0)
+        missing, grows = found.outside > MET, weight > FREE
+        least[going[missing]] += np.where(grows, found.outside / np.where(grows, weight, 1.0), np.nan)[missing]
+        going = going[missing & grows]
+        if not len(going):
+            return least
+    least[going] = np.nan
+    return least
 
 
 def _ends(axis: ActualFeature) -> Array:
@@ -245,8 +151,5 @@ def position_in_room(measured: Measured, world: World, actual: ActualFeature, in
     clearance = 0.5 * sign * (size - room.virtual)
     places = len(actual.ends)
     radii = [0.5 * bonus] * places + [clearance] * len(datum.ends)
-    rows = np.stack(np.broadcast_arrays(*x, *y, *radii))
-    x_rows, y_rows, radius_rows = (np.ascontiguousarray(own) for own in np.split(rows, 3))
-    least = np.empty(rows.shape[1])
-    least_in_rooms(x_rows, y_rows, radius_rows, places, least)
-    return 2.0 * least
+    x_rows, y_rows, radius_rows = np.split(np.stack(np.broadcast_arrays(*x, *y, *radii)), 3)
+    return 2.0 * least_in_rooms(x_rows, y_rows, radius_rows, places)

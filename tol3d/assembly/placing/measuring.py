@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
-from tol3d.assembly.placing.common_opening import common_openings
+from tol3d.assembly.placing.common_opening import opening
 from tol3d.assembly.placing.gauged_positions import on_gauges
-from tol3d.assembly.placing.gauging import gauged_patterns, position_in_room
+from tol3d.assembly.placing.gauging import GaugedPattern, position_in_room
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
@@ -70,17 +70,10 @@ def pattern(measured: Measured, world: World) -> Array:
     nominal = np.array(
         [(frame[:3, 3] - middle) @ across for frame, each in zip(frames, ends, strict=True) for _ in each]
     )
-    rows = np.stack(np.broadcast_arrays(*x, *y, *radii))
-    x_rows, y_rows, radius_rows = (np.ascontiguousarray(own) for own in np.split(rows, 3))
-    worst = np.empty(rows.shape[1])
+    x_rows, y_rows, radius_rows = np.split(np.stack(np.broadcast_arrays(*x, *y, *radii)), 3)
     if measured.gauge == "shift":
-        centres = np.empty((2, len(worst)))
-        x_rows -= nominal[:, :1]
-        y_rows -= nominal[:, 1:]
-        common_openings(x_rows, y_rows, radius_rows, worst, centres)
-        return -worst
-    gauged_patterns(x_rows, y_rows, radius_rows, nominal, worst)
-    return 2.0 * worst
+        return 2.0 * opening(x_rows - nominal[:, :1], y_rows - nominal[:, 1:], radius_rows).outside
+    return 2.0 * GaugedPattern(x_rows, y_rows, radius_rows, nominal).least()
 
 
 TURN: Final = 2 * math.pi
@@ -374,8 +367,4 @@ def virtual_clearance(measured: Measured, world: World) -> Array:
     middle = ends[0]  # about it, numbers are small
     x, y = ([dot(own, end - middle) for end in ends] for own in across)
     radii = [0.5 * size for size in sizes for _ in range(2)]
-    rows = np.stack(np.broadcast_arrays(*x, *y, *radii))
-    openings, centres = np.empty(rows.shape[1]), np.empty((2, rows.shape[1]))
-    discs = (np.ascontiguousarray(own) for own in np.split(rows, 3))
-    common_openings(*discs, openings, centres)
-    return openings
+    return -2.0 * opening(*np.split(np.stack(np.broadcast_arrays(*x, *y, *radii)), 3)).outside
