@@ -1,10 +1,12 @@
 """Allocated tolerances as tables: factors and costs, what simulation confirms, and cost over ppm."""
 
+from dataclasses import replace
 from typing import Final
 
 from tol3d.analyses.allocation_section import Allocation
+from tol3d.report.declared import declared_table
 from tol3d.report.number import ppm_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
+from tol3d.report.page import BLANK, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
 
 WORDS: Final = (
     "factors multiply the tolerances of the scene, cost is the sum of their costs; first order: from design points; by "
@@ -37,36 +39,20 @@ def allocation_report(name: str, found: Allocation) -> Page:
 
 
 def _tolerances(found: Allocation) -> Table:
-    heads = [Heading("factor"), Heading("cost"), *(Heading(own, words=True) for own in ("before", "after", ""))]
-    rows = [
-        Row(name, (_text(own.factor), _text(own.cost), own.before, own.after, own.held))
-        for name, own in found.tolerances.items()
-    ]
-    rows.append(Row("least cost", ("", _text(found.cost), "", "", ""), "bold"))
+    table = declared_table("", found.tolerances.items())
+    rows = [Row("least cost", ("", _text(found.cost), "", "", ""), "bold")]
     if found.equal_cost is not None:
         rows.append(Row("equal factors", (_text(found.equal_factor), _text(found.equal_cost), "", "", "")))
     rows.append(Row("as in the scene", (_text(1.0), _text(found.scene_cost), "", "", "")))
-    return Table("", heads, rows)
+    return replace(table, rows=[*table.rows, *rows])
 
 
 def _targets(found: Allocation) -> Table:
-    heads = [Heading(own) for own in ("wanted", "scene", "first order", "by sampling", "95 %")]
-    rows = [
-        Row(
-            f"{own.measure}, {' and '.join(own.sides)}",
-            (
-                *(Shown(ppm_text(value), value) for value in (own.wanted, own.scene, own.first_order, own.ppm)),
-                f"{ppm_text(own.interval[0])} … {ppm_text(own.interval[1])}",
-            ),
-        )
-        for own in found.targets
-    ]
-    return Table("", heads, rows)
+    return declared_table("", ((f"{own.measure}, {' and '.join(own.sides)}", own) for own in found.targets))
 
 
 def _trade_off(found: Allocation) -> Table:
-    rows = [Row(f"{ppm_text(own.ppm)} ppm", (_text(own.cost),)) for own in found.trade_off]
-    return Table("", [Heading("cost")], rows)
+    return declared_table("", ((f"{ppm_text(own.ppm)} ppm", own) for own in found.trade_off))
 
 
 def _text(value: float | None) -> Shown:

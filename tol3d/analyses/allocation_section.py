@@ -1,18 +1,23 @@
 """The result of an allocation, as a run keeps it."""
 
+from typing import Annotated
+
 from pydantic import Field
 
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Count, Known, Label, NotNegative, Number, Ppm, PpmRange, Section, Sentence
 
 
 class Allocated(Section):
     """A tolerance: its factor, its cost, and the reason for it."""
 
-    factor: NotNegative
-    cost: Number
-    before: Label
-    after: Label
-    held: Sentence = Field(description='"", or what holds it: a bound, what is physical, frozen, cannot be scaled')
+    factor: Annotated[NotNegative, Shows("factor", "short")]
+    cost: Annotated[Number, Shows("cost", "short")]
+    before: Annotated[Label, Shows("before", "words", words=True)]
+    after: Annotated[Label, Shows("after", "words", words=True)]
+    held: Annotated[Sentence, Shows("", "words", words=True)] = Field(
+        description='"", or what holds it: a bound, what is physical, frozen, cannot be scaled'
+    )
 
 
 class TargetFound(Section):
@@ -20,18 +25,18 @@ class TargetFound(Section):
 
     measure: Label
     sides: list[Label]
-    wanted: Ppm
-    scene: Ppm
-    first_order: Ppm
-    ppm: Ppm
-    interval: PpmRange
+    wanted: Annotated[Ppm, Shows("wanted", "ppm")]
+    scene: Annotated[Ppm, Shows("scene", "ppm")]
+    first_order: Annotated[Ppm, Shows("first order", "ppm")]
+    ppm: Annotated[Ppm, Shows("by sampling", "ppm")]
+    interval: Annotated[PpmRange, Shows("95 %", "ppm range")]
 
 
 class CostAt(Section):
     """The least cost for a share out of limits [ppm], by first order as corrected; None where no factors reach it."""
 
     ppm: Ppm
-    cost: Known
+    cost: Annotated[Known, Shows("cost", "short")]
 
 
 class Allocation(Section):

@@ -10,7 +10,7 @@ Everything is at the same positions, and averaged over them; see pick_freeze.py.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +21,7 @@ from tol3d.analyses.response import Response
 from tol3d.analyses.shapley import ShapleyEffects, shapley_effects
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Count, Known, Label, MethodSection, Ppm, Section, Sentence, made
 from tol3d.system.measure import Measure
 from tol3d.system.method import ANALYTIC_METHOD
@@ -51,18 +52,26 @@ class Index(Section):
 class ContributorEffects(Section):
     """Effect of a contributor on a measure."""
 
-    unit: Label = Field(description="of its deviation")
-    slope: Known = Field(
+    unit: Annotated[Label, Shows("unit", "unit sign", words=True)] = Field(description="of its deviation")
+    slope: Annotated[Known, Shows("per unit [{unit}]", "digits")] = Field(
         description="change of the measure per unit at the mean build, averaged over positions; of several components "
         "the size of their gradient"
     )
-    change: Known = Field(description="largest less smallest value over its whole tolerance, the others at their means")
+    change: Annotated[Known, Shows("over all [{unit}]", "digits")] = Field(
+        description="largest less smallest value over its whole tolerance, the others at their means"
+    )
     together: list[Label] = Field(description="whose indices these are: its own, and of all it is correlated with")
-    first: Index | None = Field(description="first Sobol' index")
-    total: Index | None = Field(description="total Sobol' index")
-    shapley: Index | None = Field(description="Shapley effect, where contributors are correlated or it was asked for")
-    failures: Index | None = Field(description="share of the failures; see failures_by")
-    failures_total: Index | None = Field(description="with interactions; of a simulation alone")
+    first: Annotated[Index | None, Shows("first [%]", "index")] = Field(description="first Sobol' index")
+    total: Annotated[Index | None, Shows("total [%]", "index")] = Field(description="total Sobol' index")
+    shapley: Annotated[Index | None, Shows("Shapley [%]", "index", seldom=True)] = Field(
+        description="Shapley effect, where contributors are correlated or it was asked for"
+    )
+    failures: Annotated[Index | None, Shows("failures [%]", "index", seldom=True)] = Field(
+        description="share of the failures; see failures_by"
+    )
+    failures_total: Annotated[Index | None, Shows("with others [%]", "index", seldom=True)] = Field(
+        description="with interactions; of a simulation alone"
+    )
 
 
 class MeasureEffects(Section):

@@ -1,11 +1,11 @@
 """Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file."""
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tol3d.analyses.effects import ContributorEffects, Effects, Index, MeasureEffects
-from tol3d.report.number import NOTHING, measured_text, share_text
+from tol3d.report.declared import declared_table
+from tol3d.report.number import measured_text, share_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title, titled
 
 MOST_SHOWN: Final = 15
@@ -20,7 +20,6 @@ POSITIONS: Final[Mapping[str, str]] = {
     "input": "the position is an input",
     "none": "",
 }
-UNITS: Final[Mapping[str, str]] = {"um": "µm", "arcmin": "′", "1": ""}
 
 
 def effects_report(found: Effects) -> Page:
@@ -38,31 +37,11 @@ def effects_report(found: Effects) -> Page:
 
 
 def _table(own: MeasureEffects) -> Table:
-    unit = UNITS.get(own.unit, own.unit)
     parts: list[tuple[str, ContributorEffects]] = list(own.contributors.items())
     if own.position is not None:
         parts.append(("position", own.position))
     ranked = sorted(parts, key=lambda each: -_size(each[1]))
-    heads = ["unit", f"per unit [{unit}]", f"over all [{unit}]", "first [%]", "total [%]"]
-    with_shapley = any(each.shapley for _, each in parts)
-    heads += ["Shapley [%]"] if with_shapley else []
-    heads += ["failures [%]"] if own.failures_by else []
-    with_others = any(each.failures_total for _, each in parts)
-    heads += ["with others [%]"] if with_others else []
-    rows = []
-    for name, each in ranked:
-        cells = [
-            UNITS.get(each.unit, each.unit),
-            _number(each.slope),
-            _number(each.change),
-            _share(each.first),
-            _share(each.total),
-        ]
-        cells += [_share(each.shapley)] if with_shapley else []
-        cells += [_share(each.failures)] if own.failures_by else []
-        cells += [_share(each.failures_total)] if with_others else []
-        rows.append(Row(name, cells))
-    return Table("", [Heading(text, words=text == "unit") for text in heads], rows)
+    return declared_table("", ranked, own.unit)
 
 
 def _size(own: ContributorEffects) -> float:
@@ -98,22 +77,6 @@ def _plain(own: Index) -> str:
     return f"{own.share:.2f} ±{(own.high - own.low) / 2:.2f}"
 
 
-def _share(own: Index | None) -> Shown:
-    if own is None:
-        return Shown(NOTHING, None)
-    reach = (own.high - own.low) / 2
-    text = f"{100 * own.share:.1f}".replace("-0.0", "0.0")
-    return Shown(f"{text} ±{100 * reach:.1f}" if reach > 0.0 else text, 100 * own.share)
-
-
-def _number(value: float | None) -> Shown:
-    """Four digits that count."""
-    if value is None:
-        return Shown(NOTHING, None)
-    digits = 0 if value == 0.0 else max(0, 3 - math.floor(math.log10(abs(value))))
-    return Shown("0" if digits > 9 else f"{value:.{digits}f}", value)
-
-
 COLUMNS: Final = ("first", "total", "shapley", "failures", "failures_total")
 
 
@@ -125,7 +88,7 @@ def effects_csv(found: Effects) -> str:
     for name, own in found.measures.items():
         parts = {**own.contributors, **({"position": own.position} if own.position else {})}
         for contributor, each in parts.items():
-            cells = [contributor, own.unit, each.unit, _number(each.slope), _number(each.change)]
+            cells = [contributor, own.unit, each.unit, Shown("", each.slope), Shown("", each.change)]
             for column in COLUMNS:
                 index: Index | None = getattr(each, column)
                 numbers = (None,) * 3 if index is None else (index.share, index.low, index.high)

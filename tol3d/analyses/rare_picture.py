@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tol3d.analyses.rare_section import LimitLeft, RareEvents
-from tol3d.analyses.rare_table import limit_words
 from tol3d.report.canvas import (
     BLUE,
     GREY,
@@ -78,7 +77,7 @@ def _draw_limits(axes: Axes, limits: Sequence[LimitLeft]) -> None:
                 name = None if _has(axes, label) else label
                 axes.plot(value, row, mark, color=colour, markersize=6, markerfacecolor="none", label=name)
                 shown = True
-    names = [wrapped(f"{own.measure} {limit_words(own)}", NAME_WIDTH, NAME_SIZE, 2) for own in limits]
+    names = [wrapped(f"{own.measure} {own.words}", NAME_WIDTH, NAME_SIZE, 2) for own in limits]
     axes.set_yticks(range(len(limits)), names, fontsize=NAME_SIZE)
     axes.set_ylim(len(limits) - 0.5, -0.5)
     axes.set_xlabel("builds beyond the limit [ppm]", fontsize=10)
@@ -107,5 +106,5 @@ def _draw_point(axes: Axes, own: LimitLeft) -> None:
     axes.set_ylim(max(len(names), 4) - 0.5, -0.5)
     axes.margins(x=0.12)
     axes.set_xlabel("share of the distance to the design point [%]", fontsize=9)
-    title = wrapped(f"{own.measure} {limit_words(own)}, β {own.design_point.beta:.2f}", 4.5, 10.0, 2, "bold")
+    title = wrapped(f"{own.measure} {own.words}, β {own.design_point.beta:.2f}", 4.5, 10.0, 2, "bold")
     axes.set_title(title, loc="left", fontsize=10, fontweight="bold")

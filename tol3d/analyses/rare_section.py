@@ -1,6 +1,7 @@
 """Rare events as a section of a run: numbers alone, from which the table and the picture are made."""
 
 from collections.abc import Sequence
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -10,6 +11,8 @@ from tol3d.analyses.design_points import DesignPoint
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.rare import Method, RareEvent
 from tol3d.analyses.response import Response
+from tol3d.report.number import limit_text
+from tol3d.runs.summary.shows import Shows, shown
 from tol3d.runs.summary.values import Count, Known, Label, Number, Numbers, Ppm, PpmRange, Section, Sentence, made
 from tol3d.system.trials import Trials
 
@@ -39,18 +42,34 @@ class LimitLeft(Section):
     limit: Number
     unit: Label
     method: Method
-    ppm: Ppm | None = Field(description="null where the method does not know")
+    ppm: Annotated[Ppm | None, Shows("ppm", "ppm")] = Field(description="null where the method does not know")
     ppm_se: Known = Field(description="one standard error")
-    ppm_interval: PpmRange | None = Field(description="that holds it with 95 % confidence")
-    first_order_ppm: Ppm | None
-    second_order_ppm: Ppm | None = Field(description="by Hohenbichler and Rackwitz")
+    ppm_interval: Annotated[PpmRange | None, Shows("95 %", "ppm range")] = Field(
+        description="that holds it with 95 % confidence"
+    )
+    first_order_ppm: Annotated[Ppm | None, Shows("first order", "ppm")]
+    second_order_ppm: Annotated[Ppm | None, Shows("second order", "ppm", seldom=True)] = Field(
+        description="by Hohenbichler and Rackwitz"
+    )
     breitung_ppm: Ppm | None = Field(description="second order by Breitung")
     unseated_percent: Number = Field(description="share of the failing builds that cannot be assembled")
-    design_points: Count = Field(description="of all positions together")
+    design_points: Annotated[Count, Shows("points", "count", optional=True)] = Field(
+        description="of all positions together"
+    )
     design_point: DesignBuild | None = Field(description="the nearest one")
     draws: Count
-    evaluations: Count = Field(description="builds that it took")
+    evaluations: Annotated[Count, Shows("builds", "count")] = Field(description="builds that it took")
     warnings: list[Sentence]
+
+    @shown(Shows("β", "three", behind="second_order_ppm"))
+    def beta(self) -> float | None:
+        """Distance of its nearest design point."""
+        return None if self.design_point is None else self.design_point.beta
+
+    @shown(Shows("limit", "words"))
+    def words(self) -> str:
+        """The limit as it is left: `< 15 µm`."""
+        return f"{'<' if self.side == 'low' else '>'} {limit_text(self.limit, self.unit)}"
 
 
 class RareEvents(Section):

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.analyses.rare_section import DesignBuild, LimitLeft, RareEvents
-from tol3d.report.number import NOTHING, limit_text, number_text, ppm_text
+from tol3d.report.declared import declared_table
+from tol3d.report.number import number_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
 
 MOST_SHOWN: Final = 8
@@ -25,43 +26,17 @@ SUBSET_WORDS: Final = (
 )
 
 
-def limit_words(own: LimitLeft) -> str:
-    """A limit as it is left: `< 15 µm`."""
-    return f"{'<' if own.side == 'low' else '>'} {limit_text(own.limit, own.unit)}"
-
-
 def rare_report(found: RareEvents) -> Page:
     """Probabilities of leaving limits, then the design point of each."""
-    second = any(own.second_order_ppm is not None for own in found.limits)
-    heads = ["limit", "ppm", "95 %", "first order", *(["second order"] if second else []), "β", "points", "builds"]
-    rows = [Row(own.measure, _cells(own, second=second)) for own in found.limits]
-    table = Table("", [Heading(own, optional=own == "points") for own in heads], rows)
+    table = declared_table("", [(own.measure, own) for own in found.limits])
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (" · fraction out of limits", ""))), BLANK, table]
     blocks += [note(words) for words in _notes(found.limits)]
     for own in found.limits:
-        blocks += [warning(f"{own.measure}, {limit_words(own)}: {words}") for words in own.warnings]
+        blocks += [warning(f"{own.measure}, {own.words}: {words}") for words in own.warnings]
     for own in found.limits:
         if own.design_point is not None:
             blocks += _design_point(own, own.design_point)
     return page(*blocks)
-
-
-def _cells(own: LimitLeft, *, second: bool) -> list[str]:
-    interval = own.ppm_interval
-    return [
-        limit_words(own),
-        _cell(own.ppm),
-        NOTHING if interval is None else f"{ppm_text(interval[0])} … {ppm_text(interval[1])}",
-        _cell(own.first_order_ppm),
-        *([_cell(own.second_order_ppm)] if second else []),
-        NOTHING if own.design_point is None else Shown(f"{own.design_point.beta:.3f}", own.design_point.beta),
-        str(own.design_points),
-        str(own.evaluations),
-    ]
-
-
-def _cell(ppm: float | None) -> Shown:
-    return Shown(ppm_text(ppm), ppm)
 
 
 def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
@@ -73,7 +48,7 @@ def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
     for own in limits:
         if own.unseated_percent > 0.0:
             share = f"{own.unseated_percent:.1f} % of the failing builds"
-            yield f"{own.measure}, {limit_words(own)}: {share} cannot be assembled"
+            yield f"{own.measure}, {own.words}: {share} cannot be assembled"
 
 
 def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:

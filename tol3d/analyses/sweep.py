@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from pydantic import Field
 
@@ -20,6 +20,7 @@ from tol3d.report.verdict import ends_of
 from tol3d.runs.atomic_write import write_whole
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Count, Known, Label, Number, Ppm, PpmRange, Section, Sentence, made
 from tol3d.scene import Scene
 from tol3d.scene.vary import known_path
@@ -36,16 +37,16 @@ class VariantMeasure(Section):
     unit: Label
     lower_limit: Known
     upper_limit: Known
-    mean: Known
-    sigma: Known
-    low: Known = Field(
+    mean: Annotated[Known, Shows("mean")]
+    sigma: Annotated[Known, Shows("sigma")]
+    low: Annotated[Known, Shows("low")] = Field(
         description="mean - 3 sigma, or the 0.135 % quantile if trials end before; of a curve the lowest"
     )
-    high: Known
-    out_ppm: Ppm | None
+    high: Annotated[Known, Shows("high")]
+    out_ppm: Annotated[Ppm | None, Shows("out of limits", "share")]
     out_ppm_95: PpmRange | None
-    ppk: Known
-    failed: Count
+    ppk: Annotated[Known, Shows("Ppk", "ppk")]
+    failed: Annotated[Count, Shows("not assembled", "count")]
 
 
 class Variant(Section):

@@ -4,12 +4,14 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.analyses.sweep import Sweep, Variant, VariantMeasure, measures_of
-from tol3d.report.number import NOTHING, share_cell, unsigned_zero, value_cell
+from tol3d.report.declared import cells_of, headings
+from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.runs.summary.shows import shown_by
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
-NUMBERS: Final = ("mean", "sigma", "low", "high", "out of limits", "Ppk", "not assembled")
+NUMBERS: Final = shown_by(VariantMeasure)
 SPAN: Final = "low, high: mean ∓ 3 sigma, or the 0.135 % and 99.865 % quantiles of trials that end before"
 
 
@@ -70,7 +72,7 @@ def short_names(fields: Sequence[str]) -> list[str]:
 def _of_measure(found: Sweep, name: str) -> Table:
     built = [own for own in found.variants if name in own.measures]
     unit = built[0].measures[name].unit
-    heads = [*_headings(found), *(Heading(head) for head in NUMBERS)]
+    heads = [*_headings(found), *headings(NUMBERS)]
     rows = [Row(str(k + 1), [*_values(own), *_cells(own.measures.get(name))]) for k, own in enumerate(found.variants)]
     return Table(f"variant [{_sign(unit)}]", heads, rows, repeated=len(found.fields))
 
@@ -82,9 +84,7 @@ def _values(own: Variant) -> list[Shown]:
 def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
     if own is None:
         return ["not assembled", *[NOTHING] * (len(NUMBERS) - 1)]
-    numbers = [value_cell(value, own.unit) for value in (own.mean, own.sigma, own.low, own.high)]
-    ppk = Shown(NOTHING if own.ppk is None else unsigned_zero(f"{own.ppk:.2f}"), own.ppk)
-    return [*numbers, share_cell(own.out_ppm), ppk, Shown(str(own.failed), own.failed)]
+    return cells_of(own)
 
 
 def _not_built(found: Sweep) -> Iterator[PageItem]:

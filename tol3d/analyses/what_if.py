@@ -8,7 +8,7 @@ reweighted: in the tails that would be off by a factor.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 from pydantic import Field
@@ -24,6 +24,7 @@ from tol3d.analyses.results import results_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.sample import Sample
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import (
     LEFT_OUT,
     Count,
@@ -80,15 +81,17 @@ class StateNumbers(Section):
     trials is what a run of them has.
     """
 
-    sigma_by_rates: Known
-    mean: Known
-    sigma: Known
-    low: Known
-    high: Known
+    sigma_by_rates: Annotated[Known, Shows("sigma by rates")]
+    sigma: Annotated[Known, Shows("sigma")]
+    mean: Annotated[Known, Shows("mean")]
+    low: Annotated[Known, Shows("low 0.135 %")]
+    high: Annotated[Known, Shows("high 99.865 %")]
     failed: Count
     counts: Numbers
     limits: dict[str, LimitNumbers] = Field(description="low, high: those that the measure has")
-    ppk: Maybe[Number] = Field(default=LEFT_OUT, description="of the trials, by the rule of a run")
+    ppk: Annotated[Maybe[Number], Shows("Ppk", "ppk")] = Field(
+        default=LEFT_OUT, description="of the trials, by the rule of a run"
+    )
 
 
 class MeasureWhatIf(Section):

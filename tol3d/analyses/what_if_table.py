@@ -4,17 +4,12 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tol3d.analyses.what_if import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
+from tol3d.report.declared import formed
 from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, ppm_text, share_text, value_cell, with_unit
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
+from tol3d.runs.summary.shows import shown_by
 
 HEADS: Final = (Heading("before"), Heading("after"), Heading("change"))
-ROWS: Final = (
-    ("sigma by rates", "sigma_by_rates"),
-    ("sigma", "sigma"),
-    ("mean", "mean"),
-    ("low 0.135 %", "low"),
-    ("high 99.865 %", "high"),
-)
 WORDS: Final = (
     "sigma by rates: from the slopes at the mean build; first order: Φ(−β), with β the distance to the most likely "
     "build beyond the limit; by sampling: importance sampling around that build, with its 95 % interval, or where none "
@@ -113,12 +108,12 @@ def _unseen(name: str, own: MeasureWhatIf) -> Iterator[str]:
 def what_if_table(own: MeasureWhatIf) -> Table:
     """Table of one measure."""
     unit = own.unit
-    pairs = ((label, own.before.value(key), own.after.value(key)) for label, key in ROWS)
-    rows = [_values(*pair, unit) for pair in pairs if pair[1:] != (None, None)]
-    ppks = [state.ppk for state in (own.before, own.after)]
-    if any(ppk is not None for ppk in ppks):
-        change = None if None in ppks else (ppks[1] or 0.0) - (ppks[0] or 0.0)
-        rows.append(Row("Ppk", tuple(Shown(NOTHING if ppk is None else f"{ppk:.2f}", ppk) for ppk in (*ppks, change))))
+    rows = []
+    for name, shows in shown_by(StateNumbers).items():
+        before, after = getattr(own.before, name), getattr(own.after, name)
+        if (before, after) != (None, None):
+            change = None if before is None or after is None else after - before
+            rows.append(Row(shows.heading, [formed(value, shows.form, unit) for value in (before, after, change)]))
     if own.before.failed or own.after.failed:
         rows.append(Row("builds that fail", (str(own.before.failed), str(own.after.failed), "")))
     for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):
@@ -126,11 +121,6 @@ def what_if_table(own: MeasureWhatIf) -> Table:
             sign = "<" if side == "low" else ">"
             rows += _limit(f"{sign} {limit_text(limit, unit)}", own.before.limits[side], own.after.limits[side])
     return Table("", HEADS, rows)
-
-
-def _values(label: str, before: float | None, after: float | None, unit: str) -> Row:
-    change = None if before is None or after is None else after - before
-    return Row(label, (value_cell(before, unit), value_cell(after, unit), value_cell(change, unit)))
 
 
 def _limit(label: str, before: LimitNumbers, after: LimitNumbers) -> Iterator[Row]:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,7 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED
 from tol3d.report.verdict import ACCEPTED_PPM
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Count, Known, Label, Number, Positive, Ppm, PpmRange, Section, made
 from tol3d.statistics import LimitCounts
 from tol3d.study.performance import OUTER
@@ -74,11 +75,13 @@ SEEN: Final = 0.1
 class Spread(Section):
     """Spread of a measure within its limits, in its unit."""
 
-    mean: Known
-    sigma: Known
-    out_ppm: Ppm | None = Field(description="failed or out of limits, of all builds")
-    out_ppm_95: PpmRange | None
-    ppk: Known
+    mean: Annotated[Known, Shows("mean")]
+    sigma: Annotated[Known, Shows("sigma")]
+    out_ppm: Annotated[Ppm | None, Shows("out of limits", "share")] = Field(
+        description="failed or out of limits, of all builds"
+    )
+    out_ppm_95: Annotated[PpmRange | None, Shows("95 % interval", "share range", optional=True)]
+    ppk: Annotated[Known, Shows("Ppk", "ppk")]
 
 
 class Step(Section):

@@ -1,12 +1,13 @@
 """Recommended changes, as tables, and as a few lines below a verdict."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import islice
 from typing import Final
 
 from tol3d.analyses.compared_builds import SURE
 from tol3d.analyses.slopes import Rates
 from tol3d.analyses.what_to_change import Beside, Changes, MeasureChanges, Proposal, Spread, Step
+from tol3d.report.declared import cells_of, headings
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
@@ -19,6 +20,7 @@ from tol3d.report.number import (
     with_unit,
 )
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.runs.summary.shows import shown_by
 
 MOST_TAKEN: Final = 5
 """Contributors of a mean's shift that are shown."""
@@ -31,13 +33,7 @@ NOTE: Final = (
     "each change is simulated with the same uniforms: a nominal moved, or a tolerance half as wide; told is what makes "
     "the measure better beyond chance, and no other one with limits worse"
 )
-AFTER: Final = (
-    Heading("mean"),
-    Heading("sigma"),
-    Heading("out of limits"),
-    Heading("95 % interval", optional=True),
-    Heading("Ppk"),
-)
+AFTER: Final = headings(shown_by(Spread))
 
 
 def changes_report(name: str, found: Changes) -> Page:
@@ -64,9 +60,9 @@ def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
     unit = own.unit
     yield title(name, f" · limits {_limits(own)} · {own.builds} builds each")
     yield BLANK
-    rows = [Row("as it is", ["", *_after(own.now, unit)])]
+    rows = [Row("as it is", ["", *cells_of(own.now, unit)])]
     for each in own.proposals:
-        rows.append(Row(proposal_text(each), [_how_much(each), *_after(each.after, unit)]))
+        rows.append(Row(proposal_text(each), [_how_much(each), *cells_of(each.after, unit)]))
         rows += [Row(f"  {_beside(other)}", [""] * (1 + len(AFTER))) for other in each.beside]
     yield Table("change", [Heading("by how much"), *AFTER], rows)
     if table := _taken_table(own):
@@ -128,16 +124,6 @@ def _with_error(value: float | None, error: float | None, unit: str) -> Shown | 
 
 def _off(value: float | None, unit: str) -> Shown | str:
     return NOTHING if value is None else Shown(_signed(value, unit), value)
-
-
-def _after(own: Spread, unit: str) -> Sequence[Shown | str]:
-    return [
-        value_cell(own.mean, unit),
-        value_cell(own.sigma, unit),
-        Shown(share_text(own.out_ppm), own.out_ppm),
-        NOTHING if own.out_ppm_95 is None else " to ".join(map(share_text, own.out_ppm_95)),
-        Shown(_ppk(own), own.ppk),
-    ]
 
 
 def _ppk(own: Spread) -> str:
