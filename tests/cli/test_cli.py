@@ -514,6 +514,11 @@ LOADED = {
         (*NEVER, "fcl", "numba"),
     ),
     "check": (("check", SPUR), ("numpy",), (*NEVER, "fcl")),
+    "a report without parts": (
+        ("report", "before", "--no-3d"),
+        ("numpy",),
+        ("fcl", "scipy.stats", "cadquery", "OCP", "pyvista", "trimesh", "tol3d.analyses.rare", "tol3d.analyses.effects"),
+    ),
     "schema": (("schema",), ("pydantic",), (*NEVER, "fcl", "numba", "pyarrow")),
     "help": (("--help",), ("typer",), (*NEVER, "fcl", "numba", "numpy", "scipy", "pyarrow")),
 }
@@ -525,7 +530,7 @@ def test_a_command_loads_what_it_needs_and_nothing_heavy_besides(what: str, tmp_
     """Modules loaded at a command's end, in a process of its own; strips and kernels are in the cache."""
     arguments, wanted, never = LOADED[what]
     measuring_strips_of_the_spur_pair()
-    if set(COMPILING) <= set(never):
+    if set(COMPILING) <= set(never) or "before" in arguments:
         run_scene(SPUR, overrides=Overrides(trials=5, witness=0), out=tmp_path / "before")  # keeps its kernels
     code = f"import sys; sys.argv = {['tol3d', *arguments]!r}\nfrom tol3d import cli\n"
     code += "try:\n    cli.main()\nexcept SystemExit as stop:\n    assert not stop.code\n"

@@ -6,7 +6,7 @@ import json
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial
-from importlib import resources
+from importlib import import_module, resources
 from pathlib import Path
 from typing import Final
 
@@ -28,7 +28,6 @@ from tol3d.report.html.histogram_chart import histogram_chart
 from tol3d.report.html.matrix_chart import FEWEST, Shares, matrix_chart, shares_in
 from tol3d.report.html.pareto_chart import pareto_chart
 from tol3d.report.html.tags import Inside, Markup, tag, together
-from tol3d.report.html.view_3d import view_3d
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.page import Page, Table, note, warning
 from tol3d.report.presenter import Presenter, presenter_of
@@ -56,6 +55,7 @@ from tol3d.scene.node import plain
 from tol3d.scene.text import scene_text
 from tol3d.system.outcome import value_column
 
+VIEW_3D: Final = "tol3d.report.html.view_3d"  # loads VTK, a hundred megabytes
 TRIALS_A_BAR: Final = 5
 MOST_READ: Final = 200_000
 """Trials searched for those of each bar."""
@@ -153,7 +153,7 @@ def _single(
         sections[CORRELATIONS] = pairs
     sections |= kept
     if trials is not None:
-        sections["in 3D"] = view_3d(run, presenter, trials)
+        sections["in 3D"] = import_module(VIEW_3D).view_3d(run, presenter, trials)
     sections[TRIALS] = together(*_trials(shown))
     sections[PROVENANCE] = page_blocks(provenance_blocks(run))
     anchors = {name: f"section-{number}" for number, name in enumerate(sections)}
