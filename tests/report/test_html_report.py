@@ -19,10 +19,10 @@ from toys.registered import TOYS, known
 
 from tol3d import InputError, load_scene, run_scene
 from tol3d.analyses.effects import effects
-from tol3d.analyses.kept_pages import TITLES
 from tol3d.analyses.methods import methods
-from tol3d.analyses.subject import SECTIONS, Subject
+from tol3d.analyses.subject import KEPT, Subject
 from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
+from tol3d.import_path import is_named
 from tol3d.notebook import write_report
 from tol3d.report.bars import Bars
 from tol3d.report.compare import comparison_report
@@ -194,6 +194,11 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
     assert len([1 for name, own in page.elements if name == "script" and own.get("type") is None]) == 1
 
 
+def test_what_a_run_keeps_is_read_and_shown_by_code_that_is_there() -> None:
+    assert all(is_named(path) for own in KEPT.values() for path in (own.section, own.report))
+    assert len({own.title for own in KEPT.values()}) == len(KEPT)
+
+
 def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> None:
     subject = Subject(simulation_again(spur), spur)
     subject.keep("methods", methods(subject.response.of("lost motion")))
@@ -206,7 +211,6 @@ def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> Non
     assert f"centre distance, lost motion: {100 * own.total.share:.1f} %" in page.inside("title")
     values = {float(own["data-value"] or "nan") for name, own in page.elements if name == "td" and "data-value" in own}
     assert 100 * own.total.share in values, "the column says per cent"
-    assert set(TITLES) == set(SECTIONS), "every section has a page"
 
 
 def test_runs_without_trials_or_simulation_and_runs_beside_each_other(spur: Run, tmp_path: Path) -> None:

@@ -3,29 +3,12 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
-from tol3d.analyses.subject import sections_of
+from tol3d.analyses.subject import KEPT, sections_of
 from tol3d.import_path import named
 from tol3d.report.page import Page
 from tol3d.runs.run import Run
 from tol3d.simulate import simulation_again
 
-TITLES: Final[Mapping[str, str]] = {
-    "changes": "what to change",
-    "methods": "methods side by side",
-    "effects": "effects",
-    "rare": "rare events",
-    "what-if": "what if",
-    "allocation": "allocation",
-}
-REPORTS: Final[Mapping[str, str]] = {
-    "changes": "tol3d.analyses.what_to_change_table:changes_report",
-    "methods": "tol3d.analyses.methods_table:methods_report",
-    "effects": "tol3d.analyses.effects_table:effects_report",
-    "rare": "tol3d.analyses.rare_table:rare_report",
-    "what-if": "tol3d.analyses.what_if_table:what_if_report",
-    "allocation": "tol3d.analyses.allocate_table:allocation_report",
-}
-"""What makes the page of each section, as an import path: a report loads the analyses that its run keeps."""
 BEST_CHANGE: Final = "tol3d.analyses.what_to_change_table:best_change"
 
 
@@ -36,7 +19,7 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
         RunError: one was changed since it was made.
     """
     found = sections_of(run)
-    return {title: _page(run, name, found[name]) for name, title in TITLES.items() if name in found}
+    return {own.title: _page(run, name, found[name]) for name, own in KEPT.items() if name in found}
 
 
 def kept_advice(run: Run) -> str:
@@ -58,7 +41,7 @@ def kept_shares(run: Run) -> Mapping[str, Mapping[str, Mapping[str, float]]]:
     effects: Any = sections_of(run).get("effects")
     if effects is None:
         return {}
-    return {TITLES["effects"]: {name: _totals(own) for name, own in effects.measures.items()}}
+    return {KEPT["effects"].title: {name: _totals(own) for name, own in effects.measures.items()}}
 
 
 def _totals(own: Any) -> Mapping[str, float]:
@@ -69,7 +52,7 @@ def _totals(own: Any) -> Mapping[str, float]:
 
 def _page(run: Run, name: str, found: Any) -> Page:
     """The page of a section; those that have no name of their scene are given it."""
-    report: Any = named(REPORTS[name])
+    report: Any = named(KEPT[name].report)
     if name == "methods":
         page: Page = report(found, simulation_again(run).system.contributors)
     else:

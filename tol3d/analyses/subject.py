@@ -25,15 +25,44 @@ from tol3d.study.simulation import Simulation
 
 PACKAGE: Final = __name__.partition(".")[0]
 FOLDER: Final = "analyses"
-SECTIONS: Final[Mapping[str, str]] = {
-    "effects": "tol3d.analyses.effects:Effects",
-    "what-if": "tol3d.analyses.what_if:WhatIf",
-    "allocation": "tol3d.analyses.allocation_section:Allocation",
-    "rare": "tol3d.analyses.rare_section:RareEvents",
-    "changes": "tol3d.analyses.what_to_change:Changes",
-    "methods": "tol3d.analyses.methods_section:Methods",
+
+
+@dataclass(frozen=True)
+class Kept:
+    """An analysis whose result a run keeps.
+
+    Args:
+        title: of it in reports.
+        section: class of the result, as an import path.
+        report: what makes its page, as an import path: of the result, or of the scene's name and the result.
+    """
+
+    title: str
+    section: str
+    report: str
+
+
+KEPT: Final[Mapping[str, Kept]] = {
+    "changes": Kept(
+        "what to change",
+        "tol3d.analyses.what_to_change:Changes",
+        "tol3d.analyses.what_to_change_table:changes_report",
+    ),
+    "methods": Kept(
+        "methods side by side",
+        "tol3d.analyses.methods_section:Methods",
+        "tol3d.analyses.methods_table:methods_report",
+    ),
+    "effects": Kept("effects", "tol3d.analyses.effects:Effects", "tol3d.analyses.effects_table:effects_report"),
+    "rare": Kept("rare events", "tol3d.analyses.rare_section:RareEvents", "tol3d.analyses.rare_table:rare_report"),
+    "what-if": Kept("what if", "tol3d.analyses.what_if:WhatIf", "tol3d.analyses.what_if_table:what_if_report"),
+    "allocation": Kept(
+        "allocation",
+        "tol3d.analyses.allocation_section:Allocation",
+        "tol3d.analyses.allocate_table:allocation_report",
+    ),
 }
-"""The class of each section by its name, as an import path."""
+"""Analyses by the names of their files, in the order of reports. Each is loaded where a run keeps it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,13 +148,13 @@ def sections_of(run: Run) -> Mapping[str, Section]:
     Raises:
         RunError: one was changed since it was made.
     """
-    listed = [name for name in SECTIONS if f"{FOLDER}/{name}.json" in run.manifest.sums]
+    listed = [name for name in KEPT if f"{FOLDER}/{name}.json" in run.manifest.sums]
     return {name: _section(run, name) for name in listed}
 
 
 def _section(run: Run, name: str) -> Section:
     file = f"{FOLDER}/{name}.json"
-    kind: type[Section] = named(SECTIONS[name])
+    kind: type[Section] = named(KEPT[name].section)
     content = parsed(run.manifest.content(file), run.path / file)
     try:
         return kind.model_validate(content)
