@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy import integrate
 
 from tol3d.assembly.model.statuses import NO_BUILD, OK
-from tol3d.assembly.placing.gauging import least_in_rooms
 from tol3d.assembly.zones.float_draw import GaugeShift
+from tol3d.contact.openings import least_in_rooms
 from tol3d.errors import SceneError
 from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simulation_of
 from tol3d.study.draws import drawn

@@ -11,9 +11,10 @@ from scipy import integrate
 from scipy.optimize import minimize
 from scipy.stats import halfnorm, norm, rayleigh
 
-from tol3d.assembly.placing.common_opening import opening
 from tol3d.assembly.placing.method import features_placed
 from tol3d.assembly.torsors.common_opening import CommonOpening
+from tol3d.contact.certify import certificate
+from tol3d.contact.openings import opening
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.draws import drawn
@@ -152,14 +153,24 @@ def test_three_hundred_random_discs() -> None:
     assert_alike(random_discs(300, 2))
 
 
-def test_the_term_and_the_kernel_agree_on_many_more() -> None:
+def test_many_more_are_certified() -> None:
+    """By weights and pulls as duals: of each circle no other place is better."""
     rng = np.random.default_rng(3)
     for size, spread in ((2, 0.05), (3, 0.05), (4, 0.5), (6, 0.02)):
         x, y = rng.normal(0.0, spread, (2, size, 5_000))
         radii = 4.2 + rng.normal(0.0, 0.02, (size, 5_000))
-        read = np.stack([x, y, radii], axis=1).reshape(3 * size, -1)
-        expected = CommonOpening(np.zeros((3 * size, 1))).values(read)[0]
-        assert -2.0 * opening(x, y, radii).outside == pytest.approx(expected, abs=1e-11)
+        found = opening(x, y, radii)
+        h, duals, rows = np.zeros((size, 4, 5_000)), np.zeros((size, 4, 5_000)), np.zeros((size, 4, 2, 1))
+        h[:, 0], h[:, 1], h[:, 2], rows[:, (1, 2), (0, 1)] = radii, x, y, -1.0
+        every = np.arange(5_000)
+        for weight, disc, pull in zip(found.weights, found.deciding, found.pulls.transpose(1, 0, 2), strict=True):
+            duals[disc, :3, every] += (weight * [np.ones(5_000), *pull]).T
+        dims, lifted = np.full(size, 3), np.ones(size, dtype=bool)
+        slack, none = -found.outside, np.zeros((2, 1))
+        own = certificate(h, rows, dims, lifted, none, found.centres, slack, duals)
+        assert own.max() < 1e-11
+        beside = certificate(h, rows, dims, lifted, none, found.centres + 1e-6, slack, duals)
+        assert np.median(beside.max(axis=0)) > 1e-7
 
 
 def test_a_trial_s_bits_are_its_own() -> None:

@@ -30,7 +30,7 @@ print(matplotlib.rcParams["text.usetex"], numba.core.config.CPU_NAME, numba.core
 """
 COMPILING = """
 from tol3d.execution.pools import Concurrency, pool_of
-exec("from tol3d.assembly.placing.common_opening import common_openings; common_openings.make()")
+exec("from tol3d.contact.openings import common_openings; common_openings.make()")
 with pool_of(2, None, Concurrency.PROCESSES) as pool:
     pool.submit(exec, "from tol3d.numerics.programme import ranges; ranges.make()").result()
 """

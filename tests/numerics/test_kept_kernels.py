@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from tol3d.assembly.placing import common_opening
+from tol3d.contact import openings
 from tol3d.numerics import compiled
 
 pytestmark = pytest.mark.slow
@@ -20,11 +20,11 @@ OPENINGS = """
 import sys
 sys.path[:0] = sys.argv[1:]
 import numpy as np
-from tol3d.assembly.placing import common_opening
+from tol3d.contact import openings
 from tol3d.numerics import compiled
-assert all(common_opening.__file__.startswith(tree) for tree in sys.argv[1:])
+assert all(openings.__file__.startswith(tree) for tree in sys.argv[1:])
 x, y = np.random.default_rng(1).normal(size=(2, 4, 50))
-print(common_opening.opening(x, y, np.full((4, 50), 3.0)).outside.tobytes().hex())
+print(openings.opening(x, y, np.full((4, 50), 3.0)).outside.tobytes().hex())
 """
 
 
@@ -84,7 +84,7 @@ def test_a_copy_of_the_tree_elsewhere_takes_the_kernels_of_the_first(filled: tup
 def test_kernels_run_where_nothing_can_be_kept(filled: tuple[Path, str], tmp_path: Path) -> None:
     blocked = tmp_path / "a file, no folder"
     blocked.write_text("")
-    beside = Path(common_opening.__file__).parent / "__pycache__"
+    beside = Path(openings.__file__).parent / "__pycache__"
     before = {path.name for path in beside.glob("*.nb?")}
     assert found(blocked) == filled[1]
     # beside the sources they would be known by the date of one of them only

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from tol3d.assembly.model import Assembly, Axis, Measured, Plane, RoundPlane, Shape
 from tol3d.assembly.model.statuses import OK
 from tol3d.assembly.placing.actual_feature import ActualFeature, actual_size, total
-from tol3d.assembly.placing.common_opening import opening
 from tol3d.assembly.placing.gauged_positions import on_gauges
 from tol3d.assembly.placing.gauging import GaugedPattern, position_in_room
 from tol3d.assembly.placing.poses import Codes, column, cross, dot, product, rotated, rotation_vector, unit
 from tol3d.assembly.placing.surfaces import PARALLEL, common_normal, gap_of
 from tol3d.assembly.placing.world import World
+from tol3d.contact.openings import opening
 from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
 

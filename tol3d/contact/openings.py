@@ -4,9 +4,10 @@ With discs of centres c and radii r, the least of max(|x - c| - r) over all poin
 That is a convex programme of two unknowns, decided by one, two or three discs: each step takes the disc that is
 violated most to those that decided before, and finds exactly what these four at most leave (an LP-type problem after
 Sharir and Welzl): of all points that one, two or three of them may decide, the one that violates the worst of them
-least.
+least. The programme of contact/programme.py would do the same, by a kernel that takes nine times as long to compile.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
 from typing import Any, Final
@@ -20,6 +21,20 @@ MET: Final = 1e-13
 """mm; largest violation of a disc at the end."""
 STEPS: Final = 200
 """Steps at most, each decided by other discs than all before; in practice 2 to 6."""
+TIGHT: Final = 1e-12
+"""mm; largest gap below the tangents of both ends of the bracket at the end, and of circles without a common point."""
+BEYOND: Final = 1e-3
+"""Share of a bracket by which a turn goes beyond the one that is hoped for, so that its nearer end moves as well."""
+LEAST: Final = 1e-16
+"""Width of a bracket at the end [rad]."""
+WIDEST: Final = 0.5
+"""Limit of the search for a bracket [rad]."""
+TURNS: Final = 200
+"""In practice 10 to 30, of the trial that takes the most."""
+GROWTHS: Final = 100
+"""In practice 1 to 6."""
+FREE: Final = 1e-12
+"""Weight of places below which the clearance alone decides: it is empty."""
 
 
 @nested
@@ -185,6 +200,12 @@ class Opening:
     deciding: Places
     pulls: Array
 
+    def slope(self, x: Array, y: Array) -> Array:
+        """Change of `outside` (n,) as the discs' centres move by x, y (discs, n): it grows as they go away."""
+        x, y = (np.take_along_axis(own, self.deciding, axis=0) for own in (x, y))
+        slopes = self.weights * (self.pulls[0] * x + self.pulls[1] * y)
+        return np.asarray(-(slopes[0] + slopes[1] + slopes[2]))
+
 
 def opening(x: Array, y: Array, radii: Array) -> Opening:
     """The largest circles in discs of centres x, y and radii (discs, n) [mm]."""
@@ -201,3 +222,61 @@ def opening(x: Array, y: Array, radii: Array) -> Opening:
     even = decides / (1.0 + decides[1] + decides[2])
     weights = np.where(decides[2] & (total != 0.0), areas / np.where(total != 0.0, total, 1.0), even)
     return Opening(outside, centres, weights, deciding, pulls)
+
+
+def least_in_rooms(x: Array, y: Array, radii: Array, places: int) -> Array:
+    """The least growth of circles about places at which all circles have a common point (n,) [mm]; NaN if none has.
+
+    Args:
+        x, y: centres, of the places, then of the clearances (circles, n) [mm].
+        radii: of the places without growth, of either sign, then of the clearances (circles, n) [mm].
+        places: number of places among them.
+    """
+    least, going = opening(x[:places], y[:places], radii[:places]).outside, np.arange(x.shape[1])
+    for _ in range(GROWTHS):
+        wider = radii[:, going]
+        wider[:places] += least[going]
+        found = opening(x[:, going], y[:, going], wider)
+        weight = np.where(found.deciding < places, found.weights, 0.0).sum(axis=0)
+        missing, grows = found.outside > TIGHT, weight > FREE
+        least[going[missing]] += np.where(grows, found.outside / np.where(grows, weight, 1.0), np.nan)[missing]
+        going = going[missing & grows]
+        if not len(going):
+            return least
+    least[going] = np.nan
+    return least
+
+
+def least_over_turns(turned: Callable[[Places, Array], Array], step: Array) -> Array:
+    """The least violation over all turns (n,) [mm].
+
+    It is taken to be convex: turns are bracketed by the signs of slopes, and the next one is in alternation where the
+    slope would vanish if it were linear, and where the tangents at both ends meet.
+
+    Args:
+        turned: of some trials and a turn in each: that turn, the least violation there, and its slope (3, trials).
+        step: turn to begin with (n,) [rad].
+    """
+    first = turned(np.arange(len(step)), 0.0 * step)
+    least, going = first[1], np.flatnonzero(first[2])
+    near = first[:, going]
+    far = turned(going, -np.sign(near[2]) * step[going])
+    while (ahead := (far[2] * near[2] > 0.0) & (np.abs(far[0]) < WIDEST)).any():
+        near[:, ahead] = far[:, ahead]
+        far[:, ahead] = turned(going[ahead], 2.0 * far[0, ahead])
+    least[going] = np.minimum(least[going], np.minimum(near[1], far[1]))
+    for k in range(TURNS):
+        width, bend = far[0] - near[0], near[2] - far[2]
+        meet = (far[1] - near[1] - far[2] * width) / np.where(bend != 0.0, bend, 1.0)  # from `near`
+        on = (far[2] * near[2] < 0.0) & (np.abs(width) > LEAST) & (near[1] + near[2] * meet < least[going] - TIGHT)
+        going, near, far = going[on], near[:, on], far[:, on]
+        if not len(going):
+            break
+        share = meet[on] / width[on] if k % 2 else near[2] / bend[on]
+        share = np.where((share > 0.0) & (share < 1.0), share, 0.5)
+        share += np.where(share < 0.5, BEYOND, -BEYOND)
+        middle = turned(going, near[0] + share * width[on])
+        least[going] = np.minimum(least[going], middle[1])
+        follows = middle[2] * near[2] > 0.0
+        near, far = np.where(follows, middle, near), np.where(follows, far, middle)
+    return np.asarray(least)
