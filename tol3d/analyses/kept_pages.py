@@ -1,13 +1,15 @@
 """Sections that a run keeps, each as its command shows it: for reports."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from tol3d.analyses.subject import KEPT, sections_of
 from tol3d.import_path import named
 from tol3d.report.page import Page
 from tol3d.runs.run import Run
+from tol3d.runs.summary.values import Section
 from tol3d.simulate import simulation_again
+from tol3d.system.contributor import Contributor
 
 BEST_CHANGE: Final = "tol3d.analyses.what_to_change_table:best_change"
 
@@ -19,7 +21,11 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
         RunError: one was changed since it was made.
     """
     found = sections_of(run)
-    return {own.title: _page(run, name, found[name]) for name, own in KEPT.items() if name in found}
+    return {
+        own.title: page_of(name, found[name], run.found.scene, lambda: simulation_again(run).system.contributors)
+        for name, own in KEPT.items()
+        if name in found
+    }
 
 
 def kept_advice(run: Run) -> str:
@@ -50,11 +56,20 @@ def _totals(own: Any) -> Mapping[str, float]:
     return {name: 100 * max(index.share, 0.0) for name, index in shown.items() if index is not None}
 
 
-def _page(run: Run, name: str, found: Any) -> Page:
-    """The page of a section; those that have no name of their scene are given it."""
+def page_of(name: str, found: Section, scene: str, contributors: Callable[[], Sequence[Contributor]]) -> Page:
+    """The page of an analysis.
+
+    Args:
+        name: of the analysis.
+        found: its result.
+        scene: name of the scene.
+        contributors: of the scene, made where a page asks for them.
+    """
     report: Any = named(KEPT[name].report)
-    if name == "methods":
-        page: Page = report(found, simulation_again(run).system.contributors)
-    else:
-        page = report(found) if hasattr(found, "scene") else report(run.found.scene, found)
+    page: Page = report(found, contributors()) if name == "methods" else report(*with_scene(scene, found))
     return page
+
+
+def with_scene(scene: str, found: Section) -> tuple[Any, ...]:
+    """A result, behind the name of its scene where it has none."""
+    return (found,) if "scene" in type(found).model_fields else (scene, found)

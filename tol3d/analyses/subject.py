@@ -29,17 +29,21 @@ FOLDER: Final = "analyses"
 
 @dataclass(frozen=True)
 class Kept:
-    """An analysis whose result a run keeps.
+    """An analysis whose result a run keeps; what makes, shows and draws it as import paths.
 
     Args:
         title: of it in reports.
-        section: class of the result, as an import path.
-        report: what makes its page, as an import path: of the result, or of the scene's name and the result.
+        section: class of the result.
+        report: makes its page. Where a result has no name of its scene, that is the first argument.
+        picture: draws it to a path, the last argument.
+        numbers: writes all numbers as comma-separated values; "" for those of the page.
     """
 
     title: str
     section: str
     report: str
+    picture: str
+    numbers: str = ""
 
 
 KEPT: Final[Mapping[str, Kept]] = {
@@ -47,19 +51,38 @@ KEPT: Final[Mapping[str, Kept]] = {
         "what to change",
         "tol3d.analyses.what_to_change:Changes",
         "tol3d.analyses.what_to_change_table:changes_report",
+        "tol3d.analyses.what_to_change_picture:draw_changes",
     ),
     "methods": Kept(
         "methods side by side",
         "tol3d.analyses.methods_section:Methods",
         "tol3d.analyses.methods_table:methods_report",
+        "tol3d.analyses.methods_picture:draw_methods",
     ),
-    "effects": Kept("effects", "tol3d.analyses.effects:Effects", "tol3d.analyses.effects_table:effects_report"),
-    "rare": Kept("rare events", "tol3d.analyses.rare_section:RareEvents", "tol3d.analyses.rare_table:rare_report"),
-    "what-if": Kept("what if", "tol3d.analyses.what_if:WhatIf", "tol3d.analyses.what_if_table:what_if_report"),
+    "effects": Kept(
+        "effects",
+        "tol3d.analyses.effects:Effects",
+        "tol3d.analyses.effects_table:effects_report",
+        "tol3d.analyses.effects_picture:draw_effects",
+        "tol3d.analyses.effects_table:effects_csv",
+    ),
+    "rare": Kept(
+        "rare events",
+        "tol3d.analyses.rare_section:RareEvents",
+        "tol3d.analyses.rare_table:rare_report",
+        "tol3d.analyses.rare_picture:draw_rare",
+    ),
+    "what-if": Kept(
+        "what if",
+        "tol3d.analyses.what_if:WhatIf",
+        "tol3d.analyses.what_if_table:what_if_report",
+        "tol3d.analyses.what_if_picture:draw_what_if",
+    ),
     "allocation": Kept(
         "allocation",
         "tol3d.analyses.allocation_section:Allocation",
         "tol3d.analyses.allocate_table:allocation_report",
+        "tol3d.analyses.allocate_picture:draw_allocation",
     ),
 }
 """Analyses by the names of their files, in the order of reports. Each is loaded where a run keeps it."""

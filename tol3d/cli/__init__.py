@@ -17,8 +17,8 @@ import typer
 
 from tol3d.cli import (
     adjustment,
-    changing,
-    deciding,
+    allocate,
+    changes,
     design,
     effects,
     methods,
@@ -29,15 +29,17 @@ from tol3d.cli import (
     showing,
     step,
     studies,
+    sweep,
+    what_if,
 )
 from tol3d.cli.arguments import app
 from tol3d.cli.console import BROKEN_PIPE, DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
 __all__ = [
     "adjustment",
+    "allocate",
     "app",
-    "changing",
-    "deciding",
+    "changes",
     "design",
     "effects",
     "main",
@@ -49,6 +51,8 @@ __all__ = [
     "showing",
     "step",
     "studies",
+    "sweep",
+    "what_if",
 ]
 
 COMMANDS = (
@@ -65,11 +69,11 @@ COMMANDS = (
     adjustment.compensate,
     rare.rare,
     effects.effects,
-    deciding.what_if,
-    deciding.allocate,
-    changing.changes,
+    what_if.what_if,
+    allocate.allocate,
+    changes.changes,
     methods.methods,
-    changing.sweep,
+    sweep.sweep,
     records.identify,
     records.rig,
     records.plan_rig,

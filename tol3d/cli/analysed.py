@@ -1,4 +1,4 @@
-"""Output of an analysis by a command: the table, the requested files, and their folder in a run."""
+"""An analysis by a command: its progress, its page, the requested files, and what a run keeps of it."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +10,8 @@ import typer
 from tol3d.cli.console import err_console, out_console, tell
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from collections.abc import Callable
+
     from rich.status import Status
 
     from tol3d.analyses.subject import Subject
@@ -43,28 +44,48 @@ def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
     subject.batches.clear()
 
 
-def tell_found(subject: "Subject", section: str, found: "Section", report: "RenderableType") -> None:
-    """Print the findings, and keep them in the run if it was asked of one.
+def answer(
+    name: str,
+    asked: "Subject",
+    activity: str,
+    find: "Callable[[Callable[[str], None]], Section]",
+    csv: Path | None,
+    picture: Path | None,
+    numbers: "Callable[[], str] | None" = None,
+) -> "Section":
+    """Do an analysis: show its progress, print what it found, keep it in the run, write and draw what was asked for.
 
     Args:
-        subject: the scene or the run.
-        section: its name in a run.
-        found: findings to keep.
-        report: tables to print.
+        name: of the analysis, see tol3d.analyses.subject.KEPT.
+        asked: the scene or the run.
+        activity: the first one, in words.
+        find: the analysis, with a progress callback.
+        csv, picture: the files that are asked for.
+        numbers: text of the csv file; default: that of the analysis.
     """
-    out_console.print(report)
-    if (kept := subject.keep(section, found)) is not None:
+    from tol3d.analyses.kept_pages import page_of, with_scene
+    from tol3d.analyses.subject import KEPT
+    from tol3d.import_path import named
+
+    with asked_of(asked, activity) as status:
+        found = find(status.update)
+    own, system = KEPT[name], asked.simulation.system
+    page = page_of(name, found, asked.name, lambda: system.contributors)
+    out_console.print(page)
+    if (kept := asked.keep(name, found)) is not None:
         tell(f"kept in the run: {kept}")
+    if csv is not None:
+        write_numbers(csv, numbers() if numbers else named(own.numbers)(found) if own.numbers else page.csv())
+    draw_picture(picture, own.picture, *with_scene(asked.name, found))
+    return found
 
 
-def write_numbers(path: Path | None, text: str) -> None:
-    """Write a table, if a file was asked for.
+def write_numbers(path: Path, text: str) -> None:
+    """Write a table.
 
     Raises:
         InputError: it cannot be written.
     """
-    if path is None:
-        return
     from tol3d.errors import unwritable
     from tol3d.runs.atomic_write import write_whole
 

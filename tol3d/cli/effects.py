@@ -1,20 +1,17 @@
 """The command on the effect of each contributor on each measure."""
 
 from enum import StrEnum
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import (
-    CsvOption,
-    PictureOption,
-    SubjectArgument,
-    asked_of,
-    draw_picture,
-    tell_found,
-    write_numbers,
-)
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tol3d.runs.summary.values import Section
 
 
 class PositionWord(StrEnum):
@@ -44,21 +41,13 @@ def effects(
 ) -> None:
     """Find what each contributor does to each measure: changes, shares of the variance and of failures."""
     from tol3d.analyses.effects import effects as found_effects
-    from tol3d.analyses.effects_table import effects_csv, effects_report
     from tol3d.analyses.subject import subject_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with asked_of(asked, "effects") as status:
+
+    def find(activity: "Callable[[str], None]") -> "Section":
         response = asked.response if measure is None else asked.response.of(measure)
-        found = found_effects(
-            response,
-            base=base,
-            seed=seed,
-            position=position is PositionWord.AS_INPUT,
-            shapley=shapley,
-            activity=status.update,
-        )
-    tell_found(asked, "effects", found, effects_report(found))
-    if csv is not None:
-        write_numbers(csv, effects_csv(found))
-    draw_picture(picture, "tol3d.analyses.effects_picture:draw_effects", found)
+        as_input = position is PositionWord.AS_INPUT
+        return found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=activity)
+
+    answer("effects", asked, "effects", find, csv, picture)

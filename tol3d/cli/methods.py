@@ -1,19 +1,16 @@
 """The command that sets worst case, RSS, modified RSS and simulation side by side."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import (
-    CsvOption,
-    PictureOption,
-    SubjectArgument,
-    asked_of,
-    draw_picture,
-    tell_found,
-    write_numbers,
-)
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tol3d.runs.summary.values import Section
 
 
 def methods(
@@ -33,14 +30,12 @@ def methods(
     """Set worst case, RSS, modified RSS and simulation of each measure side by side."""
     from tol3d.analyses.methods import methods as found_by
     from tol3d.analyses.methods import trials_of
-    from tol3d.analyses.methods_table import methods_report
     from tol3d.analyses.subject import subject_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    with asked_of(asked, "trials") as status:
+
+    def find(activity: "Callable[[str], None]") -> "Section":
         response = asked.response if measure is None else asked.response.of(measure)
-        found = found_by(response, trials_of(asked, response, trials), status.update)
-    report = methods_report(found, response.contributors)
-    tell_found(asked, "methods", found, report)
-    write_numbers(csv, report.csv())
-    draw_picture(picture, "tol3d.analyses.methods_picture:draw_methods", found)
+        return found_by(response, trials_of(asked, response, trials), activity)
+
+    answer("methods", asked, "trials", find, csv, picture)

@@ -6,23 +6,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import (
-    CsvOption,
-    PictureOption,
-    SubjectArgument,
-    asked_of,
-    draw_picture,
-    tell_found,
-    write_numbers,
-)
+from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 from tol3d.cli.console import err_console, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from tol3d.analyses.rare import RareEvent
     from tol3d.analyses.subject import Subject
+    from tol3d.runs.summary.values import Section
 
 
 class MethodName(StrEnum):
@@ -65,25 +58,23 @@ def rare(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find how often limits are left where that is too rare for trials, and the most likely build that leaves them."""
-    from tol3d.analyses.rare import limits_left
+    from tol3d.analyses.rare import RareEvent, limits_left
     from tol3d.analyses.rare_section import rare_section
-    from tol3d.analyses.rare_table import rare_report
     from tol3d.analyses.subject import subject_of
     from tol3d.errors import InputError
 
     if measure is None and (export or view):
         raise InputError(f"{'--export' if export else '--view'}: expected with --measure NAME, whose build is shown")
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    simulation = asked.simulation
-    with asked_of(asked, "design points") as status:
-        events = limits_left(
-            asked.response, measure, method=method.value, draws=draws, seed=seed, activity=status.update
+    events: list[RareEvent] = []
+
+    def find(activity: "Callable[[str], None]") -> "Section":
+        events.extend(
+            limits_left(asked.response, measure, method=method.value, draws=draws, seed=seed, activity=activity)
         )
-        found = rare_section(simulation.system.name, seed, asked.response, events)
-    report = rare_report(found)
-    tell_found(asked, "rare", found, report)
-    write_numbers(csv, report.csv())
-    draw_picture(picture, "tol3d.analyses.rare_picture:draw_rare", found)
+        return rare_section(asked.name, seed, asked.response, events)
+
+    answer("rare", asked, "design points", find, csv, picture)
     if export or view:
         _show(asked, events, export, view)
 

@@ -1,4 +1,4 @@
-"""Commands that say what to change in a scene, and what comes of changing it."""
+"""The command on variants of a scene."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -8,67 +8,18 @@ from typing import Annotated, Any
 
 import typer
 
-from tol3d.cli.analysed import (
-    CsvOption,
-    PictureOption,
-    SubjectArgument,
-    asked_of,
-    draw_picture,
-    tell_found,
-    write_numbers,
-)
+from tol3d.cli.analysed import CsvOption, PictureOption, draw_picture, write_numbers
 from tol3d.cli.arguments import (
-    AcceptOption,
-    AcceptPpkOption,
     EngineOption,
     RunBuilders,
     SceneArgument,
     SeedOption,
     TrustParts,
     WorkersOption,
-    accepted_of,
     scene_path,
     whole,
 )
 from tol3d.cli.console import INTERRUPTED, err_console, out_console, tell
-
-
-def changes(
-    subject: SubjectArgument,
-    measure: Annotated[str | None, typer.Option(help="Which; by default all that are NOT OK.")] = None,
-    accept: AcceptOption = None,
-    accept_ppk: AcceptPpkOption = None,
-    builds: Annotated[
-        Any, typer.Option(parser=whole(50), metavar="N", help="By which each change is judged; 5000, or less if slow.")
-    ] = None,
-    csv: CsvOption = None,
-    picture: PictureOption = None,
-    trust_parts: TrustParts = False,
-    run_builders: RunBuilders = False,
-) -> None:
-    """Find what to change where limits are left: which nominal to move, which tolerance to halve."""
-    from tol3d.analyses.changes_of_run import not_ok
-    from tol3d.analyses.subject import subject_of
-    from tol3d.analyses.what_to_change import AIM, ChangesQuestion, changes_of, contributions_of
-    from tol3d.analyses.what_to_change_table import changes_report, contributions_table
-    from tol3d.report.verdict import ACCEPTED_PPM, AcceptedPpk
-
-    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    accepted = accepted_of(accept, accept_ppk)
-    if accepted is None:
-        ppk = own.simulation.study.accept_ppk
-        accepted = ACCEPTED_PPM if ppk is None else AcceptedPpk(ppk)
-    ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
-    question = ChangesQuestion(measure, ppm, builds, aim)
-    with asked_of(own, "builds") as status:
-        response = own.response
-        bad = None if own.run is None else not_ok(own.run, accepted)
-        found = changes_of(response, question, bad=bad, activity=status.update)
-        numbers = "" if csv is None else contributions_table(contributions_of(response, measure)).csv()
-    name = own.simulation.system.name
-    tell_found(own, "changes", found, changes_report(name, found))
-    write_numbers(csv, numbers)
-    draw_picture(picture, "tol3d.analyses.what_to_change_picture:draw_changes", name, found)
 
 
 def sweep(
@@ -119,7 +70,8 @@ def sweep(
     out_console.print(sweep_report(found))
     write_text(text_of_section(found), folder / NAME)
     tell(f"variants: {folder}    all of them: {folder / NAME}")
-    write_numbers(csv, whole_table(found).csv())
+    if csv is not None:
+        write_numbers(csv, whole_table(found).csv())
     draw_picture(picture, "tol3d.analyses.sweep_picture:draw_sweep", found)
 
 
