@@ -1,10 +1,12 @@
-"""Range of one coordinate held by contacts: a linear programme per trial, by a compiled dual simplex method.
+"""Bodies as far along an objective as contacts let: a linear programme per trial, by a compiled dual simplex method.
 
 Every contact pair is a row of two sides, lower <= row @ x <= upper: the flanks of one mesh. As each row has both sides,
-any independent rows can be the first basis: the sign of its multiplier says at which side a row is met. Of the rows
-that are not kept the worst enters, and the dual ratio test says which one leaves; where nothing may leave, the rows
-contradict each other: there is no room. All trials start with the same basis, so that a trial has the same bits alone
-and among thousands. Source: the dual simplex method for bounded rows (Lemke 1954; Bland's rule where it stalls).
+any independent rows can be the first basis: the sign of its multiplier says at which side a row is met. A contact with
+one side has an infinite other one, and a first basis of those that carry. Of the rows that are not kept the worst
+enters, and the dual ratio test says which one leaves; where nothing may leave, the rows contradict each other: there is
+no room. Where several points are as far, a second objective may choose among them (a lexicographic programme). All
+trials start with the same basis, so that a trial has the same bits alone and among thousands. Source: the dual simplex
+method for bounded rows (Lemke 1954; Bland's rule where it stalls).
 """
 
 from typing import Any, Final
@@ -13,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.loops import fill_matrix
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
@@ -62,13 +65,16 @@ def inverted(rows: Any, basis: Any, matrix: Any, inverse: Any) -> bool:
 
 
 @part
-def met(lower: Any, upper: Any, basis: Any, inverse: Any, sides: Any, x: Any) -> None:
-    """Write the point at which the basis' rows are met at their sides."""
+def met(lower: Any, upper: Any, basis: Any, inverse: Any, sides: Any, ends: Any, x: Any) -> None:
+    """Write the point at which the basis' rows are met at their sides, and these."""
     count = basis.shape[0]
+    for j in range(count):
+        ends[j] = upper[basis[j]] if sides[j] > 0.0 else lower[basis[j]]
     for i in range(count):
-        x[i] = 0.0
+        value = 0.0
         for j in range(count):
-            x[i] += inverse[i, j] * (upper[basis[j]] if sides[j] > 0.0 else lower[basis[j]])
+            value += inverse[i, j] * ends[j]
+        x[i] = value
 
 
 @part
@@ -94,52 +100,41 @@ def leaving(basis: Any, sides: Any, loads: Any, shares: Any, sense: float, first
     """The place in the basis that becomes free; -1 for none.
 
     That is one whose multiplier would change its sign first. Of those that would at once, to rounding, it is the one
-    with the largest pivot (Harris 1973), or the first row: a pivot of rounding's own size spoils the inverse.
+    whose second multiplier would; then the one with the largest pivot (Harris 1973), or the first row: a pivot of
+    rounding's own size spoils the inverse.
     """
     least = np.inf
     for j in range(basis.shape[0]):
         rate = sides[j] * sense * shares[j]
         if rate > SMALLEST_PIVOT:
-            least = min(least, (max(0.0, sides[j] * loads[j]) + (0.0 if first else TIED)) / rate)
-    found, largest = -1, 0.0
+            least = min(least, (max(0.0, loads[0, j]) + (0.0 if first else TIED)) / rate)
+    found, largest, second = -1, 0.0, np.inf
     for j in range(basis.shape[0]):
         rate = sides[j] * sense * shares[j]
-        at_once = rate > SMALLEST_PIVOT and max(0.0, sides[j] * loads[j]) / rate <= least
-        if at_once and (found < 0 or (basis[j] < basis[found] if first else rate > largest)):
-            found, largest = j, rate
+        if rate > SMALLEST_PIVOT and max(0.0, loads[0, j]) / rate <= least:
+            other = 0.0 if first else loads[1, j] / rate
+            better = basis[j] < basis[found] if first else rate > largest
+            if found < 0 or other < second or (other == second and better):
+                found, largest, second = j, rate, other
     return found
 
 
 @part
-def solve_lp(
-    rows: Any, lower: Any, upper: Any, objective: Any, basis: Any, rooms: Any, x: Any
+def new_rooms(count: int) -> Any:
+    """Work arrays of a programme (count unknowns): matrix, inverse of the basis, sides, loads, shares."""
+    loads = np.empty((2, count))
+    fill_matrix(loads, 0.0)
+    return np.empty((count, count)), np.empty((count, count)), np.empty(count), loads, np.empty(count)
+
+
+@part
+def exchanged(
+    rows: Any, lower: Any, upper: Any, basis: Any, inverse: Any, sides: Any, loads: Any, shares: Any, x: Any
 ) -> tuple[int, int, float]:
-    """Write the point with the largest objective.
-
-    Args:
-        rows, lower, upper: of the contacts.
-        objective: that is maximised.
-        basis: rows that are met; from those of the start to those of the end.
-        rooms: matrix, inverse, sides, loads, shares to write in; where no multiplier says at which side a row of the
-            basis is met, it is the one that stands in sides.
-        x: the point.
-
-    Returns:
-        What became of it, the last row that was not kept, and by how much the rows that contradict it would have to
-        give way, each as much.
-    """
-    matrix, inverse, sides, loads, shares = rooms
+    """Go on from a basis with its inverse, its sides, and its loads of both objectives (2, count); see `solve_lp`."""
     count = basis.shape[0]
-    if not inverted(rows, basis, matrix, inverse):
-        return STALLED, -1, 0.0
-    for j in range(count):
-        loads[j] = 0.0
-        for i in range(count):
-            loads[j] += objective[i] * inverse[i, j]
-        if abs(loads[j]) > TIED:
-            sides[j] = 1.0 if loads[j] > 0.0 else -1.0
     for pivot in range(MOST_PIVOTS):
-        met(lower, upper, basis, inverse, sides, x)
+        met(lower, upper, basis, inverse, sides, shares, x)
         by_number = pivot > PATIENT
         row, beyond = entering(rows, lower, upper, x, by_number)
         if row < 0:
@@ -155,18 +150,52 @@ def solve_lp(
         if place < 0:
             return NO_ROOM, row, abs(beyond) / together
         step = 1.0 / shares[place]
-        load = loads[place] * step
+        first, second = side * sides[place] * loads[0, place] * step, side * sides[place] * loads[1, place] * step
         for i in range(count):
             inverse[i, place] *= step
         for j in range(count):
             if j != place:
-                loads[j] -= shares[j] * load
+                rate = side * sides[j] * shares[j]
+                loads[0, j] -= rate * first
+                loads[1, j] -= rate * second
                 for i in range(count):
                     inverse[i, j] -= shares[j] * inverse[i, place]
-        loads[place] = load
+        loads[0, place], loads[1, place] = first, second
         basis[place] = row
         sides[place] = side
     return STALLED, -1, 0.0
+
+
+@part
+def solve_lp(
+    rows: Any, lower: Any, upper: Any, objective: Any, basis: Any, rooms: Any, x: Any
+) -> tuple[int, int, float]:
+    """Write the point with the largest objective.
+
+    Args:
+        rows, lower, upper: of the contacts.
+        objective: that is maximised.
+        basis: rows that are met; from those of the start to those of the end.
+        rooms: `new_rooms`, to write in; where no multiplier says at which side a row of the basis is met, it is the
+            one that stands in sides.
+        x: the point.
+
+    Returns:
+        What became of it, the last row that was not kept, and by how much the rows that contradict it would have to
+        give way, each as much.
+    """
+    matrix, inverse, sides, loads, shares = rooms
+    count = basis.shape[0]
+    if not inverted(rows, basis, matrix, inverse):
+        return STALLED, -1, 0.0
+    for j in range(count):
+        load = 0.0
+        for i in range(count):
+            load += objective[i] * inverse[i, j]
+        if abs(load) > TIED:
+            sides[j] = 1.0 if load > 0.0 else -1.0
+        loads[0, j] = sides[j] * load
+    return exchanged(rows, lower, upper, basis, inverse, sides, loads, shares, x)
 
 
 @kernel(arrays="f8[:,::1], f8[:,::1], f8[:,::1], f8[::1], f8[:,::1], i8[::1], f8[:,::1], i1[::1], i8[::1], f8[::1]")
@@ -187,10 +216,7 @@ def ranges(
         decided, amount: the row that contradicts others (trials,), -1 for none, and its excess [mm]; written.
     """
     count = rows.shape[1]
-    rooms = (
-        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
-    )  # fmt: skip
-    x, basis = np.empty(count), np.empty(count, np.int64)
+    rooms, x, basis = new_rooms(count), np.empty(count), np.empty(count, np.int64)
     for i in range(lower.shape[0]):
         status[i], decided[i], amount[i] = OK, -1, 0.0
         for end in range(2):

@@ -14,90 +14,11 @@ import numpy as np
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, kept_at, pull_at, rows_at, tangents_at, undoing
 from tol3d.assembly.placing.pose_steps import solved, stepped
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy, copy_matrix
+from tol3d.numerics.loops import copy, copy_matrix, fill
+from tol3d.numerics.programme import NO_ROOM, OK, exchanged, new_rooms
 
-OPEN: Final = -1e-11
-"""Overlap [mm] above which a contact interferes."""
-PIVOTS: Final = 400
-"""Exchanges of contacts in one trial; in practice as many as contacts."""
-ACTS: Final = 1e-9
-"""Closing of a gap per opening of another one that counts as none."""
 TIED: Final = 1e-9
 """Fraction of the force below which a contact carries nothing."""
-
-
-@nested
-def leaving(inverse: Any, loads: Any, row: Any, closes: Any) -> int:
-    """Which contact of the basis a new one relieves first; -1 if none. `closes` becomes row . inverse."""
-    count = loads.shape[1]
-    best = -1
-    least, second = np.inf, np.inf
-    for b in range(count):
-        total = 0.0
-        for j in range(count):
-            total += row[j] * inverse[j, b]
-        closes[b] = total
-        if total > ACTS:
-            first, other = max(loads[0, b], 0.0) / total, loads[1, b] / total
-            if first < least - 1e-12 or (first < least + 1e-12 and other < second):
-                best, least, second = b, min(first, least), other
-    return best
-
-
-@nested
-def exchange(inverse: Any, loads: Any, closes: Any, out: int) -> None:
-    """Replace a contact of the basis by a new one: the inverse of the basis, and the loads on it."""
-    count = loads.shape[1]
-    pivot = closes[out]
-    for j in range(count):
-        inverse[j, out] /= pivot
-    for b in range(count):
-        if b != out:
-            for j in range(count):
-                inverse[j, b] -= inverse[j, out] * closes[b]
-    for level in range(2):
-        share = loads[level, out] / pivot
-        for b in range(count):
-            loads[level, b] -= share * closes[b]
-        loads[level, out] = share
-
-
-@nested
-def solve_lp(rows: Any, gaps: Any, basis: Any, inverse: Any, loads: Any, rooms: Any, pivots: int) -> int:
-    """Motion z, into the first room, that goes farthest with rows z + gaps >= 0; the exchanges made, or below 0.
-
-    Returns:
-        -1: gaps contradict each other. -2: too many exchanges.
-    """
-    z, closes = rooms
-    count = loads.shape[1]
-    while True:
-        for j in range(count):
-            total = 0.0
-            for b in range(count):
-                total -= inverse[j, b] * gaps[basis[b]]
-            z[j] = total
-        entering, deepest = -1, OPEN
-        for k in range(rows.shape[0]):
-            total = gaps[k]
-            for j in range(count):
-                total += rows[k, j] * z[j]
-            if total < deepest:
-                among = False
-                for b in range(count):
-                    among = among or basis[b] == k
-                if not among:
-                    entering, deepest = k, total
-        if entering < 0:
-            return pivots
-        if pivots == PIVOTS:
-            return -2
-        out = leaving(inverse, loads, rows[entering], closes)
-        if out < 0:
-            return -1
-        exchange(inverse, loads, closes, out)
-        basis[out] = entering
-        pivots += 1
 
 
 STEPS: Final = 60
@@ -117,21 +38,20 @@ def settled(
 ) -> int:
     """Follow a part along the force from a pose, by nominal rows; returns its status."""
     all_rows, rows, steps = programme
-    basis, inverse, loads = begun
-    gaps, step, moves = rooms
-    pivots = 0
+    basis, (_, inverse, sides, loads, shares) = begun
+    lower, upper, step, motion = rooms
     for n in range(STEPS):
         undoing(pose, kept, i, step)
-        for k in range(gaps.shape[0]):
-            gaps[k] = gap_of(pose, contacts, k, i, on_part)
+        for k in range(lower.shape[0]):
+            lower[k] = -gap_of(pose, contacts, k, i, on_part)
             for r in range(6):
-                gaps[k] += all_rows[k, r] * step[r]
-        pivots = solve_lp(rows, gaps, basis, inverse, loads, moves, pivots)
-        if pivots < 0:
-            return CLASHES if pivots == -1 and n == 0 else LOST
+                lower[k] -= all_rows[k, r] * step[r]
+        found, _, _ = exchanged(rows, lower, upper, basis, inverse, sides, loads, shares, motion)
+        if found != OK:
+            return CLASHES if found == NO_ROOM and n == 0 else LOST
         for r in range(6):
             for j in range(rows.shape[1]):
-                step[r] += steps[r, j] * moves[0][j]
+                step[r] += steps[r, j] * motion[j]
         length = stepped(pose, step, reach)
         if length <= MET:
             return RESTS
@@ -146,8 +66,8 @@ def pressed(
     reach: float,
 ) -> bool:  # fmt: skip
     """True if, with the lever arms of the pose too, the force presses all contacts that carry load nominally."""
-    basis, _, loads = begun
-    all_rows, pull, tangents, matrix, right = rooms
+    basis, (matrix, _, _, loads, right) = begun
+    all_rows, pull, tangents = rooms
     rows_at(pose, contacts, i, on_part, reach, all_rows)
     pull_at(pose, force, reach, pull)
     tangents_at(pose, kept, i, steps, reach, tangents)
@@ -253,16 +173,18 @@ def rests_found(
     count, motions = rows.shape
     pose, first = np.empty((3, 4)), np.empty(kept_shifts.shape[0])
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
-    begun = (np.empty(motions, np.int64), np.empty((motions, motions)), np.empty((2, motions)))
-    rooms = (np.empty(count), np.empty(6), (np.empty(motions), np.empty(motions)))
-    there = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)), np.empty((motions, motions)), np.empty(motions))
+    basis, solving = np.empty(motions, np.int64), new_rooms(motions)
+    begun, rooms = (basis, solving), (np.empty(count), np.empty(count), np.empty(6), np.empty(motions))
+    there = (np.empty((count, 6)), np.empty(6), np.empty((6, motions)))
+    fill(rooms[1], np.inf)
     for i in range(outcomes.shape[0]):
         begin(pose, first, start, i, kept)
-        copy(begun[0], first_basis)
-        copy_matrix(begun[1], first_inverse)
-        copy_matrix(begun[2], first_loads)
+        copy(basis, first_basis)
+        copy_matrix(solving[1], first_inverse)
+        fill(solving[2], -1.0)
+        copy_matrix(solving[3], first_loads)
         outcome = settled(pose, contacts, i, on_part, kept, programme, begun, rooms, reach)
         if outcome == RESTS and not pressed(pose, contacts, i, on_part, kept, (force, at), steps, begun, there, reach):
             outcome = LOST
         outcomes[i] = outcome
-        note(outcome, pose, begun[0], begun[2], i, (turns, shifts, carried))
+        note(outcome, pose, basis, solving[3], i, (turns, shifts, carried))

@@ -13,9 +13,10 @@ import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at, restored, rows_at, tangents_at
 from tol3d.assembly.placing.pose_steps import stepped
-from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIED, TIPS, begin, note, solve_lp
+from tol3d.assembly.placing.rests import BETWEEN, CLASHES, LOST, RESTS, TIED, TIPS, begin, note
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy_matrix
+from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
+from tol3d.numerics.programme import OK, exchanged, new_rooms
 
 
 @nested
@@ -92,33 +93,29 @@ def boxed_rows(rows: Any, contacts: int) -> None:
             rows[k, j] = 0.0
     for k in range(contacts):
         rows[k, motions] = 1.0
-    for j in range(motions):
-        rows[contacts + 2 * j, j], rows[contacts + 2 * j + 1, j] = 1.0, -1.0
-    rows[contacts + 2 * motions, motions] = 1.0
+    for j in range(motions + 1):
+        rows[contacts + j, j] = 1.0
 
 
 @nested
 def boxed(programme: Any, gaps: Any, box: float, dear: float, begun: Any, own: Any) -> int:
-    """The best motion in a box, into the room of `solve_lp`; the exchanges made, below 0 if it is not found."""
+    """Find the best motion in a box; see `programme.solve_lp`."""
     rows, all_rows, _, pull = programme
-    basis, inverse, loads = begun
-    all_gaps, moves = own
+    basis, solving = begun
+    lower, upper, motion = own
+    _, inverse, sides, loads, shares = solving
     count, motions = all_rows.shape[0], pull.shape[0]
+    fill_matrix(inverse, 0.0)
     for k in range(count):
-        all_gaps[k] = gaps[k]
-    for j in range(motions):
-        all_gaps[count + 2 * j], all_gaps[count + 2 * j + 1] = box, box
-        for b in range(motions + 1):
-            inverse[j, b], inverse[motions, b] = 0.0, 0.0
-    all_gaps[count + 2 * motions] = 0.0
-    for j in range(motions):
-        ahead = pull[j] > 0.0
-        basis[j] = count + 2 * j + (1 if ahead else 0)
-        inverse[j, j] = -1.0 if ahead else 1.0
-        loads[0, j], loads[1, j] = abs(pull[j]), 1.0 + j
-    basis[motions], inverse[motions, motions] = count + 2 * motions, 1.0
+        lower[k] = -gaps[k]
+    for j in range(motions + 1):
+        lower[count + j], upper[count + j] = -box, box
+        basis[j], inverse[j, j], sides[j], loads[1, j] = count + j, 1.0, -1.0, 1.0 + j
+        if j < motions:
+            sides[j], loads[0, j] = (1.0 if pull[j] > 0.0 else -1.0), abs(pull[j])
+    lower[count + motions], upper[count + motions] = 0.0, np.inf
     loads[0, motions], loads[1, motions] = dear, 1.0
-    return int(solve_lp(rows, all_gaps, basis, inverse, loads, moves, 0))
+    return exchanged(rows, lower, upper, basis, inverse, sides, loads, shares, motion)[0]
 
 
 @nested
@@ -137,7 +134,7 @@ def boxed_in(basis: Any, loads: Any, contacts: int, motions: int) -> bool:
     """True if a side of the box carries load."""
     found = False
     for b in range(basis.shape[0]):
-        found = found or (contacts <= basis[b] < contacts + 2 * motions and loads[0, b] > TIED)
+        found = found or (contacts <= basis[b] < contacts + motions and loads[0, b] > TIED)
     return found
 
 
@@ -147,15 +144,14 @@ def found_rest(
 ) -> int:
     """Follow a part along the force from a pose, by the lever arms of each pose; returns its status."""
     motions, contacts = programme[3].shape[0], programme[1].shape[0]
-    basis, _, loads = begun
+    basis, loads, motion = begun[0], begun[1][3], own[2]
     boxed_rows(programme[0], contacts)
     step, there, dear, box = np.empty(6), np.empty((3, 4)), DEAR, most
     for _ in range(STEPS):
         cost, deepest = cost_of(pose, trial, reach, dear, rooms)
         motion_rows(pose, trial, reach, rooms[1], programme)
-        if boxed(programme, rooms[0], box, dear, begun, own) < 0:
+        if boxed(programme, rooms[0], box, dear, begun, own) != OK:
             return LOST
-        motion = own[1][0]
         gain = dear * (deepest - motion[motions])
         for j in range(motions):
             gain += programme[3][j] * motion[j]
@@ -219,10 +215,11 @@ def tilted_rests_found(
     count, motions = points.shape[0], steps.shape[1]
     pose, begin_at, first = np.empty((3, 4)), np.empty((3, 4)), np.empty(kept_shifts.shape[0])
     kept = (kept_vectors, kept_normals, kept_shifts, kept_steps, first)
-    size, all_rows = motions + 1, count + 2 * motions + 1
-    begun = (np.empty(size, np.int64), np.empty((size, size)), np.empty((2, size)))
+    size, all_rows = motions + 1, count + motions + 1
+    begun = (np.empty(size, np.int64), new_rooms(size))
     programme = (np.empty((all_rows, size)), np.empty((count, 6)), np.empty((6, motions)), np.empty(motions))
-    rooms, own = (np.empty(count), np.empty(6)), (np.empty(all_rows), (np.empty(size), np.empty(size)))
+    rooms, own = (np.empty(count), np.empty(6)), (np.empty(all_rows), np.empty(all_rows), np.empty(size))
+    fill(own[1], np.inf)
     for i in range(outcomes.shape[0]):
         trial, outcome, box = ((points, normals, heights), i, on_part, kept, (force, at), steps), TIPS, SEARCH * reach
         for _ in range(TRIES):
@@ -232,7 +229,8 @@ def tilted_rests_found(
                 outcome = found_rest(pose, begin_at, trial, reach, box, begun, programme, rooms, own)
                 box = box / 8.0
         outcomes[i] = outcome
+        basis, loads = begun[0], begun[1][3]
         for b in range(size):
-            if begun[0][b] >= count:
-                begun[0][b], begun[2][0, b] = 0, 0.0
-        note(outcomes[i], pose, begun[0], begun[2], i, (turns, shifts, carried))
+            if basis[b] >= count:
+                basis[b], loads[0, b] = 0, 0.0
+        note(outcomes[i], pose, basis, loads, i, (turns, shifts, carried))

@@ -18,7 +18,7 @@ from tol3d.cycloid.exact.pin_contact import ContactShape
 from tol3d.cycloid.exact.rest_rows import ARM, ROOM, TURNS, based, bearing_at, mesh_written, pins_written, working_pins
 from tol3d.numerics.compiled import kernel, part
 from tol3d.numerics.loops import fill
-from tol3d.numerics.programme import NO_ROOM, OK, STALLED, solve_lp
+from tol3d.numerics.programme import NO_ROOM, OK, STALLED, new_rooms, solve_lp
 
 NOT_HELD: Final = 3
 """A body leaves by the end of the room that it is given: nothing stops it."""
@@ -159,7 +159,7 @@ def rested(
                 own = count + 2 * (b - cranks * discs)
                 both = lower[own : own + 2], upper[own : own + 2]
                 mesh_written(stage, meshes, z, b - cranks * discs, (x_b, y_b), across, rows[own : own + 2], both)
-        held = step < 1 or not boxed(count, basis, solving[3])
+        held = step < 1 or not boxed(count, basis, solving[3][0])
         met = deepest < (MET if step < LAST else NEARLY_MET)
         if step > 0 and met and abs(x[0]) < STILL and (held or near >= ROOM):
             return OK if held else NOT_HELD, z[0] / ARM
@@ -226,9 +226,7 @@ def rests(
     most = bearings * (2 + CUTS) + BENDS
     pinned = count + 2 * cranks
     size = pinned + discs * radii.shape[1] + most
-    solving = (
-        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
-    )  # fmt: skip
+    solving = new_rooms(count)
     rows, lower, upper = np.zeros((size, count)), np.empty(size), np.empty(size)
     rooms = (
         rows, lower, upper, np.empty(count, np.int64), solving, np.empty(count), np.empty(count), np.empty((most, 3)),
@@ -254,6 +252,6 @@ def rests(
             near[i, p] = 0
             fill(loads[i, p], 0.0)
             if status[i, p] == OK:
-                note(pinned, working[:number], rooms[3], solving[3], rooms[9], loads[i, p])
+                note(pinned, working[:number], rooms[3], solving[3][0], rooms[9], loads[i, p])
                 for k in range(number):
                     near[i, p] += -lower[pinned + k] <= shape.deflection

@@ -20,7 +20,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.programme import OK, STALLED, solve_lp
+from tol3d.numerics.programme import OK, STALLED, new_rooms, solve_lp
 
 STILL: Final = 1e-11  # rad; turns change by less: at 100 mm that is 1e-9 mm
 MOST_STEPS: Final = 25
@@ -143,9 +143,7 @@ def seated_ranges(
     """Both ends of one coordinate in trials, and all turns there; see seated and programme.ranges."""
     count, springs = unknowns.shape[0], senses.shape[1]
     contacts = meshes.shape[0] * planets.shape[0]
-    solving = (
-        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
-    )  # fmt: skip
+    solving = new_rooms(count)
     basis, turns = np.empty(count, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
     slopes, rows = np.empty((contacts, turns.shape[0])), np.empty((contacts + springs, count))
     rooms = (solving, slopes, rows, np.empty(contacts + springs), np.empty(contacts + springs), np.empty(count))
@@ -204,9 +202,7 @@ def placed_curve(
     """
     count, springs = unknowns.shape[0], senses.shape[1]
     contacts = meshes.shape[0] * planets.shape[0]
-    solving = (
-        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
-    )  # fmt: skip
+    solving = new_rooms(count)
     basis, turns = np.empty(count, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
     slopes, rows = np.empty((contacts, turns.shape[0])), np.empty((contacts + springs, count))
     rooms = (solving, slopes, rows, np.empty(contacts + springs), np.empty(contacts + springs), np.empty(count))

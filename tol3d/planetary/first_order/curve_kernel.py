@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.programme import OK, solve_lp
+from tol3d.numerics.programme import OK, new_rooms, solve_lp
 
 
 @part
@@ -114,9 +114,7 @@ def first_order_curve(
             offsets, written.
     """
     count, trials, positions = rows.shape[1], ends.shape[0], ends.shape[1]
-    rooms = (
-        np.empty((count, count)), np.empty((count, count)), np.empty(count), np.empty(count), np.empty(count)
-    )  # fmt: skip
+    rooms = new_rooms(count)
     x, basis = np.empty(count), np.empty(count, np.int64)
     low, high = np.empty(rows.shape[0]), np.empty(rows.shape[0])
     shared = planets_turned.shape[0] == positions
