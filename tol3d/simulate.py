@@ -10,7 +10,7 @@
     statistics   of one block, or several   study/tally.py              Tally             (sample.py: one method's)
     task         what workers run           study/task.py               Task              (execution/pools.py: who runs)
     blocks       run, kept, folded in order execution/folding.py        run_blocks
-    findings     tally -> summary           study/findings.py           findings
+    findings     tally -> summary           study/findings.py           findings          (budget.py: how many builds)
     witness      some trials again          study/witness.py            witness_summary
     explanation  why both methods differ      study/agreement/            explanations
     result       the run on disk            runs/run.py                 Run               (writer.py, occupant.py)

@@ -19,7 +19,7 @@ from tol3d.assembly.methods import TorsorMethod
 from tol3d.gearing.methods.analytic import AnalyticMethod
 from tol3d.machine.methods import MachineMethod
 from tol3d.simulate import simulation_of
-from tol3d.study.agreement.explaining import explanations
+from tol3d.study.agreement.differences import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn

@@ -34,7 +34,7 @@ from tol3d.gearing.model import Model, Scalar, model_from_scene
 from tol3d.gearing.stack_up.stack import Stack
 from tol3d.gears import BevelGear
 from tol3d.report.table import run_report
-from tol3d.study.agreement.explaining import explanations
+from tol3d.study.agreement.differences import explanations
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.tally import PILOT_TRIALS, Tally, grids_of
 from tol3d.system.outcome import Columns

@@ -17,7 +17,7 @@ from tol3d.distributions.uniform import Uniform
 from tol3d.study import high_low_mean
 from tol3d.study.evaluation import Evaluation
 from tol3d.study.first_order import first_order
-from tol3d.study.high_low_mean import high_low_mean_percents, high_low_mean_ranges, to_first_order
+from tol3d.study.high_low_mean import extents, high_low_mean_percents, high_low_mean_ranges
 from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
@@ -160,7 +160,7 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
     simulation = simulation_of(load_scene("cover_on_base"), Overrides())
     system = simulation.system
     method = method_of(simulation, materials_of(simulation))
-    assert to_first_order(system, system.measures) == 0
+    assert [(own.asking, own.exact) for own in extents(system, system.measures)] == [(4, 4)]
     rows: list[int] = []
 
     def read(builds: Array, measures: Sequence[Measure]) -> Mapping[str, Array]:
@@ -173,7 +173,7 @@ def test_ends_that_go_with_contributors_times_measures_are_built_for_the_largest
     monkeypatch.setattr(high_low_mean, "MOST_EXACT", 1)
     rows.clear()
     found = high_low_mean_ranges(system, system.measures, read)
-    assert to_first_order(system, system.measures) == 4
+    assert [(own.asking, own.exact) for own in extents(system, system.measures)] == [(4, 1)]
     assert sum(rows) <= built - 2 * 3  # both ends of three zones, where they differ by measure for each
     for name, ranges in exact.items():
         own = high_low_mean_percents(ranges)

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.budget import PLACING, price
 from tol3d.study.draws import drawn
 from tol3d.study.evaluation import Evaluation, measures_alike
 from tol3d.study.regions import Drawing, Rows, Space, furthest, gradient_of, settled
@@ -50,8 +51,6 @@ SHARE: Final = 0.05
 """Share of the builds of a run that may be made."""
 AT_LEAST: Final = 100
 """Builds that may be made in any case."""
-PLACING: Final = 20
-"""Contacts that take as long as placing the parts of a build."""
 
 
 def acting(simulation: Simulation, measure: Measure) -> Sequence[Contributor]:
@@ -87,8 +86,8 @@ def _look(simulation: Simulation) -> Mapping[str, Seen]:
         return {}
     method = system.method(engine, system.materials(engine)) if simulation.has_geometry else None
     evaluation, measures = Evaluation(system, method), [own for own in system.measures if own.name in without]
-    prices = {own.name: PLACING + system.cost((own,)) for own in measures}
-    budget = max(SHARE * simulation.study.trials, AT_LEAST) * (PLACING + system.cost(system.measures))
+    prices = {own.name: price(system, (own,)) for own in measures}
+    budget = max(SHARE * simulation.study.trials, AT_LEAST) * price(system, system.measures)
     count = int(np.clip(budget / (max(prices.values()) + sum(prices.values())), FEWEST, BUILDS))
     found = {}
     for turning, alike in measures_alike(system, measures):

@@ -22,6 +22,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.measure import SharesBy
 from tol3d.statistics import IndependentSums, independent_shares, shares
 from tol3d.study.acting import AT_LEAST, acting
+from tol3d.study.budget import FREE, of_other_method, price
 from tol3d.study.draws import redrawn
 from tol3d.study.evaluation import Evaluation, batches
 from tol3d.study.high_low_mean import Ranges, high_low_mean_percents, high_low_mean_ranges
@@ -118,13 +119,15 @@ class Attributed:
             return found
         ends = self.alone
         if ends is None:
-            ends = high_low_mean_ranges(system, lacking, self.evaluation.values)
+            contacts = of_other_method(self.simulation, self.trials)
+            ends = high_low_mean_ranges(system, lacking, self.evaluation.values, contacts)
         sigmas = {own.name: regressed[own.name].target_sigma for own in lacking}
         alone = {
             own.name: {name: ends.get(own.name, {}).get(name) for name in found[own.name].percents} for own in lacking
         }
         unseen = {name for name, own in alone.items() if not _adds_up(own, sigmas[name])}
-        effects = self._total_effects(lacking, sigmas, AT_LEAST if unseen else 0)
+        at_least = min(AT_LEAST, int(FREE / price(system, lacking))) if unseen else 0
+        effects = self._total_effects(lacking, sigmas, at_least)
         for measure in lacking:
             own, seen = replace(found[measure.name], lacks=True), measure.name not in unseen
             pairs, known = effects.get(measure.name, (0, {}))

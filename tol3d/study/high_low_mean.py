@@ -6,8 +6,9 @@ as the size of a vector does, the range is the root of the sum of squares over d
 
 All ends of all contributors are built in one batch for all measures. Which way a draw acts may follow from values that
 it asks for: what it asks is noted, answered with that of all others, and handed to it when it is asked again. Where it
-lies elsewhere for each measure builds go with contributors times measures: beyond MOST_ENDS of them the MOST_EXACT that
-move a measure most have theirs built, the others have what they do to first order.
+lies elsewhere for each measure builds go with contributors times measures: beyond MOST_ENDS of them, or where the run
+affords fewer, those that move a measure most have theirs built (MOST_EXACT at most), the others have what they do to
+first order. Where the run does not afford what is asked before, nothing is built.
 """
 
 import math
@@ -19,6 +20,7 @@ from typing import Final
 import numpy as np
 
 from tol3d.numerics.arrays import Array
+from tol3d.study.budget import ALONE, PLACING
 from tol3d.study.evaluation import Values, batches, measures_alike, of_alike
 from tol3d.system.dependent import Named
 from tol3d.system.measure import Measure
@@ -41,17 +43,24 @@ Cost = Callable[[Sequence[Measure]], int]
 """Contacts per build that measures ask for; see System.cost."""
 
 
-def high_low_mean_ranges(system: System, measures: Sequence[Measure], values: Values) -> Mapping[str, Ranges]:
+def high_low_mean_ranges(
+    system: System, measures: Sequence[Measure], values: Values, contacts: float = math.inf
+) -> Mapping[str, Ranges]:
     """Ranges of measures over each contributor: largest less smallest of three states.
 
     Args:
         system, measures: to build and to read: one number of each.
         values: measures of deviations; nan where a build cannot be assembled.
+        contacts: those that builds may take, see budget.py.
 
     Returns:
-        By measure ranges by the contributor's name, in its unit; None where a build cannot be assembled.
+        By measure ranges by the contributor's name, in its unit; None where a build cannot be assembled, or where
+        builds would take more contacts.
     """
-    return of_alike(system, measures, lambda alike, turning: _named_ranges(system, alike, turning, values))
+    each = contacts / max(len(measures), 1)
+    return of_alike(
+        system, measures, lambda alike, turning: _named_ranges(system, alike, turning, values, each * len(alike))
+    )
 
 
 def high_low_mean_percents(ranges: Ranges) -> Percents:
@@ -61,18 +70,42 @@ def high_low_mean_percents(ranges: Ranges) -> Percents:
     return {name: None if own is None else 100 * own / total if total > 0.0 else 0.0 for name, own in squares.items()}
 
 
-def to_first_order(system: System, measures: Sequence[Measure]) -> int:
-    """Number of contributors whose effect on most measures is of first order only; not all of their ends are built."""
-    found = 0
+@dataclass(frozen=True)
+class Extent:
+    """What is built of measures that share a mean build.
+
+    Args:
+        asking: contributors that lie elsewhere at their ends for each measure.
+        exact: those of them whose ends are built, the ones that move a measure most; None where nothing is built.
+        contacts: what all takes that is built.
+    """
+
+    asking: int
+    exact: int | None
+    contacts: float
+
+
+def extents(system: System, measures: Sequence[Measure], contacts: float = math.inf) -> Sequence[Extent]:
+    """What is built of measures, one for all that share a mean build; see `high_low_mean_ranges`."""
+    found, each = [], contacts / max(len(measures), 1)
     for turning, alike in measures_alike(system, measures):
         mean = mean_deviations(system, alike[0].positions)
-        asking = sum(own.plain_ends is None for own in _alone(system, turning, mean))
-        found = max(found, 0 if _all_are_built(asking, len(alike)) else asking)
+        found.append(_extent(_alone(system, turning, mean), alike, system.cost, each * len(alike)))
     return found
 
 
-def _all_are_built(asking: int, measures: int) -> bool:
-    return asking <= MOST_EXACT or 2 * asking * measures <= MOST_ENDS
+def _extent(alone: Sequence["_Alone"], measures: Sequence[Measure], cost: Cost, contacts: float) -> Extent:
+    """Ends of all, as far as there are no more than MOST_ENDS of them; else of as many as contacts let it."""
+    asking = [own for own in alone if own.plain_ends is None]
+    read = 2 * (len(alone) - len(asking) + sum(len(own.contributor.draw.components) for own in asking))
+    reading = ALONE * read * (PLACING + cost(measures))
+    ends = ALONE * 2 * sum(PLACING + cost((measure,)) for measure in measures)  # of a contributor
+    all_exact = len(asking) <= MOST_EXACT or 2 * len(asking) * len(measures) <= MOST_ENDS
+    wanted = len(asking) if all_exact else MOST_EXACT
+    if reading > contacts:
+        return Extent(len(asking), None, 0.0)
+    exact = wanted if reading + wanted * ends <= contacts else min(int((contacts - reading) / ends), MOST_EXACT)
+    return Extent(len(asking), exact, reading + exact * ends)
 
 
 def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_Alone"]:
@@ -81,11 +114,11 @@ def _alone(system: System, turning: Mapping[str, bool], mean: Array) -> list["_A
 
 
 def _named_ranges(
-    system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values
+    system: System, measures: Sequence[Measure], turning: Mapping[str, bool], values: Values, contacts: float
 ) -> dict[str, Ranges]:
     """Ranges of measures that share the mean build and the directions that turn at random."""
     mean = mean_deviations(system, measures[0].positions)
-    found = _ranges_of(_alone(system, turning, mean), mean, measures, values, system.cost)
+    found = _ranges_of(_alone(system, turning, mean), mean, measures, values, system.cost, contacts)
     names = [contributor.name for contributor in system.contributors]
     unknown: Ranges = dict.fromkeys(names)  # where a build beside the mean cannot be assembled
     return {
@@ -122,22 +155,30 @@ def ranges(
 
 
 def _ranges_of(
-    alone: Sequence["_Alone"], mean: Array, measures: Sequence[Measure], values: Values, cost: Cost
+    alone: Sequence["_Alone"],
+    mean: Array,
+    measures: Sequence[Measure],
+    values: Values,
+    cost: Cost,
+    contacts: float = math.inf,
 ) -> Mapping[str, Array]:
     """The range of each contributor (contributors,) by the measures whose mean build seats."""
+    exact = _extent(alone, measures, cost, contacts).exact
+    if exact is None:
+        return {}
     middle = {name: float(own[0]) for name, own in values(mean, measures).items()}
     seated = [measure for measure in measures if not math.isnan(middle[measure.name])]
     found = _Ranges({own.contributor.name: place for place, own in enumerate(alone)}, seated, middle, values, cost)
     asking = [own for own in alone if own.plain_ends is None]
     if seated:
         found.build([(own, ends) for own in alone if (ends := own.plain_ends) is not None], mean)
-    all_exact = _all_are_built(len(asking), len(measures))
+    all_exact = exact == len(asking)
     rows = [2 * (len(own.contributor.draw.components) + len(seated) * all_exact) for own in asking]
     by_name = {own.contributor.name: own for own in asking}
     for contributors in batches([own.contributor for own in asking], rows, mean.shape[1]):
         found.ask([by_name[own.name] for own in contributors], all_exact=all_exact)
     if not all_exact:
-        found.build_the_largest(asking)
+        found.build_the_largest(asking, exact)
     return found.by_measure
 
 
@@ -191,13 +232,13 @@ class _Ranges:
                     place = self.places[own.contributor.name]
                     self.by_measure[measure.name][place] = own.first_order(measure.name, self.middle[measure.name])
 
-    def build_the_largest(self, asking: Sequence["_Alone"]) -> None:
+    def build_the_largest(self, asking: Sequence["_Alone"], count: int) -> None:
         """Find the ranges of the contributors that move a measure most, in place of their first-order effects."""
         chosen = []
         for measure in self.seated:
             sizes = self.by_measure[measure.name][[self.places[own.contributor.name] for own in asking]]
             largest = [k for k in np.argsort(-sizes, kind="stable").tolist() if not math.isnan(sizes[k])]
-            for own in (asking[k] for k in largest[:MOST_EXACT]):
+            for own in (asking[k] for k in largest[:count]):
                 own.want_ends(measure.name)
                 chosen.append((own, measure.name))
         self._answer(asking)

@@ -16,19 +16,19 @@ from tol3d.runs.summary.values import Unit, made
 from tol3d.statistics import Agreement as Comparison
 from tol3d.statistics import LimitCounts, Moments
 from tol3d.study.acting import acting, nothing_acts
-from tol3d.study.agreement.explaining import explanations
+from tol3d.study.agreement.differences import Differences
 from tol3d.study.agreement.explanation import Explanation, faults
 from tol3d.study.attribution import Attributed, Attribution
+from tol3d.study.budget import Use, contacts_of_trials, of_other_method, shared
 from tol3d.study.correlated import closed_form_of, correlation_warnings
 from tol3d.study.curve_tally import CurveTally, spectrum_sample
 from tol3d.study.evaluation import Evaluation, evaluations, measures_alike
 from tol3d.study.high_low_mean import (
-    MOST_EXACT,
     Percents,
     Ranges,
+    extents,
     high_low_mean_percents,
     high_low_mean_ranges,
-    to_first_order,
 )
 from tol3d.study.histograms import histograms
 from tol3d.study.joint import joint_summary
@@ -54,11 +54,19 @@ NAMED_AT_ONCE = 6  # measures in one warning
 
 def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -> Findings:
     """Findings of a study, without those that its system adds to the whole and to each measure."""
-    explained = explanations(simulation, method, tally)
-    study, mechanism = simulation.study, simulation.mechanism
-    single = [measure for measure in simulation.system.measures if measure.take != "curve"]
+    study, mechanism, system = simulation.study, simulation.mechanism, simulation.system
+    single = [measure for measure in system.measures if measure.take != "curve"]
+    differences, of_trials = Differences.of(simulation, method, tally), contacts_of_trials(simulation, tally.trials)
+    wanted: dict[Use, float] = {
+        "high-low-mean": sum(own.contacts for own in extents(system, single)),
+        **differences.wanted,
+    }
+    contacts = shared(of_trials, wanted)
+    looks = differences.looks(contacts)
+    explained = differences.explained(looks)
     builds = _single_builds(simulation, method)
-    ranges = high_low_mean_ranges(simulation.system, single, Evaluation(simulation.system, method).values)
+    alone_by = Evaluation(system, method).values
+    ranges = high_low_mean_ranges(system, single, alone_by, contacts["high-low-mean"])
     alone = {name: high_low_mean_percents(own) for name, own in ranges.items()}
     attributed = _attributed(simulation, method, tally, ranges)
     return made(
@@ -90,7 +98,9 @@ def study_summary(simulation: Simulation, method: Method | None, tally: Tally) -
         warnings=[
             *failures(simulation, tally),
             *_too_many(simulation),
-            *_ends_not_built(simulation),
+            *_ends_not_built(simulation, contacts["high-low-mean"]),
+            *differences.not_looked_at(looks),
+            *_not_attributed(simulation, tally.trials, attributed),
             *_idle(simulation),
             *faults(explained),
             *simulation.warnings,
@@ -189,13 +199,40 @@ def _idle(simulation: Simulation) -> Iterator[str]:
     yield from (f"{_named(names)}: {words}" for words, names in alike.items())
 
 
-def _ends_not_built(simulation: Simulation) -> Iterator[str]:
-    """A sentence if high-low-mean shares of some contributors are those of first-order effects."""
+def _ends_not_built(simulation: Simulation, contacts: float) -> Iterator[str]:
+    """A sentence if high-low-mean shares are unknown, or of some contributors those of first-order effects."""
     single = [measure for measure in simulation.system.measures if measure.take != "curve"]
-    if count := to_first_order(simulation.system, single):
+    found = extents(simulation.system, single, contacts)
+    if any(own.exact is None for own in found):
         yield (
-            f"high–low–mean: {count} tolerances lie elsewhere at their ends for each of {len(single)} measures; those "
-            f"of the {MOST_EXACT} that move a measure most are built, the others count with what they do to first order"
+            "high–low–mean was not looked at: its builds would take longer than the trials did; more trials let more "
+            "builds follow them"
+        )
+    short = [own for own in found if own.exact is not None and own.exact < own.asking]
+    if short:
+        count, built = max(own.asking for own in short), min(own.exact or 0 for own in short)
+        which = f"those of the {built} that move a measure most are built, the others" if built else "they"
+        yield (
+            f"high–low–mean: {count} tolerances lie elsewhere at their ends for each of {len(single)} measures; "
+            f"{which} count with what they do to first order"
+        )
+
+
+def _not_attributed(
+    simulation: Simulation, trials: int, attributed: Mapping[str, Mapping[str, Attribution]]
+) -> Iterator[str]:
+    """A sentence if shares by the method that does not lead are those of a regression for want of builds."""
+    if not simulation.has_geometry:
+        return
+    lacking = [
+        own
+        for own in simulation.system.measures
+        if (found := attributed.get(own.name, {}).get(ANALYTIC)) is not None and found.lacks
+    ]
+    if any(own.exact is None for own in extents(simulation.system, lacking, of_other_method(simulation, trials))):
+        yield (
+            f"{_named([own.name for own in lacking])}: shares of the analytic method are of what little a regression "
+            "explains, for high–low–mean by it was not looked at; more trials let more builds follow them"
         )
 
 

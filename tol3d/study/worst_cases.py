@@ -11,6 +11,7 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.study.acting import acting
+from tol3d.study.budget import PLACING
 from tol3d.study.evaluation import Evaluation, evaluations
 from tol3d.study.regions import Built, Codes, Standing, space_of
 from tol3d.study.simulation import Simulation
@@ -24,8 +25,6 @@ from tol3d.system.trials import Trials
 
 CONTACTS: Final = 1_500_000
 """Largest number of contacts of all worst cases of a scene together, before any trial: some seconds."""
-PLACING: Final = 20
-"""Contacts that take as long as placing the parts of a build."""
 USUAL_SPEED: Final = 40_000_000
 """Contacts a minute of the methods for which CONTACTS is stated."""
 RANDOM: Final = 1

@@ -6,25 +6,21 @@ measures; and of first order only where the stack-up leaves something out on pur
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from tol3d.numerics.arrays import Array
-from tol3d.statistics.linear_fit import LEAST_FREEDOM, LinearFit
+from tol3d.statistics.linear_fit import LinearFit
 from tol3d.study.agreement.explanation import Explanation, LinearPart
 from tol3d.study.agreement.method_fits import MethodFits
-from tol3d.study.agreement.second_look import SecondLook, bends, largest_bends, scalars_of, second_look
-from tol3d.study.evaluation import Evaluation, measures_alike
-from tol3d.study.regressors import MOST_REGRESSED, Regressed, regressor_groups
-from tol3d.study.simulation import Simulation
-from tol3d.study.tally import Tally
+from tol3d.study.agreement.second_look import SecondLook, largest_bends
+from tol3d.study.regressors import Regressed
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
-from tol3d.system.method import Method
 from tol3d.system.regressors import has_square
-from tol3d.system.stated import component_count, component_slices, mean_deviations
+from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import System
 from tol3d.system.trials import Trials
 from tol3d.units import FACTORS, RESOLVED
@@ -34,8 +30,7 @@ SUREST = 1e6  # standard errors, at most, in a summary; without any chance there
 SHARE = 0.02  # of a contributor's own effect; a wrong coefficient of 3 % and half a step of 110 a turn are beyond it
 LEAST_LEFT = 0.01  # of the measure's sigma; what adds 0.005 % to it cannot be distinguished from 0 by 10^8 trials
 LARGEST_LEFT = 5.0  # times that; the most that one of very many trials may be off by kinks of an extreme over a turn
-FURTHER_LOOKS = 256  # trials looked at again beyond the regressors: what is left of 256 has an rms known to 4 %
-FURTHER_SLOW_LOOKS = 64  # by an engine with chord errors, which takes a millisecond for each of the three builds
+NAMED = 3  # contributors of one sentence
 CHORDS_OF_A_LOOK = 4  # chord errors in a second look: 4 D(1/2) - D(1) - 3 D(0), none of them below 0
 SECOND_ORDER = "second order, for the means lie off the nominal build"
 ROUNDING = 1e-9  # of the measure's unit; methods that never differ by more agree
@@ -43,73 +38,16 @@ ROUNDINGS = 32 * 2.0**-52  # of a coordinate; 14 were seen in a difference of th
 REACH = 1e4  # mm; coordinates of a scene, or the measure where it is larger
 
 
-def explanations(simulation: Simulation, method: Method | None, tally: Tally) -> dict[str, Explanation]:
-    """Explanation of the difference of each scalar measure that both methods gave."""
-    system = simulation.system
-    measures = [m for m in scalars_of(system) if method is not None and tally.measures[m.name].disagreement]
-    if method is None or not measures:
-        return {}
-    fits = {measure.name: MethodFits.of(simulation, measure, tally.measures[measure.name]) for measure in measures}
-    undecided = {
-        m.name: Explanation(undecided=_too_few(simulation, m, tally)) for m in measures if fits[m.name] is None
-    }
-    if len(undecided) == len(measures):
-        return undecided
-    widest = max(_together(simulation, measure) for measure in measures)
-    looked = 2 * widest + (FURTHER_SLOW_LOOKS if method.chord_error else FURTHER_LOOKS)
-    worst = [own.trial for m in measures if (own := tally.measures[m.name].disagreement)]
-    look = second_look(simulation, method, looked, [max(trial, 0) for trial in worst])
-    bent, by_means = bends(simulation, method), _effects_of_means(system)
-    return undecided | {
-        measure.name: _Case(
-            system,
-            measure,
-            fit,
-            look,
-            looked + k,
-            looked,
-            by_means[measure.name],
-            system.chord_bound(measure, method.chord_error),
-        ).explained(bent[measure.name])
-        for k, measure in enumerate(measures)
-        if (fit := fits[measure.name]) is not None
-    }
-
-
-def _too_few(simulation: Simulation, measure: Measure, tally: Tally) -> str:
-    own = tally.measures[measure.name].disagreement
-    compared = own.sums.count if own else 0
-    needed = 2 * _together(simulation, measure) + LEAST_FREEDOM + 1
-    return f"{compared} trials are too few to tell what explains that, {needed} are enough"
-
-
-def _together(simulation: Simulation, measure: Measure) -> int:
-    """Largest number of contributors of a measure that are regressed on together."""
-    return min(len(regressor_groups(simulation, measure)), MOST_REGRESSED)
-
-
-def _effects_of_means(system: System) -> Mapping[str, Mapping[str, float]]:
-    """Shift of each measure by each contributor's mean on the analytic method, in its unit, by measure and name."""
-    found = {}
-    slices = component_slices(system)
-    for _, alike in measures_alike(system, scalars_of(system)):
-        middle = mean_deviations(system, alike[0].positions)
-        rows = np.zeros((len(slices) + 1, component_count(system)))
-        for row, own in zip(rows[1:], slices.values(), strict=True):
-            row[own] = middle[0, own]
-        for name, values in Evaluation(system).values(rows, alike).items():
-            found[name] = dict(zip(slices, np.abs(values[1:] - values[0]).tolist(), strict=True))
-    return found
-
-
 @dataclass(frozen=True, eq=False)
-class _Case:
+class Case:
     """A measure whose difference is to be explained.
 
     Args:
         system, measure: those studied.
         fits: of all its trials.
-        look: a second look at `looked` trials and others after them, of which `worst` has the largest difference.
+        look: a second look at `looked` trials and others after them, of which `worst` has the largest difference; None
+            if that was not looked at.
+        whole: True if as many were looked at as were wanted.
         means: shift of the measure by each contributor's mean.
         chords: part of a difference that may be chord error.
     """
@@ -118,8 +56,9 @@ class _Case:
     measure: Measure
     fits: MethodFits
     look: SecondLook
-    worst: int
+    worst: int | None
     looked: int
+    whole: bool
     means: Mapping[str, float]
     chords: float
 
@@ -132,6 +71,8 @@ class _Case:
         bounds = self.system.neglected(self.measure, self.look.trials)
         first_order = self.fits.difference.less(second) if second else self.fits.difference
         parts = tuple(self._linear_parts(first_order))
+        open_parts = [part.contributor for part in parts if not part.by]
+        untold = bool(open_parts) and second is None and not self.whole
         mean = self._mean(curved, first_order, sum((own[first].mean() for own in bounds.values()), 0.0))
         allowed = math.hypot(self._negligible, _rms(sum(bounds.values(), np.zeros(len(curved)))[first]))
         jumps = self.measure.unit in FACTORS["count"]  # what is near a bound one method counts and the other does not
@@ -144,8 +85,10 @@ class _Case:
                 *self._beyond_in_the_worst(bounds, mean),
                 *self._mean_fault(mean),
             )
+        found = (*(() if untold else self._unexplained(parts)), *beyond)
         return Explanation(
-            faults=() if self.fits.disagreement.largest <= ROUNDING else (*self._unexplained(parts), *beyond),
+            undecided=self._untold(open_parts) if untold else "",
+            faults=() if self.fits.disagreement.largest <= ROUNDING else found,
             linear=parts,
             largest_trial=self.fits.disagreement.trial,
             largest_percent=self._largest_percent([part.contributor for part in parts]),
@@ -249,6 +192,13 @@ class _Case:
     def _contributor(self, name: str) -> Contributor:
         return next(own for own in self.system.contributors if own.name == name)
 
+    def _untold(self, names: Sequence[str]) -> str:
+        named = ", ".join(names[:NAMED]) + (f" and {len(names) - NAMED} more" if len(names) > NAMED else "")
+        return (
+            f"it depends on {named} by more than {100 * SHARE:.0f} % of their own effects, and {self.looked} builds "
+            "looked at again are too few to tell why; more trials let more builds follow them"
+        )
+
     def _unexplained(self, parts: tuple[LinearPart, ...]) -> Iterator[str]:
         for part in parts:
             if not part.by:
@@ -275,6 +225,8 @@ class _Case:
 
     def _beyond_in_the_worst(self, bounds: Mapping[str, Array], mean: "_Mean") -> Iterator[str]:
         """The trial of the largest difference, where more of it than contributors may be off is not of second order."""
+        if self.worst is None:
+            return
         straight, whole = self.look.left(self.measure.name), self.look.whole[self.measure.name]
         left = min(abs(float(straight[self.worst])), abs(float(whole[self.worst])))
         regressors = self.look.regressors[self.measure.name][self._regressed.rows, self.worst]

@@ -1,13 +1,16 @@
 """Some trials again with a part of their deviations: the growth of the methods' difference shows its order.
 
+How many trials, and how many contributors' bends, the run says, see budget.py.
+
 A first-order stack-up is right if its difference to the geometry goes as the square of the deviations. Along the ray
 from the nominal build to a trial's the difference is D(t) = D(0) + t L + t^2 Q + ...: two short steps give Q, which a
 stack-up neglects, and what is left of D(1) is of first order, or jumps. A kink that the stack-up has too, such as the
 one-sided loss by a tilt, is of first order as any slope.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,12 +27,13 @@ from tol3d.system.draw import component_sigmas
 from tol3d.system.measure import Measure
 from tol3d.system.method import Method
 from tol3d.system.positions import AT_RANDOM
-from tol3d.system.stated import component_count, component_slices, mean_deviations
+from tol3d.system.stated import component_slices, mean_deviations
 from tol3d.system.system import Described, System
 from tol3d.system.trials import Trials, joined
 
 SHORT_STEPS = (0.25, 0.5)  # of the deviations; of what is of third order three quarters count as second
 LONG_STEPS = (0.5, 1.0)  # for an engine with chord errors, which short steps would magnify
+STEPS = 4  # builds of a trial that is looked at again: its own, the nominal one, and those of two shorter steps
 BEND_SIGMAS = 3.0  # where a contributor's second difference is taken
 BEND_POSITIONS = 4  # drawn ones, over which it is averaged: what turns acts at each by another component
 NAMED_BENDS = 3  # contributors named for the second order
@@ -105,30 +109,42 @@ def _differences(system: System, method: Method, trials: Trials, measures: Seque
     return {own.name: geometric[own.name] - analytic[own.name] for own in measures}
 
 
-def bends(simulation: Simulation, method: Method) -> Mapping[str, Mapping[str, float]]:
+def bends(
+    simulation: Simulation, method: Method, names: Collection[str], positions: int
+) -> Mapping[str, Mapping[str, float]]:
     """Second differences of (geometric - analytic) at +-3 sigma of each contributor alone, by measure and contributor.
 
     Half of f(m + 3 s) - 2 f(m) + f(m - 3 s), averaged over positions, in the measure's unit; a contributor with
     components: their sum. Its ninth is the shift of the mean. nan if a build cannot be assembled.
+
+    Args:
+        simulation, method: of the run.
+        names: of the contributors; none are asked of others.
+        positions: drawn ones, where positions are drawn.
     """
     system = simulation.system
     measures = scalars_of(system)
+    if not names:
+        return {measure.name: {} for measure in measures}
     middle = mean_deviations(system, AT_RANDOM)
     steps = np.diag([BEND_SIGMAS * sigma for c in system.contributors for sigma in component_sigmas(c.draw)])
+    slices = {name: own for name, own in component_slices(system).items() if name in names}
+    steps = steps[np.concatenate([np.arange(own.start, own.stop) for own in slices.values()])]
     builds = np.concatenate([middle, middle + steps, middle - steps])
-    first = drawn(simulation, 0, BEND_POSITIONS)
+    first = drawn(simulation, 0, positions)
     each = []
-    for position in range(BEND_POSITIONS if first.positions else 1):  # one by one: builds go with contributors squared
+    for position in range(positions if first.positions else 1):  # one by one: builds go with contributors squared
         there = {name: np.full(len(builds), values[position]) for name, values in first.positions.items()}
         each.append(_differences(system, method, Trials(builds, there), measures))
-    return {m.name: _bends(system, np.stack([found[m.name] for found in each])) for m in measures}
+    return {m.name: _bends(slices, np.stack([found[m.name] for found in each])) for m in measures}
 
 
-def _bends(system: System, values: Array) -> Mapping[str, float]:
-    """Bends from the differences (positions, 1 + 2 components) of the middle, all steps forth and all steps back."""
-    count = component_count(system)
+def _bends(slices: Mapping[str, slice], values: Array) -> Mapping[str, float]:
+    """Bends from the differences (positions, 1 + 2 steps) of the middle, all steps forth and all steps back."""
+    count = values.shape[1] // 2
     half = ((values[:, 1 : count + 1] + values[:, count + 1 :]) / 2 - values[:, :1]).mean(axis=0)
-    return {name: float(half[own].sum()) for name, own in component_slices(system).items()}
+    starts = np.cumsum([0, *(own.stop - own.start for own in slices.values())]).tolist()
+    return {name: float(half[slice(*own)].sum()) for name, own in zip(slices, pairwise(starts), strict=True)}
 
 
 def largest_bends(bent: Mapping[str, float]) -> tuple[str, ...]:
