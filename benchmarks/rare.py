@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from rich.console import Console
 
-from tol3d.analyses.rare import RareEvent, rare_event
+from tol3d.analyses.rare_events import RareEvent, rare_event
 from tol3d.analyses.response import response_of
 from tol3d.simulate import load, simulation_of
 

@@ -24,9 +24,9 @@ from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
 from tol3d.analyses.kept_pages import kept_advice, kept_pages, kept_shares
 from tol3d.analyses.response import Response, response_of
-from tol3d.analyses.sweep import Order, Sweep, SweepQuestion
-from tol3d.analyses.sweep import sweep as swept
 from tol3d.analyses.sweep_table import sweep_report, whole_table
+from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
+from tol3d.analyses.variant_sweep import sweep as swept
 from tol3d.analyses.variants import variable
 from tol3d.errors import InputError, RunError, unwritable
 from tol3d.gearing.model import Model

@@ -18,8 +18,8 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.allocate import allocation, ppm_of_ppk
 from tol3d.analyses.allocate_table import allocation_report
+from tol3d.analyses.allocation import allocation, ppm_of_ppk
 from tol3d.analyses.allocation_section import Allocation
 from tol3d.analyses.asked_allocation import bounds_of, stays_of, targets_of
 from tol3d.analyses.costs import Costs, Exponential, Grades, Reciprocal, costs_from

@@ -6,7 +6,7 @@ import pytest
 
 from tol3d.analyses import kept_batches
 from tol3d.analyses.kept_batches import PREFIX
-from tol3d.analyses.rare import limits_left
+from tol3d.analyses.rare_events import limits_left
 from tol3d.analyses.response import Codes, Response
 from tol3d.analyses.subject import subject_of
 from tol3d.cli.analysed import asked_of

@@ -20,10 +20,10 @@ from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, run_scene
 from tol3d.analyses.fitted_law import KINDS, Moments, fitted
-from tol3d.analyses.methods import Drawn, methods, modified_factor
 from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.methods_table import NO_SLOPE, methods_report
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.side_by_side import Drawn, methods, modified_factor
 from tol3d.analyses.subject import sections_of, text_of_section
 from tol3d.cli import app
 from tol3d.distributions import Distribution, Normal, Uniform

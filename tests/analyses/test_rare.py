@@ -17,7 +17,7 @@ from toys.registered import TOYS, known
 
 from tol3d import InputError
 from tol3d.analyses.limit_state import Side
-from tol3d.analyses.rare import Method, limits_left, rare_event
+from tol3d.analyses.rare_events import Method, limits_left, rare_event
 from tol3d.analyses.rare_section import RareEvents
 from tol3d.analyses.response import Response, response_of
 from tol3d.analyses.subject import sections_of
@@ -285,7 +285,7 @@ def test_fortinis_clutch_is_known_in_closed_form(side: Side) -> None:
 
 
 def test_an_interrupted_question_ends_in_one_line(tol3d: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tol3d.analyses.rare.searched", lambda *_: signal.raise_signal(signal.SIGINT))
+    monkeypatch.setattr("tol3d.analyses.rare_events.searched", lambda *_: signal.raise_signal(signal.SIGINT))
     code, out, err = tol3d("rare", "spur_pair")
     assert (code, out) == (130, "")
     assert err.removeprefix("evaluations are kept: the same command resumes from there\n") == "stopped\n"

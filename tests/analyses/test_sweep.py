@@ -12,9 +12,9 @@ from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.sweep import Order, Sweep, SweepQuestion, sweep
 from tol3d.analyses.sweep_picture import sweep_figure
 from tol3d.analyses.sweep_table import sweep_report, whole_table
+from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion, sweep
 from tol3d.analyses.variants import Variable, grid_of, hypercube_of, plain_number, variable, variable_of
 from tol3d.execution.watch import Watch
 from tol3d.report.sheet import as_text

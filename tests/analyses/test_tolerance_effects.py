@@ -13,10 +13,10 @@ from toys.registered import TOYS, known
 from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, open_run, run_scene
-from tol3d.analyses.effects import Effects, Index, MeasureEffects, default_base, effects
 from tol3d.analyses.effects_table import effects_csv, effects_report
 from tol3d.analyses.response import response_of
 from tol3d.analyses.subject import sections_of
+from tol3d.analyses.tolerance_effects import Effects, Index, MeasureEffects, default_base, effects
 from tol3d.cli import app
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform

@@ -14,10 +14,10 @@ from toys.parabola import PARABOLA
 from toys.registered import TOYS, known
 
 from tol3d import InputError, Overrides, run_scene
-from tol3d.analyses.changes import Change, change_of, changed, factor_of, slips
+from tol3d.analyses.before_after import WhatIf, first_order_ppm, what_if
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.stated_changes import Change, change_of, changed, factor_of, slips
 from tol3d.analyses.subject import sections_of
-from tol3d.analyses.what_if import WhatIf, first_order_ppm, what_if
 from tol3d.analyses.what_if_table import what_if_report
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.distributions.normal import Normal

@@ -18,11 +18,11 @@ from toys.registered import TOYS, known
 
 import tol3d
 from tol3d import InputError, Overrides
-from tol3d.analyses.changes import changed as changed_response
-from tol3d.analyses.changes import factor_of
 from tol3d.analyses.changes_of_run import MOST_BUILDS, changes_of_run, not_ok
 from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.stated_changes import changed as changed_response
+from tol3d.analyses.stated_changes import factor_of
 from tol3d.analyses.subject import keep, sections_of
 from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
 from tol3d.analyses.what_to_change_picture import changes_of_one, draw_changes

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from tol3d.analyses.effects import effects
-from tol3d.analyses.rare import rare_event
+from tol3d.analyses.rare_events import rare_event
 from tol3d.analyses.response import response_of
+from tol3d.analyses.tolerance_effects import effects
 from tol3d.errors import InputError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 

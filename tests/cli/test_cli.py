@@ -517,7 +517,16 @@ LOADED = {
     "a report without parts": (
         ("report", "before", "--no-3d"),
         ("numpy",),
-        ("fcl", "scipy.stats", "cadquery", "OCP", "pyvista", "trimesh", "tol3d.analyses.rare", "tol3d.analyses.effects"),
+        (
+            "fcl",
+            "scipy.stats",
+            "cadquery",
+            "OCP",
+            "pyvista",
+            "trimesh",
+            "tol3d.analyses.rare_events",
+            "tol3d.analyses.tolerance_effects",
+        ),
     ),
     "schema": (("schema",), ("pydantic",), (*NEVER, "fcl", "numba", "pyarrow")),
     "help": (("--help",), ("typer",), (*NEVER, "fcl", "numba", "numpy", "scipy", "pyarrow")),

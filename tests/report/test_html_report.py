@@ -18,9 +18,9 @@ from toys.pins import PINS
 from toys.registered import TOYS, known
 
 from tol3d import InputError, load_scene, run_scene
-from tol3d.analyses.effects import effects
-from tol3d.analyses.methods import methods
+from tol3d.analyses.side_by_side import methods
 from tol3d.analyses.subject import KEPT, Subject
+from tol3d.analyses.tolerance_effects import effects
 from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
 from tol3d.import_path import is_named
 from tol3d.notebook import write_report

@@ -14,14 +14,14 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.stats import norm
 
-from tol3d.analyses.allocate import allocation
-from tol3d.analyses.changes import Change
-from tol3d.analyses.effects import effects
-from tol3d.analyses.methods import methods
-from tol3d.analyses.rare import limits_left
+from tol3d.analyses.allocation import allocation
+from tol3d.analyses.before_after import what_if
+from tol3d.analyses.rare_events import limits_left
 from tol3d.analyses.response import Response, response_of
+from tol3d.analyses.side_by_side import methods
+from tol3d.analyses.stated_changes import Change
+from tol3d.analyses.tolerance_effects import effects
 from tol3d.analyses.tolerance_search import Question, Target
-from tol3d.analyses.what_if import what_if
 from tol3d.analyses.what_to_change import changes_of
 from tol3d.analyses.what_to_change_table import changes_lines
 from tol3d.distributions.normal import Normal

@@ -12,9 +12,9 @@ from formulas import Formula, formula
 from scipy.stats import kstest, norm, pearsonr, spearmanr
 
 from tol3d import Overrides, SceneError, run_scene
-from tol3d.analyses.effects import effects
-from tol3d.analyses.rare import rare_event
+from tol3d.analyses.rare_events import rare_event
 from tol3d.analyses.response import response_of
+from tol3d.analyses.tolerance_effects import effects
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
 from tol3d.execution.pools import Execution

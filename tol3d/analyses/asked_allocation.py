@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
-from tol3d.analyses.allocate import ppm_of_ppk
+from tol3d.analyses.allocation import ppm_of_ppk
+from tol3d.analyses.before_after import limits_of
 from tol3d.analyses.limit_state import Side
 from tol3d.analyses.response import Response
 from tol3d.analyses.tolerance_search import Target
-from tol3d.analyses.what_if import limits_of
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.statistics.limits import MOST_PPK

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tol3d.analyses.effects import Effects
+from tol3d.analyses.tolerance_effects import Effects
 from tol3d.report.canvas import save_figure
 from tol3d.report.heading import largest
 from tol3d.report.heat_map import MOST_COLUMNS, MOST_ROWS, matrix_figure

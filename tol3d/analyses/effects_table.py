@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tol3d.analyses.effects import ContributorEffects, Effects, Index, MeasureEffects
+from tol3d.analyses.tolerance_effects import ContributorEffects, Effects, Index, MeasureEffects
 from tol3d.report.declared import declared_table
 from tol3d.report.number import measured_text, share_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title, titled

@@ -9,7 +9,7 @@ from pydantic import Field
 from tol3d.analyses.blame import failure_shares
 from tol3d.analyses.design_points import DesignPoint
 from tol3d.analyses.limit_state import Side
-from tol3d.analyses.rare import Method, RareEvent
+from tol3d.analyses.rare_events import Method, RareEvent
 from tol3d.analyses.response import Response
 from tol3d.report.number import limit_text
 from tol3d.runs.summary.shows import Shows, shown

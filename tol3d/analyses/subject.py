@@ -61,7 +61,7 @@ KEPT: Final[Mapping[str, Kept]] = {
     ),
     "effects": Kept(
         "effects",
-        "tol3d.analyses.effects:Effects",
+        "tol3d.analyses.tolerance_effects:Effects",
         "tol3d.analyses.effects_table:effects_report",
         "tol3d.analyses.effects_picture:draw_effects",
         "tol3d.analyses.effects_table:effects_csv",
@@ -74,7 +74,7 @@ KEPT: Final[Mapping[str, Kept]] = {
     ),
     "what-if": Kept(
         "what if",
-        "tol3d.analyses.what_if:WhatIf",
+        "tol3d.analyses.before_after:WhatIf",
         "tol3d.analyses.what_if_table:what_if_report",
         "tol3d.analyses.what_if_picture:draw_what_if",
     ),

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from tol3d.analyses.sweep import Sweep, measures_of
 from tol3d.analyses.sweep_table import short_names
+from tol3d.analyses.variant_sweep import Sweep, measures_of
 from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, BLUE, GREY, VERMILLION, new_figure, plain_axes, save_figure, say_instead
 from tol3d.report.number import UNIT_SIGNS

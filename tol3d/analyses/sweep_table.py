@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from tol3d.analyses.sweep import Sweep, Variant, VariantMeasure, measures_of
+from tol3d.analyses.variant_sweep import Sweep, Variant, VariantMeasure, measures_of
 from tol3d.report.declared import cells_of, headings
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title

@@ -7,12 +7,12 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.analyses.changes import shared
+from tol3d.analyses.before_after import limits_of
 from tol3d.analyses.costs import Costs, Discrete
 from tol3d.analyses.form import STEP, Points, points_of
 from tol3d.analyses.limit_state import Side, concerned
 from tol3d.analyses.response import Response
-from tol3d.analyses.what_if import limits_of
+from tol3d.analyses.stated_changes import shared
 from tol3d.distributions.base import Stays
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array

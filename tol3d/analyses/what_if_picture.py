@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.analyses.what_if import WhatIf
+from tol3d.analyses.before_after import WhatIf
 from tol3d.analyses.what_if_table import bounded_text
 from tol3d.report.canvas import BLACK, BLUE, ORANGE, OUTSIDE, label_angles, new_figure, plain_axes, save_figure
 from tol3d.report.label import legible

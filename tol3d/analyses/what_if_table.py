@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from tol3d.analyses.what_if import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
+from tol3d.analyses.before_after import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
 from tol3d.report.declared import formed
 from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, ppm_text, share_text, value_cell, with_unit
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled

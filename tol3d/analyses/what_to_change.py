@@ -14,11 +14,11 @@ from typing import Annotated, Final
 import numpy as np
 from pydantic import Field
 
-from tol3d.analyses.changes import told
 from tol3d.analyses.compared_builds import SURE, Compared, judged, limits_of
 from tol3d.analyses.drawn_builds import drawn_builds
 from tol3d.analyses.response import Response
 from tol3d.analyses.slopes import BATCHES, Lever, Rates, levers_of, nominal_of, rates_of
+from tol3d.analyses.stated_changes import told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED

@@ -50,8 +50,8 @@ def allocate(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find the tolerances of least cost for a share out of limits, which simulation confirms."""
-    from tol3d.analyses.allocate import allocation
     from tol3d.analyses.allocated_scene import allocated_scene, groups_of
+    from tol3d.analyses.allocation import allocation
     from tol3d.analyses.asked_allocation import bounds_of, named_bounds, stays_of, targets_of
     from tol3d.analyses.costs import Costs, costs_from
     from tol3d.analyses.subject import subject_of

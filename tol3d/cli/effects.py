@@ -40,8 +40,8 @@ def effects(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what each contributor does to each measure: changes, shares of the variance and of failures."""
-    from tol3d.analyses.effects import effects as found_effects
     from tol3d.analyses.subject import subject_of
+    from tol3d.analyses.tolerance_effects import effects as found_effects
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
 

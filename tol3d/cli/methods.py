@@ -28,8 +28,8 @@ def methods(
     run_builders: RunBuilders = False,
 ) -> None:
     """Set worst case, RSS, modified RSS and simulation of each measure side by side."""
-    from tol3d.analyses.methods import methods as found_by
-    from tol3d.analyses.methods import trials_of
+    from tol3d.analyses.side_by_side import methods as found_by
+    from tol3d.analyses.side_by_side import trials_of
     from tol3d.analyses.subject import subject_of
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)

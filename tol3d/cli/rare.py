@@ -13,7 +13,7 @@ from tol3d.cli.console import err_console, tell
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from tol3d.analyses.rare import RareEvent
+    from tol3d.analyses.rare_events import RareEvent
     from tol3d.analyses.subject import Subject
     from tol3d.runs.summary.values import Section
 
@@ -58,7 +58,7 @@ def rare(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find how often limits are left where that is too rare for trials, and the most likely build that leaves them."""
-    from tol3d.analyses.rare import RareEvent, limits_left
+    from tol3d.analyses.rare_events import RareEvent, limits_left
     from tol3d.analyses.rare_section import rare_section
     from tol3d.analyses.subject import subject_of
     from tol3d.errors import InputError

@@ -48,9 +48,9 @@ def sweep(
 ) -> None:
     """Simulate variants of a scene: numbers that take several values, on a grid or a Latin hypercube."""
     from tol3d.analyses.subject import text_of_section
-    from tol3d.analyses.sweep import NAME, Order, SweepQuestion, write_text
-    from tol3d.analyses.sweep import sweep as swept
     from tol3d.analyses.sweep_table import sweep_report, whole_table
+    from tol3d.analyses.variant_sweep import NAME, Order, SweepQuestion, write_text
+    from tol3d.analyses.variant_sweep import sweep as swept
     from tol3d.analyses.variants import variable_of
     from tol3d.simulate import Overrides, load
 

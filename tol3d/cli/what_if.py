@@ -38,10 +38,10 @@ def what_if(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what other tolerances would do: sigma and ppm before and after, by first order and by the same trials."""
-    from tol3d.analyses.changes import change_of, factor_of, slips
-    from tol3d.analyses.changes import changed as changed_response
+    from tol3d.analyses.before_after import what_if as asked_what_if
+    from tol3d.analyses.stated_changes import change_of, factor_of, slips
+    from tol3d.analyses.stated_changes import changed as changed_response
     from tol3d.analyses.subject import subject_of
-    from tol3d.analyses.what_if import what_if as asked_what_if
 
     asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
 

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from tol3d.analyses.allocation_section import Allocated, Allocation, CostAt, TargetFound
-from tol3d.analyses.changes import told
+from tol3d.analyses.before_after import limits_of
 from tol3d.analyses.least_cost import equal_factors, is_graded, least_cost
-from tol3d.analyses.rare import rare_event
+from tol3d.analyses.rare_events import rare_event
 from tol3d.analyses.response import Response
+from tol3d.analyses.stated_changes import told
 from tol3d.analyses.tolerance_search import MOST_PPM, TINY, Question, Search, Target, begun, with_sides
-from tol3d.analyses.what_if import limits_of
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.values import made

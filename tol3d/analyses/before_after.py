@@ -14,13 +14,13 @@ import numpy as np
 from pydantic import Field
 from scipy.special import ndtr
 
-from tol3d.analyses.changes import Change, changed, known, told
 from tol3d.analyses.design_points import design_points
 from tol3d.analyses.limit_state import LimitState, Side
-from tol3d.analyses.rare import DRAWS, rare_event
+from tol3d.analyses.rare_events import DRAWS, rare_event
 from tol3d.analyses.rates import rates_of
 from tol3d.analyses.response import Response
 from tol3d.analyses.results import results_of
+from tol3d.analyses.stated_changes import Change, changed, known, told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.runs.summary.sample import Sample
