@@ -10,11 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
-from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
 from platform import machine, python_version
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Final
 
 from tol3d import report, simulate
@@ -22,21 +20,19 @@ from tol3d.adjustment import ShimPlan, ShimQuestion, length_of, shim_plan, stock
 from tol3d.adjustment.shim import Rounding
 from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
+from tol3d.analyses.answers import Variants as Variants
+from tol3d.analyses.answers import sweep as sweep
 from tol3d.analyses.kept_pages import kept_advice, kept_pages, kept_shares
 from tol3d.analyses.response import Response, response_of
-from tol3d.analyses.sweep_table import sweep_report, whole_table
-from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
-from tol3d.analyses.variant_sweep import sweep as swept
-from tol3d.analyses.variants import variable
 from tol3d.errors import InputError, RunError, unwritable
 from tol3d.gearing.model import Model
 from tol3d.gearing.slopes.coefficients import Coefficient, coefficients_of
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array
-from tol3d.report.page import Page, page
 from tol3d.report.presenter import Display, Which, presenter_at
+from tol3d.report.printed import Picture as Picture
+from tol3d.report.printed import Report as Report
 from tol3d.report.report_sections import report_sections
-from tol3d.report.sheet import as_text
 from tol3d.report.table_files import ReportFormat, require_room_for_tables, write_tables
 from tol3d.report.verdict import Accepted, AcceptedPpk
 from tol3d.runs.atomic_write import write_whole
@@ -54,65 +50,6 @@ if TYPE_CHECKING:
 
 
 REPORT: Final = "report.html"  # in a run's folder
-TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
-
-
-@dataclass(frozen=True, repr=False)
-class Report:
-    """Tables as a command shows them; `str()` is their text.
-
-    Args:
-        page: its lines and tables, as plain data.
-    """
-
-    page: Page
-
-    def __str__(self) -> str:
-        return as_text(self.page, TEXT_WIDTH)
-
-    def __repr__(self) -> str:
-        return str(self)
-
-    def _repr_html_(self) -> str:
-        """Its lines and tables, for notebooks."""
-        return report.page_html(self.page)
-
-    def to_csv(self, path: Path | str | None = None) -> str | None:
-        """Its tables as comma-separated values, written to a file, or returned if none is named.
-
-        Raises:
-            InputError: the file cannot be written.
-        """
-        if path is None:
-            return self.page.csv()
-        try:
-            Path(path).write_text(self.page.csv(), encoding="utf-8")
-        except OSError as error:
-            raise unwritable(Path(path), error, "choose another file") from None
-        return None
-
-    def __rich__(self) -> Page:
-        return self.page
-
-
-@dataclass(frozen=True, repr=False)
-class Picture:
-    """A picture that was drawn, shown inline by notebooks.
-
-    Args:
-        path: its place; None for a window that was closed again.
-        notes: remarks for the user, such as the magnification in use.
-    """
-
-    path: Path | None
-    notes: tuple[str, ...] = ()
-
-    def __repr__(self) -> str:
-        return "\n".join((f"<Picture {str(self.path)!r}>", *self.notes))
-
-    def _repr_png_(self) -> bytes | None:
-        """Its bytes, for notebooks."""
-        return self.path.read_bytes() if self.path and self.path.suffix.lower() == ".png" else None
 
 
 @dataclass(frozen=True, repr=False)
@@ -169,23 +106,6 @@ class Shims(Report):
     def tolerances(self) -> str:
         """The tolerances of the chosen shims, to paste into a scene."""
         return tolerance_lines(self.plan.tolerances)
-
-
-@dataclass(frozen=True, repr=False)
-class Variants(Report):
-    """Variants of a scene.
-
-    Args:
-        found: their numbers.
-        picture: None where none was asked for.
-    """
-
-    found: Sweep
-    picture: Picture | None
-
-    def to_csv(self, path: Path | str | None = None) -> str | None:
-        """A row a variant, with all numbers of all measures; see Report.to_csv."""
-        return Report(page(whole_table(self.found))).to_csv(path)
 
 
 @dataclass(frozen=True, repr=False)
@@ -448,46 +368,6 @@ def find_shims(
     question = ShimQuestion(target, measure, tuple(shims), minimum, stock_of(stock), rounding)
     plan = shim_plan(simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders), question, overrides)
     return Shims(shim_report(plan), plan)
-
-
-def sweep(
-    scene: Scene | Path | str,
-    vary: Mapping[str, str | Sequence[str | float]],
-    *,
-    latin_hypercube: int | None = None,
-    hypercube_seed: int = 1,
-    out: Path | str | None = None,
-    picture: Path | str | None = None,
-    overrides: Overrides = AS_WRITTEN,
-    workers: int = 1,
-    trust_parts: bool = False,
-    run_builders: bool = False,
-) -> Variants:
-    """Variants of a scene, each simulated with the same draws, as `tol3d sweep` does it.
-
-    Args:
-        scene: a scene, its path, or the name of a bundled one.
-        vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
-        latin_hypercube: number of variants drawn from ranges; None for a grid.
-        hypercube_seed: of that drawing.
-        out: a folder that keeps the variants, so that a sweep goes on there; None keeps none.
-        picture: a file to draw them in.
-        overrides: values that replace those of the scene's study, for all variants.
-        workers: that run the trials of one.
-        trust_parts, run_builders: see run_scene.
-
-    Raises:
-        InputError: no such field, or values that are none.
-    """
-    question = SweepQuestion(tuple(variable(*own) for own in vary.items()), latin_hypercube, hypercube_seed)
-    loaded = simulate.load(scene, trust_parts=trust_parts, run_builders=run_builders)
-    with TemporaryDirectory(prefix="tol3d-") as temporary:
-        folder = Path(temporary) if out is None else Path(out)
-        how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
-        found = swept(loaded, question, how)
-    if picture is not None:
-        import_module("tol3d.analyses.sweep_picture").draw_sweep(found, Path(picture))
-    return Variants(sweep_report(found), found, None if picture is None else Picture(Path(picture)))
 
 
 def response(

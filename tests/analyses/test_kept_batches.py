@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tol3d.analyses import kept_batches
+from tol3d.analyses import kept_batches, rare
 from tol3d.analyses.kept_batches import PREFIX
-from tol3d.analyses.rare_events import limits_left
 from tol3d.analyses.response import Codes, Response
 from tol3d.analyses.subject import subject_of
 from tol3d.cli.analysed import asked_of
@@ -36,7 +35,7 @@ def test_an_interrupted_analysis_goes_on(
     def found() -> list[float | None]:
         subject = subject_of(str(scene))
         with asked_of(subject, "rare"):
-            return [own.estimate.probability for own in limits_left(subject.response, draws=500)]
+            return [own.estimate.probability for own in rare(subject, draws=500).events]
 
     def files() -> list[Path]:
         return [*cache_folder().glob(f"{PREFIX}{subject_of(str(scene)).batches.owner}-*")]

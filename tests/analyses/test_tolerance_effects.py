@@ -13,7 +13,7 @@ from toys.registered import TOYS, known
 from typer.testing import CliRunner
 
 from tol3d import InputError, Overrides, open_run, run_scene
-from tol3d.analyses.effects_table import effects_csv, effects_report
+from tol3d.analyses.effects_table import effects_report, whole_table
 from tol3d.analyses.response import response_of
 from tol3d.analyses.subject import sections_of
 from tol3d.analyses.tolerance_effects import Effects, Index, MeasureEffects, default_base, effects
@@ -291,7 +291,7 @@ def test_a_run_keeps_its_effects(tmp_path: Path) -> None:
     assert isinstance(kept, Effects)
     assert kept.evaluations >= 64 * 5
     lines = (tmp_path / "own.csv").read_text().splitlines()
-    assert lines == effects_csv(kept).splitlines()
+    assert lines == whole_table(kept).csv().splitlines()
     assert len(lines) == 4
     assert (tmp_path / "own.png").stat().st_size > 5000
 
@@ -320,7 +320,7 @@ def test_scenes_of_every_mechanism_have_effects(name: str) -> None:
         acting = {each.name for each in response.acting(own)}
         assert acting <= set(found.measures[own.name].contributors)
     rows = sum(len(own.contributors) for own in found.measures.values())
-    assert len(effects_csv(found).splitlines()) == rows + 1
+    assert len(whole_table(found).csv().splitlines()) == rows + 1
 
 
 def test_a_mechanism_from_outside() -> None:

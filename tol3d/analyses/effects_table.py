@@ -80,7 +80,7 @@ def _plain(own: Index) -> str:
 COLUMNS: Final = ("first", "total", "shapley", "failures", "failures_total")
 
 
-def effects_csv(found: Effects) -> str:
+def whole_table(found: Effects) -> Table:
     """A row for each measure and contributor, all numbers with all their digits."""
     heads = ["contributor", "measure unit", "contributor unit", "slope", "change"]
     heads += [f"{name}{end}" for name in COLUMNS for end in ("", "_low_95", "_high_95")]
@@ -94,4 +94,4 @@ def effects_csv(found: Effects) -> str:
                 numbers = (None,) * 3 if index is None else (index.share, index.low, index.high)
                 cells += [Shown("", number) for number in numbers]
             rows.append(Row(name, cells))
-    return Table("measure", [Heading(text) for text in heads], rows).csv()
+    return Table("measure", [Heading(text) for text in heads], rows)

@@ -30,7 +30,7 @@ def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
     method = "analytic" if found.method == "analytic" else "3D simulation"
     blocks: list[PageItem] = [Line(((found.scene, "bold"), (f" · methods side by side, {method}", "")))]
     for name, own in found.measures.items():
-        blocks += titled(f"{name}: {_limits(own)}", Table("", HEADS, [*_rows(own)]))
+        blocks += titled(f"{name}: {_limits(own)}", intervals_table(own))
         blocks += _told(own)
         if own.worst is not None:
             blocks += _builds(own, contributors)
@@ -44,6 +44,11 @@ HEADS: Final = (
     Heading("half range"),
     Heading("of the limits [%]", optional=True),
 )
+
+
+def intervals_table(own: MeasureMethods) -> Table:
+    """A row a method."""
+    return Table("", HEADS, [*_rows(own)])
 
 
 def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:

@@ -36,14 +36,12 @@ class Kept:
         section: class of the result.
         report: makes its page. Where a result has no name of its scene, that is the first argument.
         picture: draws it to a path, the last argument.
-        numbers: writes all numbers as comma-separated values; "" for those of the page.
     """
 
     title: str
     section: str
     report: str
     picture: str
-    numbers: str = ""
 
 
 KEPT: Final[Mapping[str, Kept]] = {
@@ -64,7 +62,6 @@ KEPT: Final[Mapping[str, Kept]] = {
         "tol3d.analyses.tolerance_effects:Effects",
         "tol3d.analyses.effects_table:effects_report",
         "tol3d.analyses.effects_picture:draw_effects",
-        "tol3d.analyses.effects_table:effects_csv",
     ),
     "rare": Kept(
         "rare events",
@@ -136,17 +133,22 @@ class Subject:
         return None if self.run is None else keep(self.run, name, found)
 
 
-def subject_of(path: str, *, trust_parts: bool = False, run_builders: bool = False) -> Subject:
-    """The subject of a path: a run's folder, a scene's file, or the name of a bundled scene.
+def subject_of(asked: Scene | Run | Path | str, *, trust_parts: bool = False, run_builders: bool = False) -> Subject:
+    """The subject of an analysis.
+
+    Args:
+        asked: a scene or a run, or the path of one: a run's folder, a scene's file, or the name of a bundled scene.
+        trust_parts, run_builders: see simulate.load.
 
     Raises:
         SceneError, RunError: it is none of them, or damaged.
     """
-    folder = Path(path)
-    if (folder / SUMMARY).exists() or folder.is_dir():
-        run = open_run(folder)
-        return Subject(simulation_again(run), run)
-    scene = load(scene_path(path), trust_parts=trust_parts, run_builders=run_builders)
+    if isinstance(asked, Path | str) and ((Path(asked) / SUMMARY).exists() or Path(asked).is_dir()):
+        asked = open_run(Path(asked))
+    if isinstance(asked, Run):
+        return Subject(simulation_again(asked), asked)
+    path = asked if isinstance(asked, Scene) else scene_path(str(asked))
+    scene = load(path, trust_parts=trust_parts, run_builders=run_builders)
     return Subject(simulation_of(scene), loaded=scene)
 
 

@@ -1,18 +1,13 @@
 """The command on tolerances of least cost."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 from tol3d.cli.console import tell
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tol3d.runs.summary.values import Section
 
 
 def allocate(
@@ -50,36 +45,15 @@ def allocate(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find the tolerances of least cost for a share out of limits, which simulation confirms."""
-    from tol3d.analyses.allocated_scene import allocated_scene, groups_of
-    from tol3d.analyses.allocation import allocation
-    from tol3d.analyses.asked_allocation import bounds_of, named_bounds, stays_of, targets_of
-    from tol3d.analyses.costs import Costs, costs_from
+    from tol3d.analyses import allocate as ask
     from tol3d.analyses.subject import subject_of
-    from tol3d.analyses.tolerance_search import Question
-    from tol3d.scene import Scene
     from tol3d.scene.edit import write_scene
 
-    asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    scenes: list[Scene] = []
-
-    def find(activity: "Callable[[str], None]") -> "Section":
-        response, groups = asked.response, groups_of(asked.response)
-        question = Question(
-            costs=Costs() if cost is None else costs_from(cost, groups),
-            bounds=bounds_of("--bounds", bounds),
-            own_bounds=named_bounds(bound or ()),
-            frozen=frozenset(freeze or ()),
-            stays=stays_of(stays or (), groups),
-            groups=groups,
-            beyond_least=beyond_least,
-        )
-        targets = targets_of(response, measure or (), ppm, ppk)
-        found = allocation(response, targets, question, draws=draws, seed=seed, activity=activity)
-        if out is not None:
-            scenes.append(allocated_scene(asked.scene, response, found, question.stays))
-        return found
-
-    answer("allocation", asked, "tolerances", find, csv, picture)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    words: dict[str, Any] = {"ppm": ppm, "ppk": ppk, "measure": measure or (), "cost": cost, "bounds": bounds}
+    words |= {"bound": bound or (), "freeze": freeze or (), "stays": stays or (), "beyond_least": beyond_least}
+    words |= {"draws": draws, "seed": seed}
+    found = answer("allocation", own, "tolerances", lambda activity: ask(own, **words, activity=activity), csv, picture)
     if out is not None:
-        write_scene(scenes[0], out)
+        write_scene(found.scene, out)
         tell(f"scene: {out}")

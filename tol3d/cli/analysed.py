@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
@@ -14,8 +14,10 @@ if TYPE_CHECKING:
 
     from rich.status import Status
 
+    from tol3d.analyses.answers import Answer
     from tol3d.analyses.subject import Subject
-    from tol3d.runs.summary.values import Section
+
+    Own = TypeVar("Own", bound=Answer[Any])
 
 SubjectArgument = Annotated[
     str, typer.Argument(metavar="SCENE|RUN", help="A scene's file or bundled name, or the folder of a finished run.")
@@ -26,57 +28,50 @@ PictureOption = Annotated[Path | None, typer.Option(metavar="FILE", help="Draw t
 
 @contextmanager
 def asked_of(subject: "Subject", activity: str) -> Iterator["Status"]:
-    """While an analysis goes on: show its activity, keep a mechanism's faults its own, let Ctrl-C keep it.
+    """While an analysis goes on: show its activity, and say on Ctrl-C that its evaluations are kept.
 
     Args:
         subject: the scene or the run.
         activity: the first one, in words.
     """
-    from tol3d.system.faults import faults_of
-
-    with faults_of(subject.simulation.mechanism), err_console.status(activity) as status:
+    with err_console.status(activity) as status:
         try:
             yield status
         except KeyboardInterrupt:
             if subject.batches.written:
                 err_console.print("evaluations are kept: the same command resumes from there")
             raise
-    subject.batches.clear()
 
 
 def answer(
     name: str,
     asked: "Subject",
     activity: str,
-    find: "Callable[[Callable[[str], None]], Section]",
+    ask: "Callable[[Callable[[str], None]], Own]",
     csv: Path | None,
     picture: Path | None,
-    numbers: "Callable[[], str] | None" = None,
-) -> "Section":
-    """Do an analysis: show its progress, print what it found, keep it in the run, write and draw what was asked for.
+) -> "Own":
+    """Do an analysis: show its progress, print what it found, and write and draw what was asked for.
 
     Args:
         name: of the analysis, see tol3d.analyses.subject.KEPT.
         asked: the scene or the run.
         activity: the first one, in words.
-        find: the analysis, with a progress callback.
+        ask: the function of tol3d.analyses, with a progress callback.
         csv, picture: the files that are asked for.
-        numbers: text of the csv file; default: that of the analysis.
     """
-    from tol3d.analyses.kept_pages import page_of, with_scene
+    from tol3d.analyses.kept_pages import with_scene
     from tol3d.analyses.subject import KEPT
-    from tol3d.import_path import named
 
     with asked_of(asked, activity) as status:
-        found = find(status.update)
-    own, system = KEPT[name], asked.simulation.system
-    page = page_of(name, found, asked.name, lambda: system.contributors)
-    out_console.print(page)
-    if (kept := asked.keep(name, found)) is not None:
-        tell(f"kept in the run: {kept}")
+        found = ask(status.update)
+        numbers = "" if csv is None else found.csv()
+    out_console.print(found.page)
+    if found.kept is not None:
+        tell(f"kept in the run: {found.kept}")
     if csv is not None:
-        write_numbers(csv, numbers() if numbers else named(own.numbers)(found) if own.numbers else page.csv())
-    draw_picture(picture, own.picture, *with_scene(asked.name, found))
+        write_numbers(csv, numbers)
+    draw_picture(picture, KEPT[name].picture, *with_scene(asked.name, found.found))
     return found
 
 

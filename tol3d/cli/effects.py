@@ -1,17 +1,12 @@
 """The command on the effect of each contributor on each measure."""
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tol3d.runs.summary.values import Section
 
 
 class PositionWord(StrEnum):
@@ -40,14 +35,15 @@ def effects(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what each contributor does to each measure: changes, shares of the variance and of failures."""
+    from tol3d.analyses import effects as ask
     from tol3d.analyses.subject import subject_of
-    from tol3d.analyses.tolerance_effects import effects as found_effects
 
-    asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-
-    def find(activity: "Callable[[str], None]") -> "Section":
-        response = asked.response if measure is None else asked.response.of(measure)
-        as_input = position is PositionWord.AS_INPUT
-        return found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=activity)
-
-    answer("effects", asked, "effects", find, csv, picture)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    words: dict[str, Any] = {
+        "measure": measure,
+        "base": base,
+        "seed": seed,
+        "position": position.value,
+        "shapley": shapley,
+    }
+    answer("effects", own, "effects", lambda activity: ask(own, **words, activity=activity), csv, picture)

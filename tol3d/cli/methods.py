@@ -1,16 +1,11 @@
 """The command that sets worst case, RSS, modified RSS and simulation side by side."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tol3d.runs.summary.values import Section
 
 
 def methods(
@@ -28,14 +23,9 @@ def methods(
     run_builders: RunBuilders = False,
 ) -> None:
     """Set worst case, RSS, modified RSS and simulation of each measure side by side."""
-    from tol3d.analyses.side_by_side import methods as found_by
-    from tol3d.analyses.side_by_side import trials_of
+    from tol3d.analyses import methods as ask
     from tol3d.analyses.subject import subject_of
 
-    asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-
-    def find(activity: "Callable[[str], None]") -> "Section":
-        response = asked.response if measure is None else asked.response.of(measure)
-        return found_by(response, trials_of(asked, response, trials), activity)
-
-    answer("methods", asked, "trials", find, csv, picture)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    words: dict[str, Any] = {"measure": measure, "trials": trials}
+    answer("methods", own, "trials", lambda activity: ask(own, **words, activity=activity), csv, picture)

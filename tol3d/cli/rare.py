@@ -11,11 +11,10 @@ from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 from tol3d.cli.console import err_console, tell
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from tol3d.analyses.rare_events import RareEvent
     from tol3d.analyses.subject import Subject
-    from tol3d.runs.summary.values import Section
 
 
 class MethodName(StrEnum):
@@ -58,25 +57,17 @@ def rare(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find how often limits are left where that is too rare for trials, and the most likely build that leaves them."""
-    from tol3d.analyses.rare_events import RareEvent, limits_left
-    from tol3d.analyses.rare_section import rare_section
+    from tol3d.analyses import rare as ask
     from tol3d.analyses.subject import subject_of
     from tol3d.errors import InputError
 
     if measure is None and (export or view):
         raise InputError(f"{'--export' if export else '--view'}: expected with --measure NAME, whose build is shown")
-    asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-    events: list[RareEvent] = []
-
-    def find(activity: "Callable[[str], None]") -> "Section":
-        events.extend(
-            limits_left(asked.response, measure, method=method.value, draws=draws, seed=seed, activity=activity)
-        )
-        return rare_section(asked.name, seed, asked.response, events)
-
-    answer("rare", asked, "design points", find, csv, picture)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    words: dict[str, Any] = {"measure": measure, "method": method.value, "draws": draws, "seed": seed}
+    found = answer("rare", own, "design points", lambda activity: ask(own, **words, activity=activity), csv, picture)
     if export or view:
-        _show(asked, events, export, view)
+        _show(own, found.events, export, view)
 
 
 def _show(asked: "Subject", events: "Sequence[RareEvent]", export: Path | None, view: Path | None) -> None:

@@ -1,17 +1,12 @@
 """The command on the effect of other tolerances."""
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from tol3d.cli.analysed import CsvOption, PictureOption, SubjectArgument, answer
 from tol3d.cli.arguments import RunBuilders, TrustParts, whole
 from tol3d.cli.console import warn
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from tol3d.runs.summary.values import Section
 
 
 def what_if(
@@ -38,20 +33,10 @@ def what_if(
     run_builders: RunBuilders = False,
 ) -> None:
     """Find what other tolerances would do: sigma and ppm before and after, by first order and by the same trials."""
-    from tol3d.analyses.before_after import what_if as asked_what_if
-    from tol3d.analyses.stated_changes import change_of, factor_of, slips
-    from tol3d.analyses.stated_changes import changed as changed_response
+    from tol3d.analyses import what_if as ask
     from tol3d.analyses.subject import subject_of
 
-    asked = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
-
-    def find(activity: "Callable[[str], None]") -> "Section":
-        response = asked.response
-        changes = [change_of(response, text) for text in changed or ()]
-        changes += [factor_of(response, text) for text in factor or ()]
-        for slip in slips(response, changed_response(response, changes)):
-            warn(slip)
-        counts = {"trials": 0, "draws": 0} if quick else {"trials": trials, "draws": draws}
-        return asked_what_if(response, changes, measure, **counts, seed=seed, activity=activity)
-
-    answer("what-if", asked, "what if", find, csv, picture)
+    own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
+    words: dict[str, Any] = {"measure": measure, "trials": trials, "draws": draws, "quick": quick, "seed": seed}
+    words |= {"set": changed or (), "factor": factor or (), "warn": warn}
+    answer("what-if", own, "what if", lambda activity: ask(own, **words, activity=activity), csv, picture)

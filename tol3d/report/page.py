@@ -94,13 +94,21 @@ class Table:
         row = Row(f"and {left} more", [""] * len(self.headings), "dim")
         return replace(self, rows=self.rows[:most], further=Further(row, lambda: self.rows[most:]))
 
-    def csv(self) -> str:
-        """Comma-separated values: texts as they are shown, numbers with all their digits; nothing for one not known."""
+    def cells(self) -> list[list[str | float]]:
+        """The headings, then all rows: texts as they are shown, numbers with all their digits; "" for one not known."""
         rows = self.rows if self.further is None else [*self.rows, *self.further.rows()]
         units = [[row.unit] for row in rows] if any(row.unit for row in rows) else [[]] * len(rows)
-        head = [self.corner, *(["unit"] if any(units) else []), *(heading.text for heading in self.headings)]
+        head: list[str | float] = [
+            self.corner,
+            *(["unit"] if any(units) else []),
+            *(heading.text for heading in self.headings),
+        ]
         cells = ([row.label.strip(), *unit, *map(_csv_cell, row.cells)] for row, unit in zip(rows, units, strict=True))
-        return csv_text([head, *cells])
+        return [head, *cells]
+
+    def csv(self) -> str:
+        """Its cells as comma-separated values."""
+        return csv_text(self.cells())
 
     def __rich__(self) -> "RenderableType":
         return _rendered(self)
@@ -156,7 +164,7 @@ class Page:
 
     def csv(self) -> str:
         """Its tables as comma-separated values, each below its title, with an empty line between them."""
-        return "\n".join(f"{title}\n{table.csv()}" if title else table.csv() for title, table in self._titled())
+        return "\n".join(f"{title}\n{table.csv()}" if title else table.csv() for title, table in self.titled())
 
     @property
     def is_whole(self) -> bool:
@@ -166,7 +174,8 @@ class Page:
             for block in self.blocks
         )
 
-    def _titled(self) -> Iterator[tuple[str, Table]]:
+    def titled(self) -> Iterator[tuple[str, Table]]:
+        """Its tables, also those that are left out where it is shown, each with the title above it; "" for none."""
         title = ""
         for block in self.whole_blocks():
             if isinstance(block, Table):

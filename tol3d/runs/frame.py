@@ -1,8 +1,8 @@
-"""Trials as a table of pandas, where it is installed. The only module that imports pandas."""
+"""Trials and tables as frames of pandas, where it is installed. The only module that imports pandas."""
 
 import importlib
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,13 +34,30 @@ def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: C
     """
     if curves not in ("split", "drop"):
         raise InputError(f'curves: expected "split" or "drop", got {curves!r}')
-    try:
-        pandas = importlib.import_module("pandas")
-    except ImportError:
-        raise MissingPackageError("a frame needs pandas: pip install pandas") from None
+    pandas = _pandas()
     flat = {name: values for name, values in _flat(columns, measures) if curves == "split" or name in columns}
     count = len(next(iter(columns.values()), ()))
     return pandas.DataFrame(flat, index=pandas.RangeIndex(count, name="trial"))
+
+
+def frame_of_rows(headings: Sequence[str], rows: Sequence[Sequence[str | float | None]]) -> "pd.DataFrame":
+    """Rows of texts and numbers as a DataFrame; a column without texts is one of numbers, nan where one is not known.
+
+    Raises:
+        MissingPackageError: pandas is not installed.
+    """
+    columns = {own: [row[k] for row in rows] for k, own in enumerate(headings)}
+    for name, cells in columns.items():
+        if not any(isinstance(cell, str) for cell in cells):
+            columns[name] = [np.nan if cell is None else cell for cell in cells]
+    return _pandas().DataFrame(columns)
+
+
+def _pandas() -> Any:
+    try:
+        return importlib.import_module("pandas")
+    except ImportError:
+        raise MissingPackageError("a frame needs pandas: pip install pandas") from None
 
 
 def _flat(columns: Columns, measures: Mapping[str, MeasureSummary]) -> Iterator[tuple[str, NDArray[np.generic]]]:

@@ -1,0 +1,450 @@
+"""Analyses as functions, with the words of their commands; what they find as tables, frames of pandas and objects.
+
+A function asks its question of a scene or a run, and keeps the answer in the run, as its command does.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
+
+from tol3d.analyses.allocate_table import allocation_report
+from tol3d.analyses.allocated_scene import allocated_scene, groups_of
+from tol3d.analyses.allocation import allocation
+from tol3d.analyses.allocation_section import Allocation
+from tol3d.analyses.asked_allocation import bounds_of, named_bounds, stays_of, targets_of
+from tol3d.analyses.before_after import WhatIf
+from tol3d.analyses.before_after import what_if as found_before_after
+from tol3d.analyses.changes_of_run import not_ok
+from tol3d.analyses.costs import Costs, costs_from
+from tol3d.analyses.effects_table import effects_report
+from tol3d.analyses.effects_table import whole_table as effects_table
+from tol3d.analyses.methods_section import Methods
+from tol3d.analyses.methods_table import intervals_table, methods_report
+from tol3d.analyses.rare_events import Method, RareEvent, limits_left
+from tol3d.analyses.rare_section import RareEvents, rare_section
+from tol3d.analyses.rare_table import rare_report
+from tol3d.analyses.side_by_side import methods as found_side_by_side
+from tol3d.analyses.side_by_side import trials_of
+from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
+from tol3d.analyses.subject import Subject, subject_of
+from tol3d.analyses.sweep_table import sweep_report, whole_table
+from tol3d.analyses.tolerance_effects import Effects
+from tol3d.analyses.tolerance_effects import effects as found_effects
+from tol3d.analyses.tolerance_search import Question
+from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
+from tol3d.analyses.variant_sweep import sweep as swept
+from tol3d.analyses.variants import variable
+from tol3d.analyses.what_if_table import what_if_report, what_if_table
+from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, changes_of, contributions_of
+from tol3d.analyses.what_to_change_table import changes_report, contributions_table
+from tol3d.errors import InputError
+from tol3d.import_path import named
+from tol3d.report.page import Table
+from tol3d.report.printed import Picture, Report, stacked
+from tol3d.report.verdict import ACCEPTED_PPM, Accepted, AcceptedPpk
+from tol3d.runs.run import Run
+from tol3d.runs.summary.values import Section
+from tol3d.scene import Scene
+from tol3d.simulate import load
+from tol3d.study.overrides import AS_WRITTEN, Overrides
+from tol3d.system.faults import faults_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Found = TypeVar("Found", bound=Section)
+Asked = Scene | Run | Path | str
+Texts = Mapping[str, str | float] | Sequence[str]
+"""Values by name, or texts NAME=VALUE."""
+Activity = Callable[[str], None]
+
+
+def silent(text: str) -> None:
+    """Shows no progress."""
+
+
+@dataclass(frozen=True, repr=False)
+class Answer(Report, Generic[Found]):
+    """What an analysis found.
+
+    Args:
+        found: its numbers as an object, in the units of the measures.
+        numbers: makes the tables of its frame, by measure, or "" for one table of all.
+        kept: file in the run; None of a scene.
+        warnings: remarks for the user.
+        whole: True if the tables of the frame are not printed, and written by --csv in place of what is.
+    """
+
+    found: Found
+    numbers: Callable[[], Mapping[str, Table]]
+    kept: Path | None = None
+    warnings: tuple[str, ...] = ()
+    whole: bool = False
+
+    def csv(self) -> str:
+        """Numbers as its command writes them by --csv."""
+        return "\n".join(own.csv() for own in self.numbers().values()) if self.whole else super().csv()
+
+    def frame(self) -> "pd.DataFrame":
+        """Its main table as a DataFrame of pandas, with all digits; of several measures their tables, one column more.
+
+        Raises:
+            MissingPackageError: pandas is not installed.
+        """
+        return stacked(self.numbers())
+
+
+@dataclass(frozen=True, repr=False)
+class RareAnswer(Answer[RareEvents]):
+    """Rare events.
+
+    Args:
+        events: as they were found, with all design points.
+    """
+
+    events: tuple[RareEvent, ...] = ()
+
+
+@dataclass(frozen=True, repr=False)
+class AllocationAnswer(Answer[Allocation]):
+    """Tolerances of least cost.
+
+    Args:
+        write: makes the scene with them.
+    """
+
+    write: Callable[[], Scene] | None = None
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene with the allocated tolerances.
+
+        Raises:
+            InputError: one whose width the scene states in no numbers.
+        """
+        assert self.write is not None
+        return self.write()
+
+
+@dataclass(frozen=True, repr=False)
+class Variants(Report):
+    """Variants of a scene.
+
+    Args:
+        found: their numbers.
+        picture: None where none was asked for.
+    """
+
+    found: Sweep
+    picture: Picture | None
+
+    def csv(self) -> str:
+        """A row a variant, with all numbers of all measures."""
+        return whole_table(self.found).csv()
+
+    def frame(self) -> "pd.DataFrame":
+        """A DataFrame of pandas, a row a variant, with all numbers of all measures."""
+        return stacked({"": whole_table(self.found)})
+
+
+@contextmanager
+def _of(asked: Asked | Subject, *, trust_parts: bool, run_builders: bool) -> Iterator[Subject]:
+    """The subject of an analysis, whose batches are kept only until it ends."""
+    how = {"trust_parts": trust_parts, "run_builders": run_builders}
+    own = asked if isinstance(asked, Subject) else subject_of(asked, **how)
+    with faults_of(own.simulation.mechanism):
+        yield own
+    own.batches.clear()
+
+
+def _one_of(option: str, word: str, known: Sequence[str]) -> str:
+    if word not in known:
+        raise InputError(f"{option}: expected {', '.join(known[:-1])} or {known[-1]}, got {word!r}")
+    return word
+
+
+def _texts(given: Texts) -> list[str]:
+    return [f"{name}={value}" for name, value in given.items()] if isinstance(given, Mapping) else [*given]
+
+
+def what_if(
+    subject: Asked | Subject,
+    *,
+    set: Texts = (),
+    factor: Texts = (),
+    measure: str | None = None,
+    trials: int | None = None,
+    draws: int = 4800,
+    quick: bool = False,
+    seed: int = 1,
+    activity: Activity = silent,
+    warn: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Answer[WhatIf]:
+    """Effect of other tolerances, as `tol3d what-if` finds it.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        set: other tolerances by name, such as {"centre distance": "±10 um"}.
+        factor: on the widths of others, by name.
+        measure: which; default: all that depend on what changes.
+        trials: of the simulation; default: the study's.
+        draws: of importance sampling, for each limit.
+        quick: rates and first order alone, without a simulation.
+        seed: of importance sampling.
+        activity: progress callback.
+        warn: callback for warnings, before anything is simulated.
+        trust_parts, run_builders: see run_scene.
+
+    Raises:
+        InputError: no such tolerance, measure or value, or none on which a measure depends.
+    """
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        response = own.response
+        changes = [change_of(response, text) for text in _texts(set)]
+        changes += [factor_of(response, text) for text in _texts(factor)]
+        warnings = tuple(slips(response, changed(response, changes)))
+        for words in warnings:
+            warn(words)
+        trials, draws = (0, 0) if quick else (trials, draws)
+        found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=activity)
+    numbers = {name: what_if_table(each) for name, each in found.measures.items()}
+    return Answer(what_if_report(own.name, found), found, lambda: numbers, own.keep("what-if", found), warnings)
+
+
+def effects(
+    subject: Asked | Subject,
+    *,
+    measure: str | None = None,
+    base: int | None = None,
+    seed: int = 1,
+    position: Literal["averaged", "as-input"] = "averaged",
+    shapley: bool = False,
+    activity: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Answer[Effects]:
+    """Effect of each contributor on each measure, as `tol3d effects` finds it.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        measure: on which; default: all that are one number a trial.
+        base: pairs of builds, a power of two; default: as time allows.
+        seed: of their points.
+        position: indices at a position, averaged; or the position as an input as well.
+        shapley: Shapley effects too, also where nothing is correlated.
+        activity, trust_parts, run_builders: see what_if.
+
+    Raises:
+        InputError: no such measure or position, or a base that is no power of two.
+    """
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        response = own.response if measure is None else own.response.of(measure)
+        as_input = _one_of("position", position, ("averaged", "as-input")) == "as-input"
+        found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=activity)
+    kept = own.keep("effects", found)
+    return Answer(effects_report(found), found, lambda: {"": effects_table(found)}, kept, whole=True)
+
+
+def rare(
+    subject: Asked | Subject,
+    *,
+    measure: str | None = None,
+    method: Method | Literal["auto"] = "auto",
+    draws: int | None = None,
+    seed: int = 1,
+    activity: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> RareAnswer:
+    """Fraction of builds beyond each limit where that is too rare for trials, as `tol3d rare` finds it.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        measure: whose limits; default: those of all.
+        method: importance, subset, form or sorm; default: by the contributors.
+        draws: of importance sampling (4800), or a level of subset simulation (14000).
+        seed: of them.
+        activity, trust_parts, run_builders: see what_if.
+
+    Raises:
+        InputError: no such measure or method, or no limit.
+    """
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        _one_of("method", method, ("auto", "importance", "subset", "form", "sorm"))
+        events = limits_left(own.response, measure, method=method, draws=draws, seed=seed, activity=activity)
+        found = rare_section(own.name, seed, own.response, events)
+    report = rare_report(found)
+    return RareAnswer(report, found, lambda: {"": report.tables[0]}, own.keep("rare", found), events=tuple(events))
+
+
+def changes(
+    subject: Asked | Subject,
+    *,
+    measure: str | None = None,
+    accept: float | None = None,
+    accept_ppk: float | None = None,
+    builds: int | None = None,
+    activity: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Answer[Changes]:
+    """Changes to a scene that leaves its limits, as `tol3d changes` finds them.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        measure: which; default: all that are NOT OK.
+        accept: builds out of limits that are accepted [ppm]; default: as the study asks.
+        accept_ppk: Ppk that is wanted, instead.
+        builds: by which each change is judged; default: 5000, or less if slow.
+        activity, trust_parts, run_builders: see what_if.
+
+    Raises:
+        InputError: no such measure, or none with limits.
+    """
+    if accept is not None and accept_ppk is not None:
+        raise InputError("expected accept or accept_ppk, got both")
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        ppk = own.simulation.study.accept_ppk if accept is None and accept_ppk is None else accept_ppk
+        accepted: Accepted = (ACCEPTED_PPM if accept is None else accept) if ppk is None else AcceptedPpk(ppk)
+        ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
+        response, bad = own.response, None if own.run is None else not_ok(own.run, accepted)
+        found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=activity)
+
+    def numbers() -> Mapping[str, Table]:
+        return {"": contributions_table(contributions_of(response, measure))}
+
+    return Answer(changes_report(own.name, found), found, numbers, own.keep("changes", found), whole=True)
+
+
+def methods(
+    subject: Asked | Subject,
+    *,
+    measure: str | None = None,
+    trials: int | None = None,
+    activity: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Answer[Methods]:
+    """Worst case, RSS, modified RSS and simulation side by side, as `tol3d methods` sets them.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        measure: which; default: all.
+        trials: of the simulation; default: the study's, 20 000 at most, or a run's own.
+        activity, trust_parts, run_builders: see what_if.
+
+    Raises:
+        InputError: no such measure.
+    """
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        response = own.response if measure is None else own.response.of(measure)
+        found = found_side_by_side(response, trials_of(own, response, trials), activity)
+    numbers = {name: intervals_table(each) for name, each in found.measures.items()}
+    report = methods_report(found, response.contributors)
+    return Answer(report, found, lambda: numbers, own.keep("methods", found))
+
+
+def allocate(
+    subject: Asked | Subject,
+    *,
+    ppm: float | None = None,
+    ppk: float | None = None,
+    measure: Sequence[str] = (),
+    cost: Path | str | None = None,
+    bounds: str = "0.5..3",
+    bound: Texts = (),
+    freeze: Sequence[str] = (),
+    stays: Texts = (),
+    beyond_least: bool = False,
+    draws: int = 12_000,
+    seed: int = 1,
+    activity: Activity = silent,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> AllocationAnswer:
+    """Tolerances of least cost for a fraction out of limits, as `tol3d allocate` finds them.
+
+    Args:
+        subject: a scene or a run, its path, or the name of a bundled scene.
+        ppm: builds that may be out of the limits of a measure.
+        ppk: instead, for each limit; default: 1.33.
+        measure: NAME or NAME:low, NAME:high; default: all that have limits.
+        cost: file of costs by contributor, YAML; default: 1 by factor.
+        bounds: of factors.
+        bound: of the factors of single contributors, by name, such as {"runout": "0.8..1.2"}.
+        freeze: tolerances that stay as they are.
+        stays: limits that stay instead of the middle, by name, "low" or "high".
+        beyond_least: draw below what is physical, such as clearances below 0.
+        draws: of importance sampling, each time and for each limit.
+        seed: of them.
+        activity, trust_parts, run_builders: see what_if.
+
+    Raises:
+        InputError: no such measure, tolerance or bound, or no tolerances within bounds that do.
+    """
+    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+        response, groups = own.response, groups_of(own.response)
+        question = Question(
+            costs=Costs() if cost is None else costs_from(Path(cost), groups),
+            bounds=bounds_of("--bounds", bounds),
+            own_bounds=named_bounds(_texts(bound)),
+            frozen=frozenset(freeze),
+            stays=stays_of(_texts(stays), groups),
+            groups=groups,
+            beyond_least=beyond_least,
+        )
+        targets = targets_of(response, [measure] if isinstance(measure, str) else measure, ppm, ppk)
+        found = allocation(response, targets, question, draws=draws, seed=seed, activity=activity)
+
+    def write() -> Scene:
+        return allocated_scene(own.scene, response, found, question.stays)
+
+    report = allocation_report(own.name, found)
+    kept = own.keep("allocation", found)
+    return AllocationAnswer(report, found, lambda: {"": report.tables[0]}, kept, write=write)
+
+
+def sweep(
+    scene: Scene | Path | str,
+    vary: Mapping[str, str | Sequence[str | float]],
+    *,
+    latin_hypercube: int | None = None,
+    hypercube_seed: int = 1,
+    out: Path | str | None = None,
+    picture: Path | str | None = None,
+    overrides: Overrides = AS_WRITTEN,
+    workers: int = 1,
+    trust_parts: bool = False,
+    run_builders: bool = False,
+) -> Variants:
+    """Variants of a scene, each simulated with the same draws, as `tol3d sweep` does it.
+
+    Args:
+        scene: a scene, its path, or the name of a bundled one.
+        vary: values of fields, as a list or as text: "10um,20um", "17..25:2", "10um..30um".
+        latin_hypercube: number of variants drawn from ranges; None for a grid.
+        hypercube_seed: of that drawing.
+        out: a folder that keeps the variants, so that a sweep goes on there; None keeps none.
+        picture: a file to draw them in.
+        overrides: values that replace those of the scene's study, for all variants.
+        workers: that run the trials of one.
+        trust_parts, run_builders: see run_scene.
+
+    Raises:
+        InputError: no such field, or values that are none.
+    """
+    question = SweepQuestion(tuple(variable(*own) for own in vary.items()), latin_hypercube, hypercube_seed)
+    loaded = load(scene, trust_parts=trust_parts, run_builders=run_builders)
+    with TemporaryDirectory(prefix="tol3d-") as temporary:
+        folder = Path(temporary) if out is None else Path(out)
+        how = Order(folder, overrides, workers, trust_parts=trust_parts, run_builders=run_builders)
+        found = swept(loaded, question, how)
+    if picture is not None:
+        named("tol3d.analyses.sweep_picture:draw_sweep")(found, Path(picture))
+    return Variants(sweep_report(found), found, None if picture is None else Picture(Path(picture)))
