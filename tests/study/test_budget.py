@@ -16,6 +16,7 @@ from tol3d.study import acting, attribution, budget
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.evaluation import Asked, Evaluation
+from tol3d.study.high_low_mean import extents
 from tol3d.study.overrides import simulation_of
 from tol3d.study.simulation import Simulation
 from tol3d.study.study import Study
@@ -149,6 +150,17 @@ def test_a_wrong_slope_is_told_where_builds_are_enough_and_left_open_where_they_
     assert explanation is not None
     assert any("the two methods disagree on x0:" in fault for fault in explanation.faults) is told
     assert ("it depends on x0 by more than 2 % of their own effects" in explanation.undecided) is not told
+
+
+def test_measures_of_several_mean_builds_have_what_each_of_them_wants() -> None:
+    """Transmission errors take a hundred times what a backlash at a random position takes."""
+    system = simulation_of(load_scene(SCENES / "tooth_deviations.yaml"), Overrides()).system
+    measures = [own for own in system.measures if own.take != "curve"]
+    whole = extents(system, measures)
+    assert len({round(own.contacts) for own in whole}) > 1
+    enough = sum(own.contacts for own in whole)
+    assert [own.exact for own in extents(system, measures, enough)] == [own.asking for own in whole]
+    assert None in [own.exact for own in extents(system, measures, enough / 100)]
 
 
 # shares ---------------------------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ first order. Where the run does not afford what is asked before, nothing is buil
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
@@ -21,7 +21,7 @@ import numpy as np
 
 from tol3d.numerics.arrays import Array
 from tol3d.study.budget import ALONE, PLACING
-from tol3d.study.evaluation import Values, batches, measures_alike, of_alike
+from tol3d.study.evaluation import Values, batches, measures_alike
 from tol3d.system.dependent import Named
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations
@@ -38,6 +38,9 @@ TOGETHER: Final = 4096
 """Builds for all measures at once at most; else each measure has those made that it asks for."""
 CALL: Final = 20_000
 """Contacts that take as long as what a method does for any number of builds."""
+
+ROUNDING: Final = 1e-9
+"""Part by which contacts that are enough may seem too few."""
 
 Cost = Callable[[Sequence[Measure]], int]
 """Contacts per build that measures ask for; see System.cost."""
@@ -57,10 +60,10 @@ def high_low_mean_ranges(
         By measure ranges by the contributor's name, in its unit; None where a build cannot be assembled, or where
         builds would take more contacts.
     """
-    each = contacts / max(len(measures), 1)
-    return of_alike(
-        system, measures, lambda alike, turning: _named_ranges(system, alike, turning, values, each * len(alike))
-    )
+    found: dict[str, Ranges] = {}
+    for turning, alike, own in _apportioned(system, measures, contacts):
+        found |= _named_ranges(system, alike, turning, values, own)
+    return found
 
 
 def high_low_mean_percents(ranges: Ranges) -> Percents:
@@ -87,11 +90,24 @@ class Extent:
 
 def extents(system: System, measures: Sequence[Measure], contacts: float = math.inf) -> Sequence[Extent]:
     """What is built of measures, one for all that share a mean build; see `high_low_mean_ranges`."""
-    found, each = [], contacts / max(len(measures), 1)
-    for turning, alike in measures_alike(system, measures):
-        mean = mean_deviations(system, alike[0].positions)
-        found.append(_extent(_alone(system, turning, mean), alike, system.cost, each * len(alike)))
+    found = []
+    for turning, alike, own in _apportioned(system, measures, contacts):
+        alone = _alone(system, turning, mean_deviations(system, alike[0].positions))
+        found.append(_extent(alone, alike, system.cost, own))
     return found
+
+
+def _apportioned(
+    system: System, measures: Sequence[Measure], contacts: float
+) -> Iterator[tuple[Mapping[str, bool], Sequence[Measure], float]]:
+    """Measures that share a mean build, what turns there, and contacts for them in proportion to what they want."""
+    groups, part = measures_alike(system, measures), math.inf
+    wanted = [math.inf] * len(groups)
+    if math.isfinite(contacts):
+        wanted = [own.contacts for own in extents(system, measures)]
+        part = (1.0 + ROUNDING) * contacts / max(sum(wanted), 1.0)
+    for (turning, alike), own in zip(groups, wanted, strict=True):
+        yield turning, alike, own * part
 
 
 def _extent(alone: Sequence["_Alone"], measures: Sequence[Measure], cost: Cost, contacts: float) -> Extent:
