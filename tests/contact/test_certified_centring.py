@@ -112,6 +112,26 @@ def test_the_least_growth_is_the_distance_from_a_point_to_a_disc() -> None:
     assert not steps[:, 50].any()
 
 
+def test_what_nothing_holds_stays_where_a_dual_without_direction_says_it_may() -> None:
+    """A pin alone decides, in the middle of its hole; its bolt is in two holes that are wider.
+
+    Interior points would move the bolt at each pose anew, within what is left to it.
+    """
+    rows = np.zeros((3, 2, 5, 1))
+    rows[0, 0, 0, 0] = rows[0, 1, 1, 0] = rows[1, 0, 2, 0] = rows[1, 1, 3, 0] = rows[2, 0, 4, 0] = 1.0
+    place = np.array([[0.02, -0.05], [0.1, 0.07], [0.3, 0.0]])[..., None], np.array([[0.1], [0.5], [0.4]]), rows
+    programme, moved = Programme.of(3, 5, 1), list[Array]()
+    for _ in range(4):
+        programme.solve(*place, parts=2)
+        assert programme.slack[0] == pytest.approx(0.1, abs=1e-11)
+        assert own_duals_certify(programme, place, None, np.arange(1)).max() < CLOSE
+        moved.append(programme.steps.copy())
+        place = place[0] + np.einsum("kcfn,fn->kcn", rows, programme.steps), *place[1:]
+    assert np.abs(moved[0][:2, 0] + [0.02, -0.05]).max() < 1e-11
+    assert np.abs(moved[0][2:]).max() > 1e-3
+    assert np.abs(moved[1:]).max() < 1e-11
+
+
 @pytest.mark.parametrize("at", [[(0.02, -0.05)], [(0.02, -0.05), (0.02, -0.05)]], ids=["one", "two alike"])
 def test_interior_points_have_full_duals_where_an_offset_is_0(at: list[tuple[float, float]]) -> None:
     """A pin in one hole, or in both ends of an upright one: its multiplier has no direction, its dual certifies."""

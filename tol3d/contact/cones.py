@@ -3,7 +3,7 @@
 Cones are y_k = (c_k - s, o_k + B_k p), inside where |o_k + B_k p| < c_k - s. Primal and dual steps go along Nesterov
 and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y. As soon as
 the cones that decide the largest s are known, Newton steps finish: these cones meet exactly, and their multipliers
-balance.
+balance. A cone whose dual has less than its length as a direction is met at its apex, where o_k + B_k p = 0 and c_k = s.
 """
 
 from typing import Any, Final
@@ -31,6 +31,8 @@ ROUNDING: Final = 1e-14
 """Fraction of a pivot left by rounding."""
 SHOWN: Final = 1e-3, 1e-6, 1e-10
 """Gaps, over the size of offsets and clearances, at which the deciding cones may be known."""
+LOOSE: Final = 1e-12
+"""Fraction of the stiffness of deciding cones that counts as none: of freedoms that change offsets by 1e-6 or less."""
 LAST: Final = 10
 """Newton steps at most, 2 to 4 in practice."""
 STIFF: Final = 1e5
@@ -41,16 +43,21 @@ BALANCED: Final = 1e-9
 """Largest imbalance of multipliers that sum to 1."""
 POINTED: Final = 1e-6
 """Length of an offset over its clearance, below which it has no direction."""
+APEX: Final = 0.98
+"""Square of a dual's direction over its first component's, below which a cone that decides is met at its apex."""
 
 
 @nested
-def factored(matrix: Any, count: int) -> None:
-    """Cholesky's factors of a matrix without negative eigenvalues, in place; what is rounding of 0 is not moved by."""
+def factored(matrix: Any, count: int, least: float) -> None:
+    """Cholesky's factors of a matrix without negative eigenvalues, in place.
+
+    Freedoms are not moved by of which rounding of 0 is left, or no more than `least`.
+    """
     for j in range(count):
         whole = matrix[j, j]
         for k in range(j):
             matrix[j, j] -= matrix[j, k] * matrix[j, k]
-        matrix[j, j] = np.sqrt(matrix[j, j]) if matrix[j, j] > ROUNDING * whole else np.inf
+        matrix[j, j] = np.sqrt(matrix[j, j]) if matrix[j, j] > max(ROUNDING * whole, least) else np.inf
         for i in range(j + 1, count):
             for k in range(j):
                 matrix[i, j] -= matrix[i, k] * matrix[j, k]
@@ -162,7 +169,8 @@ def changes_of(cones: Any, size: int, lifts: int, step: Any, aim: float, dy: Any
 def closing(cones: Any, size: int, lifts: int, goal: Any, rooms: Any) -> Any:
     """Equations of Newton's step from `at` (y), with multipliers m; how far cones that decide are apart, and balance.
 
-    Each of them gives m + stiff (u . B p + s + w) at the end of the step; negative where one has no direction.
+    Each of them gives m + stiff (u . B p + s + w) at the end of the step; at an apex m + stiff (s + c) and, for the
+    offset, v + stiff (o + B p). Negative where an offset has no direction, but its dual has.
     """
     _, _, rows, used = cones
     matrix, step, at, own, turned, _ = rooms
@@ -179,19 +187,27 @@ def closing(cones: Any, size: int, lifts: int, goal: Any, rooms: Any) -> Any:
         if not used[k] or own[k, 1] == 0.0:
             continue
         length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
-        if not length > POINTED * at[k, 0]:
-            return -1.0, 1.0
         m, stiff, w = own[k, 0], own[k, 1], at[k, 0] - length
-        u, v = at[k, 1] / length, at[k, 2] / length
-        apart = max(apart, abs(w))
-        for r in range(size):
-            along, across = u * rows[k, 0, r] + v * rows[k, 1, r], u * rows[k, 1, r] - v * rows[k, 0, r]
-            turned[r] -= m * along
-            step[r] += stiff * w * along
-            matrix[size, r] += stiff * along
-            for s in range(r + 1):
-                matrix[r, s] += stiff * along * (u * rows[k, 0, s] + v * rows[k, 1, s])
-                matrix[r, s] += max(m, 0.0) / length * across * (u * rows[k, 1, s] - v * rows[k, 0, s])
+        if own[k, 2] > 0.0:
+            w, apart = at[k, 0], max(apart, abs(at[k, 0]) + length)
+            for c in range(2):
+                for r in range(size):
+                    turned[r] -= own[k, 3 + c] * rows[k, c, r]
+                    step[r] -= stiff * at[k, 1 + c] * rows[k, c, r]
+                    for s in range(r + 1):
+                        matrix[r, s] += stiff * rows[k, c, r] * rows[k, c, s]
+        elif length > POINTED * at[k, 0]:
+            u, v, apart = at[k, 1] / length, at[k, 2] / length, max(apart, abs(w))
+            for r in range(size):
+                along, across = u * rows[k, 0, r] + v * rows[k, 1, r], u * rows[k, 1, r] - v * rows[k, 0, r]
+                turned[r] -= m * along
+                step[r] += stiff * w * along
+                matrix[size, r] += stiff * along
+                for s in range(r + 1):
+                    matrix[r, s] += stiff * along * (u * rows[k, 0, s] + v * rows[k, 1, s])
+                    matrix[r, s] += max(m, 0.0) / length * across * (u * rows[k, 1, s] - v * rows[k, 0, s])
+        else:
+            return -1.0, 1.0
         turned[size] -= m
         step[size] += stiff * w
         matrix[size, size] += stiff
@@ -216,7 +232,11 @@ def stepped(cones: Any, size: int, rooms: Any) -> None:
         for r in range(size):
             a += rows[k, 0, r] * step[r]
             b += rows[k, 1, r] * step[r]
-        if own[k, 1] > 0.0:
+        if own[k, 2] > 0.0:
+            own[k, 0] += own[k, 1] * (step[size] - at[k, 0])
+            own[k, 3] += own[k, 1] * (at[k, 1] + a)
+            own[k, 4] += own[k, 1] * (at[k, 2] + b)
+        elif own[k, 1] > 0.0:
             length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
             along = (at[k, 1] * a + at[k, 2] * b) / length
             own[k, 0] += own[k, 1] * (along + step[size] - at[k, 0] + length)
@@ -233,7 +253,8 @@ def amiss(cones: Any, rooms: Any, limit: float) -> int:
     for k in range(at.shape[0]):
         if used[k]:
             length = np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2])
-            if own[k, 0] < 0.0 or at[k, 0] - length < -limit:
+            sideways = np.sqrt(own[k, 3] * own[k, 3] + own[k, 4] * own[k, 4]) if own[k, 2] > 0.0 else 0.0
+            if own[k, 0] < sideways or at[k, 0] - length < -limit:
                 return k
     return -1
 
@@ -248,7 +269,8 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
         scale: of offsets and clearances.
         weight: of the multipliers.
         found: changed by the step.
-        rooms: work arrays; the fourth has the first multipliers m, 0 for cones that do not decide.
+        rooms: work arrays; the fourth has the first multipliers (cones, 5): m, 0 for cones that do not decide, two
+            others, and the v of those that are met at their apex.
     """
     y, z, _, used = cones
     matrix, step, at, own, _, gone = rooms
@@ -256,6 +278,8 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
     for k in range(y.shape[0]):
         at[k, 0], at[k, 1], at[k, 2] = y[k, 0], y[k, 1], y[k, 2]
         own[k, 1] = weight * STIFF / scale if own[k, 0] > 0.0 else 0.0
+        sideways = own[k, 3] * own[k, 3] + own[k, 4] * own[k, 4]
+        own[k, 2] = lifts if sideways < APEX * own[k, 0] * own[k, 0] else 0.0
     for _ in range(LAST):
         apart, balance = closing(cones, size, lifts, goal, rooms)
         if apart < 0.0:
@@ -267,12 +291,14 @@ def ended(cones: Any, size: int, lifts: int, goal: Any, scale: float, weight: fl
                     m = own[k, 0] if used[k] else 0.0
                     share = m / np.sqrt(at[k, 1] * at[k, 1] + at[k, 2] * at[k, 2]) if m > 0.0 else 0.0
                     z[k, 0], z[k, 1], z[k, 2] = m, -share * at[k, 1], -share * at[k, 2]
+                    if m > 0.0 and own[k, 2] > 0.0:
+                        z[k, 1], z[k, 2] = -own[k, 3], -own[k, 4]
                 for r in range(size + 1):
                     found[r] += gone[r]
                 return True
             own[wrong, 0], own[wrong, 1] = 0.0, weight * STIFF / scale if own[wrong, 1] == 0.0 else 0.0
             apart, balance = closing(cones, size, lifts, goal, rooms)
-        factored(matrix, size + lifts)
+        factored(matrix, size + lifts, LOOSE * weight * STIFF / scale)
         substituted(matrix, step, size + lifts)
         stepped(cones, size, rooms)
     return False
@@ -314,6 +340,7 @@ def climbed(cones: Any, size: int, lifts: int, careful: bool, goal: Any, found: 
             for k in range(y.shape[0]):
                 length = np.sqrt(y[k, 1] * y[k, 1] + y[k, 2] * y[k, 2])
                 dz[k, 0] = z[k, 0] if used[k] and z[k, 0] * scale > (y[k, 0] - length) * weight else 0.0
+                dz[k, 3], dz[k, 4] = -z[k, 1], -z[k, 2]
             if ended(cones, size, lifts, goal, scale, weight, found, rooms):
                 return True
         aim = share * gap / count
@@ -324,7 +351,7 @@ def climbed(cones: Any, size: int, lifts: int, careful: bool, goal: Any, found: 
         else:
             for r in range(size):
                 step[r] += goal[r]
-        factored(matrix, size + lifts)
+        factored(matrix, size + lifts, 0.0)
         substituted(matrix, step, size + lifts)
         ahead, behind = changes_of(cones, size, lifts, step, aim, dy, dz)
         owed *= 1.0 - behind

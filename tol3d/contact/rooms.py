@@ -177,6 +177,7 @@ def again(
     for k in range(y.shape[0]):
         decided = used[k] and before[1][k] == turn
         own[k, 0] = before[0][k, 0] if decided else 0.0
+        own[k, 3], own[k, 4] = -before[0][k, 1], -before[0][k, 2]
         some = some or decided
         scale = max(scale, y[k, 0] if used[k] else 0.0)
     fill(found, 0.0)
@@ -284,7 +285,7 @@ def new_rooms(cones: int, freedoms: int) -> Any:
     """Work arrays for the programmes."""
     size = freedoms + 1
     inner = (
-        np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 3)), np.empty(size),
+        np.empty((size, size)), np.empty(size), np.empty((cones, 3)), np.empty((cones, 5)), np.empty(size),
         np.empty(size),
     )  # fmt: skip
     return (
