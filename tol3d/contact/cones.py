@@ -3,7 +3,7 @@
 Cones are y_k = (c_k - s, o_k + B_k p), inside where |o_k + B_k p| < c_k - s. Primal and dual steps go along Nesterov
 and Todd's directions (Andersen, Dahl, Vandenberghe: CVXOPT's coneprog): W is the scaling with W z = W^-1 y. As soon as
 the cones that decide the largest s are known, Newton steps finish: these cones meet exactly, and their multipliers
-balance. A cone whose dual has less than its length as a direction is met at its apex, where o_k + B_k p = 0 and c_k = s.
+balance. A cone whose dual lies inside its cone is met at its apex, where o_k + B_k p = 0 and c_k = s.
 """
 
 from typing import Any, Final
