@@ -17,7 +17,7 @@ from tol3d.linkage.joint_equations import equations, forward
 from tol3d.linkage.joint_kinds import BALL, CYLINDRICAL, ROLLING, SWING, UNIVERSAL
 from tol3d.linkage.joint_motions import rotation_of
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy, copy_matrix, fill
+from tol3d.numerics.loops import copy, copy_matrix, eliminated, fill
 
 STEPS: Final = 24
 """Largest number of Newton steps; most trials take 2."""
@@ -42,39 +42,6 @@ SUSPECT: Final = 1e-3
 
 
 @nested
-def eliminated(matrix: Any, right: Any) -> Any:
-    """Solve equations in place by elimination with pivots: their determinant's sign, 0 of none, and the least pivot."""
-    count, sign, least = right.shape[0], 1.0, np.inf
-    for k in range(count):
-        best = k
-        for i in range(k + 1, count):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if best != k:
-            sign = -sign
-            for j in range(count):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-            right[k], right[best] = right[best], right[k]
-        pivot = matrix[k, k]
-        least = min(least, abs(pivot))
-        if not abs(pivot) > 1e-14:
-            return 0.0, 0.0
-        sign = -sign if pivot < 0.0 else sign
-        for i in range(k + 1, count):
-            factor = matrix[i, k] / pivot
-            if factor != 0.0:
-                for j in range(k + 1, count):
-                    matrix[i, j] -= factor * matrix[k, j]
-                right[i] -= factor * right[k]
-    for k in range(count - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, count):
-            total -= matrix[k, j] * right[j]
-        right[k] = total / matrix[k, k]
-    return sign, least
-
-
-@nested
 def least_singular(matrix: Any, square: Any, vector: Any) -> Any:
     """The least singular value of a matrix, by inverse iteration on its square."""
     count, size = matrix.shape[0], 0.0
@@ -93,7 +60,7 @@ def least_singular(matrix: Any, square: Any, vector: Any) -> Any:
         before = np.sqrt(before)
         for k in range(count):
             vector[k] /= before
-        sign, _ = eliminated(square, vector)
+        sign, _ = eliminated(square, vector, count)
         if sign == 0.0:
             return 0.0
         size = 0.0
@@ -160,8 +127,8 @@ def newton(model: Any, state: Any, scale: Any, length: float, work: Any, room: A
                 right[i] -= matrix[i, j] * moved[j]
         copy_matrix(square, matrix)
         copy(vector, right)
-        sign, least = eliminated(square, vector)
-        if sign == 0.0 or (count > 0 and not np.isfinite(vector[0])):  # a loop of its input alone has no column
+        sign, least = eliminated(square, vector, count)
+        if sign == 0.0:
             return -1, sign, least
         taken = stepped(model, state, scale, vector, moved, room)
         if not taken < np.inf:

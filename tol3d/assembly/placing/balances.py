@@ -9,11 +9,10 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, pull_at
-from tol3d.assembly.placing.pose_steps import solved
 from tol3d.assembly.placing.rests import LOST, RESTS, begin
 from tol3d.assembly.placing.tilted_rests import PIERCED, motion_rows, shifted
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy_matrix, fill_matrix
+from tol3d.numerics.loops import copy_matrix, eliminated, fill_matrix
 
 STEPS: Final = 30
 WAY: Final = 0.02
@@ -73,7 +72,7 @@ def balanced(pose: Any, trial: Any, reach: float, chosen: Any, shares: Any, prog
     motions, gone = motion.shape[0], 0.0
     for _ in range(STEPS):
         linearised(pose, trial, reach, chosen, shares, programme, system)
-        if not solved(matrix, right, right.shape[0]):
+        if eliminated(matrix, right, right.shape[0])[0] == 0.0:
             return False
         for j in range(motions):
             motion[j] = right[j]

@@ -16,13 +16,13 @@ from tol3d.assembly.model.statuses import OK, SINGULAR
 from tol3d.assembly.placing.asked import Asked, frame_in_world, listed, point_rows
 from tol3d.assembly.placing.freedoms import free_motions, seen_steps
 from tol3d.assembly.placing.placer import Placer
-from tol3d.assembly.placing.pose_steps import solved, stepped
+from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy_matrix, fill, fill_matrix
+from tol3d.numerics.loops import copy_matrix, eliminated, fill, fill_matrix
 
 STEPS: Final = 80
 MET: Final = 1e-13
@@ -93,7 +93,7 @@ def by_squares(pose: Any, fits: Any, i: int, basis: Any, reach: float, rooms: An
                     right[s] -= weights[f] * rows[k, s] * residual[k]
                     for t in range(count):
                         matrix[s, t] += weights[f] * rows[k, s] * rows[k, t]
-        if not solved(matrix, right, count):
+        if eliminated(matrix, right, count)[0] == 0.0:
             return False
         if moved(pose, basis, right, 1.0, reach, step) <= MET:
             return True
@@ -134,7 +134,7 @@ def barrier_step(pose: Any, top: float, share: float, fits: Any, i: int, basis: 
         matrix[count, count] -= 2.0 / room
     for s in range(count + 1):
         pull[s] = right[s]
-    if not solved(matrix, right, count + 1):
+    if eliminated(matrix, right, count + 1)[0] == 0.0:
         return -1.0
     decrement = 0.0
     for s in range(count + 1):

@@ -15,13 +15,13 @@ from tol3d.assembly.placing.actual_feature import total
 from tol3d.assembly.placing.asked import Asked, frame_in_world, listed, point_rows, touched
 from tol3d.assembly.placing.freedoms import free_motions, in_words
 from tol3d.assembly.placing.placer import Placer
-from tol3d.assembly.placing.pose_steps import solved, stepped
+from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.assembly.placing.poses import Codes, Pose, column, dot, rotated
 from tol3d.assembly.placing.world import World
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy_matrix
+from tol3d.numerics.loops import copy_matrix, eliminated
 
 CHORDS: Final = 14
 """Steps with the nominal inverse before Newton's method; a turn of 1e-2 takes seven."""
@@ -88,7 +88,7 @@ def by_newton(pose: Any, contacts: Any, i: int, reach: float, rooms: Any) -> boo
                 (x * b - y * a) / reach,
             )
             matrix[k, 3], matrix[k, 4], matrix[k, 5] = a, b, c
-        if not solved(matrix, right, 6):
+        if eliminated(matrix, right, 6)[0] == 0.0:
             return False
         length = stepped(pose, right, reach)
         if length <= MET:

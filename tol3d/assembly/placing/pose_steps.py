@@ -1,13 +1,8 @@
-"""Steps of poses and small systems of equations, in kernels."""
+"""Steps of poses, in kernels."""
 
-from typing import Any, Final
-
-import numpy as np
+from typing import Any
 
 from tol3d.numerics.compiled import nested
-
-NO_PIVOT: Final = 1e-12
-"""Pivot of equations with coefficients of about 1, below which they are singular."""
 
 
 @nested
@@ -32,31 +27,3 @@ def stepped(pose: Any, step: Any, reach: float) -> Any:
         pose[r, 3] += step[3 + r]
         length = max(length, abs(step[r]) / reach, abs(step[3 + r]) / reach)
     return length
-
-
-@nested
-def solved(matrix: Any, right: Any, count: int) -> bool:
-    """Solve count equations in place by elimination with pivots; False if they are singular."""
-    for k in range(count):
-        best = k
-        for i in range(k + 1, count):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
-                best = i
-        if best != k:
-            for j in range(k, count):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
-            right[k], right[best] = right[best], right[k]
-        pivot = matrix[k, k]
-        if not abs(pivot) > NO_PIVOT:
-            return False
-        for i in range(k + 1, count):
-            factor = matrix[i, k] / pivot
-            for j in range(k + 1, count):
-                matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
-    for k in range(count - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, count):
-            total -= matrix[k, j] * right[j]
-        right[k] = total / matrix[k, k]
-    return bool(np.isfinite(right[0]))

@@ -12,9 +12,9 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.assembly.placing.one_sided_gaps import MET, gap_of, kept_at, pull_at, rows_at, tangents_at, undoing
-from tol3d.assembly.placing.pose_steps import solved, stepped
+from tol3d.assembly.placing.pose_steps import stepped
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy, copy_matrix, fill
+from tol3d.numerics.loops import copy, copy_matrix, eliminated, fill
 from tol3d.numerics.programme import NO_ROOM, OK, exchanged, new_rooms
 
 TIED: Final = 1e-9
@@ -80,7 +80,7 @@ def pressed(
             matrix[j, b] = 0.0
             for r in range(6):
                 matrix[j, b] += tangents[r, j] * all_rows[basis[b], r]
-    if not solved(matrix, right, count):
+    if eliminated(matrix, right, count)[0] == 0.0:
         return False
     held = True
     for b in range(count):

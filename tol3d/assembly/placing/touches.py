@@ -12,9 +12,9 @@ import numpy as np
 
 from tol3d.assembly.model.statuses import NO_CONTACT, OK, SINGULAR
 from tol3d.assembly.placing.contact_equations import asked_of, count_of, equations, new_sides
-from tol3d.assembly.placing.pose_steps import NO_PIVOT, solved, turned_by
+from tol3d.assembly.placing.pose_steps import turned_by
 from tol3d.numerics.compiled import kernel, nested
-from tol3d.numerics.loops import copy, copy_matrix, fill
+from tol3d.numerics.loops import copy, copy_matrix, eliminated, fill
 
 STEPS: Final = 60
 MET: Final = 1e-13
@@ -84,7 +84,7 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
             right[e] = (1.0 - share) * lacking[e] - errors[e] if share != 1.0 else -errors[e]
             worst = max(worst, abs(right[e]))
         systems(rows, moves, count, matrix)
-        if not solved(matrix, right, count):
+        if eliminated(matrix, right, count)[0] == 0.0:
             return False
         length = 0.0
         for s in range(count):
@@ -100,37 +100,13 @@ def by_steps(amounts: Any, asked: Any, i: int, share: float, falling: float, abo
 
 
 @nested
-def side_of(matrix: Any, count: int) -> Any:
-    """The sign of a determinant by elimination with pivots; 0 if it is singular. The matrix is used up."""
-    sign = 1.0
-    for k in range(count):
-        best = k
-        for r in range(k + 1, count):
-            if abs(matrix[r, k]) > abs(matrix[best, k]):
-                best = r
-        if best != k:
-            sign = -sign
-            for s in range(k, count):
-                matrix[k, s], matrix[best, s] = matrix[best, s], matrix[k, s]
-        pivot = matrix[k, k]
-        if not abs(pivot) > NO_PIVOT:
-            return 0.0
-        sign = -sign if pivot < 0.0 else sign
-        for r in range(k + 1, count):
-            factor = matrix[r, k] / pivot
-            for s in range(k + 1, count):
-                matrix[r, s] -= factor * matrix[k, s]
-    return sign
-
-
-@nested
 def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any, rooms: Any) -> Any:
     """The side of the folds on which the pose of a trial is found, with its rows and moves left in the rooms.
 
     In one step, else by fractions from nominal, each from the pose before.
     """
     start, basis, reach, _ = about
-    pose, moves, _, rows, matrix, _, _ = rooms
+    pose, moves, _, rows, matrix, right, _ = rooms
     done, share, falling = 0.0, 1.0, FALLING
     fill(amounts, 0.0)
     fill(kept, 0.0)
@@ -140,7 +116,7 @@ def end_of(amounts: Any, kept: Any, asked: Any, i: int, side: float, about: Any,
         if met and following == 1.0:
             posed(start, basis, reach, amounts, pose, moves)
             systems(rows, moves, basis.shape[1], matrix)
-            found = side_of(matrix, basis.shape[1])
+            found, _ = eliminated(matrix, right, basis.shape[1])
             if found == side or falling == FOLLOWING:
                 return found
             met = False
@@ -177,7 +153,7 @@ def held(asked: Any, i: int, about: Any, rooms: Any, force: Any, inner: Any) -> 
             for k in range(6):
                 total += rows[e, k] * moves[k, s]
             matrix[s, e] = total
-    if not solved(matrix, right, count):
+    if eliminated(matrix, right, count)[0] == 0.0:
         return False
     e = 0
     for k in range(kinds.shape[0]):
