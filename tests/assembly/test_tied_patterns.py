@@ -1,8 +1,8 @@
 """Patterns whose places tie, and parts pushed to flat ends of their room: against linear programmes and closed forms.
 
 The oracle cuts each cone |o + B q| <= c by planes in HiGHS, about the directions that the best pose so far has, until
-both bounds meet; a lens of two discs is a closed form. Certificates (tests/contact) allow 5e-6 mm where multipliers tie,
-and take rows and statuses as they are: slack to 1e-9 mm, rows and statuses are held here.
+both bounds meet; a lens of two discs is a closed form. Certificates (tests/contact) allow 5e-6 mm where multipliers
+tie, and take rows and statuses as they are: slack to 1e-9 mm, rows and statuses are held here.
 """
 
 from pathlib import Path
