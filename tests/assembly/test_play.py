@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,11 +15,13 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 from tol3d.assembly.model.statuses import NO_BUILD
+from tol3d.assembly.placing import engaging
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.engaging import Engaging
 from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.placing.world import World
 from tol3d.assembly.torsors import method as torsors
+from tol3d.contact.seat import Seated, seated
 from tol3d.errors import SceneError
 from tol3d.simulate import Overrides, load, run_scene, simulation_of
 from tol3d.study.draws import drawn
@@ -54,21 +57,30 @@ def test_hole_and_slot(method: str) -> None:
 
 
 def test_over_play_only_what_a_measure_reads_is_placed_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The plate and the key once, the plate for both measures of its corner, the key for both of its own."""
+    """The plate and the key once, the plate for both measures of its corner, the key for both of its own.
+
+    Each is centred once, for its own float and for both pushes.
+    """
     simulation = simulation_of(load(SCENES / "hole_and_slot.yaml"))
     trials, system = drawn(simulation, 0, 3), simulation.system
     method = system.method("exact", system.materials("exact"))
     method.answers(trials, system.measures)  # plans
-    placed: list[str] = []
+    placed, pushes = list[str](), list[bool]()
 
     def counted(self: Engaging, world: World) -> tuple[World, Codes]:
         placed.append(self.move.name)
         return as_it_is(self, world)
 
+    def seat(*given: Any, **named: Any) -> Seated:
+        pushes.append(named.get("pushes", False))
+        return seated(*given, **named)
+
     as_it_is = Engaging.placed
     monkeypatch.setattr(Engaging, "placed", counted)
+    monkeypatch.setattr(engaging, "seated", seat)
     method.answers(trials, system.measures)
     assert sorted(placed) == ["key in its way"] * 3 + ["plate on the pins"] * 3
+    assert sorted(pushes) == [False] * 2 + [True] * 4
 
 
 def test_a_fit_of_size_and_size_goes_together_in_any_coordinates(tmp_path: Path) -> None:

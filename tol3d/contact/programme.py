@@ -56,6 +56,10 @@ class Programme:
             np.zeros((places, 3, trials)), np.zeros((places, trials), dtype=np.int64),
         )  # fmt: skip
 
+    def copied(self) -> "Programme":
+        """The same in arrays of its own."""
+        return Programme(*(own.copy() for own in vars(self).values()))
+
     def solve(
         self, offsets: Array, clearances: Array, rows: Array, *, goal: Array | None = None, parts: int | None = None,
         asked: NDArray[np.bool_] | None = None, trials: Places | None = None, rounds: int = ALL,

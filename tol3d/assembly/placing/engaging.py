@@ -1,5 +1,6 @@
 """Parts that engage with play: offsets of pins, tabs, holes and slots, and poses in the clearance, trial by trial."""
 
+import weakref
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -30,7 +31,7 @@ from tol3d.assembly.placing.poses import (
 )
 from tol3d.assembly.placing.world import World
 from tol3d.contact.programme import Programme
-from tol3d.contact.seat import seated, strayed
+from tol3d.contact.seat import Seated, seated, strayed
 from tol3d.numerics.arrays import Array, times
 
 ROUNDS: Final = 20
@@ -127,14 +128,9 @@ class Engaging(RoomPlacer):
 
     def _found(self, world: World, seats: Sequence[Seat], start: Pose) -> tuple[Pose, Array, Array, NDArray[np.bool_]]:
         """Poses within the clearance, slacks (n,), shares of places in them (places, n), flags of those found (n,)."""
-        origin, middle, trials = column(self.origin), column(self.middle), world.trials
-        room = self._room(world, seats, start)
-        bolts = np.zeros(((self.rows.shape[2] - self.motions) // ENDS, ENDS, trials))
-        places, _, unknowns = self.rows.shape
-        programme, sweeps = Programme.of(places, unknowns, trials), self.floats.sweeps(world)
-        at = start.turn, start.point(origin) - middle, bolts
-        every = np.ones(trials, dtype=np.bool_)
-        seat = seated(room, at, programme, every, keeps_place=sweeps is not None)
+        origin, middle = column(self.origin), column(self.middle)
+        room, sweeps = self._room(world, seats, start), self.floats.sweeps(world)
+        seat, programme = self._centred(world, room, start, keeps_place=sweeps is not None)
         slacks, shares = np.where(seat.found, programme.slack, 0.0), programme.multipliers
         alone = ~(np.take_along_axis(shares, programme.tightest[None], axis=0)[0] > 0.0)  # no freedom moves it
         shares = np.where(alone, np.arange(len(shares))[:, None] == programme.tightest, shares)
@@ -146,6 +142,20 @@ class Engaging(RoomPlacer):
             after = strayed(room, seat.pose, along, share, goes)
         turn, shift, _ = after.pose
         return Pose(turn, shift + middle - rotated(turn, origin)), slacks, shares, np.where(goes, after.found, found)
+
+    def _centred(self, world: World, room: EngagedRoom, start: Pose, *, keeps_place: bool) -> tuple[Seated, Programme]:
+        """Centred poses and the programme there: found once, for the float of the trial and for pushes of measures."""
+        key = f"centred by {self.move.name}"
+        of, seat, programme = world.kept.get(key, (None, None, None))
+        if seat is None or of() is not world or (keeps_place and seat.place is None):
+            places, _, unknowns = self.rows.shape
+            programme = Programme.of(places, unknowns, world.trials)
+            bolts = np.zeros(((unknowns - self.motions) // ENDS, ENDS, world.trials))
+            at = start.turn, start.point(column(self.origin)) - column(self.middle), bolts
+            every = np.ones(world.trials, dtype=np.bool_)
+            seat = seated(room, at, programme, every, keeps_place=keeps_place)
+            world.kept[key] = weakref.ref(world), seat, programme
+        return seat, programme.copied()
 
     def _room(self, world: World, seats: Sequence[Seat], start: Pose) -> EngagedRoom:
         """Its room in the trials, as relations lay the part."""
