@@ -1,7 +1,6 @@
 """Analyses for decisions of an engineer: questions about any scene, answered by its responses alone.
 
-    from tol3d import analyses
-    analyses.what_if("spur_pair", factor={"centre distance": 0.5}).frame()
+    tol3d.analyses.what_if("spur_pair", factor={"centre distance": 0.5}).frame()
 
 The functions have the words of their commands; names are loaded when they are first used.
 """
