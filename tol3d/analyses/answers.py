@@ -54,7 +54,7 @@ from tol3d.study.overrides import AS_WRITTEN, Overrides
 from tol3d.system.faults import faults_of
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from tol3d.runs.frame import DataFrame
 
 Found = TypeVar("Found", bound=Section)
 Asked = Scene | Run | Path | str
@@ -89,7 +89,7 @@ class Answer(Report, Generic[Found]):
         """Numbers as its command writes them by --csv."""
         return "\n".join(own.csv() for own in self.numbers().values()) if self.whole else super().csv()
 
-    def frame(self) -> "pd.DataFrame":
+    def frame(self) -> "DataFrame":
         """Its main table as a DataFrame of pandas, with all digits; of several measures their tables, one column more.
 
         Raises:
@@ -146,7 +146,7 @@ class Variants(Report):
         """A row a variant, with all numbers of all measures."""
         return whole_table(self.found).csv()
 
-    def frame(self) -> "pd.DataFrame":
+    def frame(self) -> "DataFrame":
         """A DataFrame of pandas, a row a variant, with all numbers of all measures."""
         return stacked({"": whole_table(self.found)})
 

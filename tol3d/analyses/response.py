@@ -45,7 +45,7 @@ from tol3d.system.statuses import OK
 from tol3d.system.trials import Trials
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from tol3d.runs.frame import DataFrame
 
 T = TypeVar("T")
 Codes = NDArray[np.int8]
@@ -289,7 +289,7 @@ class Response:
         """Names of the positions."""
         return tuple(self.positions(1, "rest"))
 
-    def frame(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> "pd.DataFrame":
+    def frame(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> "DataFrame":
         """Builds and their measures as a DataFrame of pandas, a row a build, under the names of a run's columns.
 
         Args:

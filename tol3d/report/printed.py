@@ -13,7 +13,7 @@ from tol3d.report.sheet import as_text
 from tol3d.runs.frame import frame_of_rows
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from tol3d.runs.frame import DataFrame
 
 TEXT_WIDTH: Final = 120  # columns of a table as text, as wide as a notebook's cell
 WHOLE_NUMBER: Final = re.compile(r"\d{1,15}")
@@ -62,13 +62,13 @@ class Report:
         return None
 
     @property
-    def frames(self) -> "Mapping[str, pd.DataFrame]":
+    def frames(self) -> "Mapping[str, DataFrame]":
         """Its tables as frames of pandas, by their titles; of equal titles the later ones are numbered.
 
         Raises:
             MissingPackageError: pandas is not installed.
         """
-        found: dict[str, pd.DataFrame] = {}
+        found: dict[str, DataFrame] = {}
         for title, table in self.page.titled():
             number = sum(title == name.rpartition(" #")[0] for name in found) + 2
             found[f"{title} #{number}" if title in found else title] = stacked({"": table})
@@ -98,7 +98,7 @@ class Picture:
         return self.path.read_bytes() if self.path and self.path.suffix.lower() == ".png" else None
 
 
-def stacked(tables: Mapping[str, Table]) -> "pd.DataFrame":
+def stacked(tables: Mapping[str, Table]) -> "DataFrame":
     """Tables below each other as a DataFrame.
 
     Args:

@@ -11,7 +11,7 @@ from tol3d.errors import InputError
 from tol3d.runs.summary.measure import MeasureSummary
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from pandas import DataFrame as DataFrame  # those who name the type take it from here
 
 Columns = Mapping[str, NDArray[np.generic]]
 Curves = Literal["split", "drop"]
@@ -21,7 +21,7 @@ class MissingPackageError(InputError, ImportError):
     """An optional package, loaded on demand."""
 
 
-def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: Curves = "split") -> "pd.DataFrame":
+def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: Curves = "split") -> "DataFrame":
     """Columns as a DataFrame, a row a trial.
 
     Args:
@@ -40,7 +40,7 @@ def frame_of(columns: Columns, measures: Mapping[str, MeasureSummary], curves: C
     return pandas.DataFrame(flat, index=pandas.RangeIndex(count, name="trial"))
 
 
-def frame_of_rows(headings: Sequence[str], rows: Sequence[Sequence[str | float | None]]) -> "pd.DataFrame":
+def frame_of_rows(headings: Sequence[str], rows: Sequence[Sequence[str | float | None]]) -> "DataFrame":
     """Rows of texts and numbers as a DataFrame; a column without texts is one of numbers, nan where one is not known.
 
     Raises:
