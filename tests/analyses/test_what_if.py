@@ -247,16 +247,18 @@ def test_a_mechanism_that_a_test_registers() -> None:
         assert (measure.after.sigma_by_rates or 0.0) <= (measure.before.sigma_by_rates or 0.0)
 
 
-def test_before_a_change_all_of_the_trials_is_what_a_run_has(tmp_path: Path) -> None:
-    """Of gears, of parts that fail at times, and of parts that may overlap: to the bit."""
-    for name in ("spur_pair", "two_plates", "door"):
-        run = run_scene(name, overrides=Overrides(trials=300, witness=0), out=tmp_path / name)
-        response = response_of(simulation_of(load(name), Overrides(trials=300)))
-        found = what_if(response, [Change(next(iter(response.lines)), factor=0.9)], draws=0)
-        for measure, own in found.measures.items():
-            summary, before = run.found.measures[measure], own.before
-            sample = summary.geometric
-            assert sample is not None
-            assert (before.mean, before.sigma, before.ppk) == (sample.mean, sample.sigma, sample.ppk)
-            assert (before.low, before.high) == (sample.p0_135, sample.p99_865)
-            assert before.failed == summary.trials - summary.seated
+@pytest.mark.parametrize(
+    "scene", ["two_plates", *(pytest.param(own, marks=pytest.mark.slow) for own in ("spur_pair", "door"))]
+)
+def test_before_a_change_all_of_the_trials_is_what_a_run_has(scene: str, tmp_path: Path) -> None:
+    """Of parts that fail at times, of gears, and of parts that may overlap: to the bit."""
+    run = run_scene(scene, overrides=Overrides(trials=300, witness=0), out=tmp_path / "run")
+    response = response_of(simulation_of(load(scene), Overrides(trials=300)))
+    found = what_if(response, [Change(next(iter(response.lines)), factor=0.9)], draws=0)
+    for measure, own in found.measures.items():
+        summary, before = run.found.measures[measure], own.before
+        sample = summary.geometric
+        assert sample is not None
+        assert (before.mean, before.sigma, before.ppk) == (sample.mean, sample.sigma, sample.ppk)
+        assert (before.low, before.high) == (sample.p0_135, sample.p99_865)
+        assert before.failed == summary.trials - summary.seated
