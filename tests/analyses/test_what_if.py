@@ -251,7 +251,7 @@ def test_a_mechanism_that_a_test_registers() -> None:
     "scene", ["two_plates", *(pytest.param(own, marks=pytest.mark.slow) for own in ("spur_pair", "door"))]
 )
 def test_before_a_change_all_of_the_trials_is_what_a_run_has(scene: str, tmp_path: Path) -> None:
-    """Of parts that fail at times, of gears, and of parts that may overlap: to the bit."""
+    """Parts that fail at times, gears, and parts that may overlap: to the bit."""
     run = run_scene(scene, overrides=Overrides(trials=300, witness=0), out=tmp_path / "run")
     response = response_of(simulation_of(load(scene), Overrides(trials=300)))
     found = what_if(response, [Change(next(iter(response.lines)), factor=0.9)], draws=0)

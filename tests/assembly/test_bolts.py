@@ -252,7 +252,7 @@ def test_a_cover_rests_within_ten_poses_though_a_bolt_is_free_to_lean(
     at: tuple[tuple[float, float], ...], floating: str, zones: bool, trial: int, tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
-    """Of two thousand: bolts went to and fro by 2 and 5 um for 40 poses, the pushed cover with them by 2e-7 mm."""
+    """Two of two thousand: bolts went to and fro by 2 and 5 um for 40 poses, the pushed cover with them by 2e-7 mm."""
     made, solve, poses = joint(at, tmp_path, floating, zones=zones), Programme.solve, list[int]()
     rows = drawn(made.simulation, 0, trial + 1).deviations[-1:]
     assert placing.values(made.system.assembly, rows, ["x"])["x"][1][0] == OK  # planned here, with nominal poses

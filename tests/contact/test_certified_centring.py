@@ -92,7 +92,7 @@ def test_a_push_goes_on_from_the_places_that_decided_at_the_pose_before_or_from_
 
 
 def test_the_least_growth_is_the_distance_from_a_point_to_a_disc() -> None:
-    """Of a disc about the point, beside one that nothing moves; another disc holds the first in all but 40 trials."""
+    """A disc about the point, beside one that nothing moves; another disc holds the first in all but 40 trials."""
     rng, count = np.random.default_rng(11), 200
     point, centre, beside, other = rng.normal([[[0.0]], [[0.0]], [[0.0]], [[5.0]]], 1.0, (4, 2, count))
     own, still, room, wide = rng.uniform(0.1, 0.8, (4, count))

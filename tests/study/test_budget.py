@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 CONTACTS = 10_000
 LENGTHS, PLANES = 12, 20
 SLOPES = np.cos(np.arange(1, LENGTHS + 2 * PLANES + 1))
-"""Of each component, all of them different."""
+"""Slope of each component, all of them different."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ def test_measures_of_several_mean_builds_have_what_each_of_them_wants() -> None:
 
 
 def test_uses_that_want_little_leave_the_rest_to_the_others() -> None:
-    """Of 1e6 contacts 750 000 may follow, 30 to 35 to 10 parts of 75; what tells shares and what acts has the rest."""
+    """A million let 750 000 follow, 30 to 35 to 10 parts of 75; what tells shares and what acts has the rest."""
     others = budget.OTHER_METHOD + attribution.MOST_OF_RUN + acting.SHARE
     assert sum(budget.SHARES.values()) + others == pytest.approx(1.0)
     everything: dict[budget.Use, float] = dict.fromkeys(budget.SHARES, 1e9)

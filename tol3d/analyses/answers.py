@@ -69,7 +69,7 @@ def silent(text: str) -> None:
 
 @dataclass(frozen=True, repr=False)
 class Answer(Report, Generic[Found]):
-    """What an analysis found.
+    """Findings of an analysis.
 
     Args:
         found: its numbers as an object, in the units of the measures.

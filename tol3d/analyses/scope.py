@@ -10,9 +10,9 @@ from tol3d.errors import InputError
 LEAST, MOST = 1e-3, 1e3
 """Factors between which is looked."""
 HALVINGS: Final = 40
-"""Of the logarithm of a factor: to 1e-11."""
+"""Halvings of the logarithm of a factor: to 1e-11."""
 BEYOND: Final = 1.1
-"""How far beyond an end the reason is asked for: at the end itself it would speak of rounding."""
+"""Factor beyond an end at which the reason is asked for: at the end itself it would speak of rounding."""
 
 
 @dataclass(frozen=True)

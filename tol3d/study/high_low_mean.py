@@ -75,7 +75,7 @@ def high_low_mean_percents(ranges: Ranges) -> Percents:
 
 @dataclass(frozen=True)
 class Extent:
-    """What is built of measures that share a mean build.
+    """Builds for measures that share a mean build.
 
     Args:
         asking: contributors that lie elsewhere at their ends for each measure.
@@ -89,7 +89,7 @@ class Extent:
 
 
 def extents(system: System, measures: Sequence[Measure], contacts: float = math.inf) -> Sequence[Extent]:
-    """What is built of measures, one for all that share a mean build; see `high_low_mean_ranges`."""
+    """Builds for measures, one entry for all that share a mean build; see `high_low_mean_ranges`."""
     found = []
     for turning, alike, own in _apportioned(system, measures, contacts):
         alone = _alone(system, turning, mean_deviations(system, alike[0].positions))

@@ -22,7 +22,7 @@ Form = Literal[
     "unit sign",
     "count",
 ]
-"""How a cell is written; report/declared.py has the text of each."""
+"""Notation of a cell; report/declared.py has the text of each."""
 
 
 @dataclass(frozen=True)
