@@ -228,7 +228,7 @@ def test_costs_are_read_from_a_file(tmp_path: Path) -> None:
         ("default: {kind: grades, grades: {1: 1, 2: 3}}", "expected costs that fall as factors rise"),
         ("default: {kind: grades, grades: {1: 1}}", "expected two or more costs by factor"),
         ("costs: 1", "expected the keys default and contributors"),
-        ("a: [", "expected a YAML file of costs"),
+        ("a: [", "not YAML: did not find expected node content"),
     ],
 )
 def test_costs_that_make_no_sense_are_refused(text: str, words: str, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from scipy import integrate
 from scipy.stats import norm
 
 from tol3d.assembly.zones import Bonus, SizedBy, Widened, catalogue, uniform_in
+from tol3d.assembly.zones.zone_draw import Process
 from tol3d.distributions import Distribution
 from tol3d.distributions.normal import Normal
 from tol3d.distributions.uniform import Uniform
@@ -22,6 +23,7 @@ from tol3d.simulate import Execution, Overrides, load, replay, run_scene, simula
 from tol3d.study.extremes import ends_together
 from tol3d.study.first_order import first_orders
 from tol3d.system.draw import JointDraw, Scalar
+from tol3d.system.each_planar import EachPlanar
 from tol3d.system.plain import PlainContributor
 from tol3d.system.stated import stated
 
@@ -314,6 +316,21 @@ def test_ends_together_are_the_worst_of_all_sizes(grows: bool, law: Distribution
         tops = reach + slopes["size"][0] * grid, reach - slopes["size"][0] * grid
         assert tops[0].max() - 1e-9 <= high <= tops[0].max() + step
         assert tops[1].max() - 1e-9 <= -low <= tops[1].max() + step
+
+
+def test_features_and_components_with_laws_of_their_own_are_all_at_their_worst() -> None:
+    """A sum over what is drawn independently is worst where each is; their joint ellipse reaches less far."""
+    zone = catalogue.axis(0.1)
+    laws = tuple(Uniform(-1.0 - k, 2.0 + k) for k in range(4))
+    contributors = [
+        PlainContributor("pins", "position", EachPlanar(Uniform(0.0, 3.0), ("1", "2", "3"), None)),
+        PlainContributor("zone", "position", Process(zone, laws)),
+    ]
+    slopes = {"pins": np.array([3.0, 4.0, -5.0, 12.0, 0.0, 0.0]), "zone": np.array([1.0, -2.0, 0.0, 4.0])}
+    ends = ends_together(contributors, slopes, dict.fromkeys(slopes, False))
+    reached = {name: (own @ slopes[name]).tolist() for name, own in ends.items()}
+    assert reached["pins"] == pytest.approx([-3.0 * (5 + 13), 3.0 * (5 + 13)], rel=1e-12)
+    assert reached["zone"] == [-1.0 - 2.0 * 3.0 - 4.0 * 4.0, 2.0 + 2.0 * 2.0 + 4.0 * 5.0]
 
 
 def test_ends_are_not_where_a_slope_is_not_nor_of_what_is_read_with_it() -> None:

@@ -29,7 +29,7 @@ DOORS = {
         "tol3d/records/identified_picture.py",
     ),
     "PIL": ("tol3d/report/animation.py", "tol3d/report/html/view_3d.py"),
-    "ruamel": ("tol3d/scene/", "tol3d/analyses/costs.py"),
+    "ruamel": ("tol3d/scene/"),
     "yaml": ("tol3d/scene/text.py",),
     "joblib": ("tol3d/execution/pools.py",),
     "dask": ("tol3d/execution/pools.py",),

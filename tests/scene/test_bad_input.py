@@ -340,7 +340,7 @@ CHANGES = {
     ),
     "colon too many": (
         ("scene: spur", "scene: a: spur"),
-        'not YAML: mapping values are not allowed here (column 9); a ":" too many or a wrong indent',
+        'not YAML: mapping values are not allowed in this context (column 9); a ":" too many or a wrong indent',
     ),
     "tab": (
         ("    kind: tooth_thickness", "\tkind: tooth_thickness"),

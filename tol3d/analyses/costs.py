@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any, Final, Protocol, runtime_checkable
 
 import numpy as np
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from tol3d.errors import InputError
 from tol3d.scene.nearest import hint
+from tol3d.scene.text import core_value, values_in
 
 NUMBERS: Final = ("a", "b", "k")
 FIELDS: Final[Mapping[str, tuple[str, ...]]] = {"reciprocal": NUMBERS, "exponential": NUMBERS, "grades": ("grades",)}
@@ -119,9 +118,9 @@ def costs_from(path: Path, known: Iterable[str]) -> Costs:
         InputError: it cannot be read, or makes no sense; the text says where.
     """
     try:
-        content = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, YAMLError) as error:
-        raise InputError(f"{path}: expected a YAML file of costs: {str(error).splitlines()[0]}") from None
+        content = values_in(path, path.read_bytes())
+    except OSError as error:
+        raise InputError(f"{path}: expected a file of costs that can be read, got: {error.strerror}") from None
     if not isinstance(content, dict) or not content.keys() <= {"default", "contributors"}:
         raise InputError(f"{path}: expected the keys default and contributors, got {_shown(content)}")
     each, names = content.get("contributors") or {}, list(known)
@@ -157,7 +156,9 @@ def _grades(place: str, given: Any) -> Grades:
         raise InputError(
             f"{place}.grades: expected two or more costs by factor, such as {{0.63: 4, 1: 2}}, got {_shown(given)}"
         )
-    rows = sorted((_number(f"{place}.grades", key), _number(f"{place}.grades", value)) for key, value in given.items())
+    rows = sorted(
+        (_number(f"{place}.grades", core_value(key)), _number(f"{place}.grades", value)) for key, value in given.items()
+    )
     factors, costs = zip(*rows, strict=True)
     if not factors[0] > 0.0:
         raise InputError(f"{place}.grades: expected factors above 0, got {factors[0]:g}")

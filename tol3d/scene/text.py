@@ -1,10 +1,8 @@
 """Plain values of a file with their places: the only module that reads YAML.
 
-Grammar: YAML 1.2 by a parser's events, which are turned into values here in one pass, so that no
-input costs more than the limits below, and every key keeps its line. libyaml's parser, in PyYAML,
-reads most scenes, seven times as fast as ruamel.yaml's, which reads what libyaml stumbles over or
-misreads, and whose messages are shown. Plain scalars follow the core
-schema of YAML 1.2.2, 10.3.2 (ruamel's own also takes `1_000` and dates).
+Grammar: YAML 1.2 by the events of libyaml, in PyYAML, which are turned into values here in one pass, so
+that no input costs more than the limits below, and every key keeps its line. Plain scalars follow the
+core schema of YAML 1.2.2, 10.3.2 (PyYAML's own also takes `1_000`, `no` and dates).
 """
 
 import difflib
@@ -12,16 +10,13 @@ import os
 import re
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NoReturn
 
 import yaml
-from ruamel.yaml import YAML
-from ruamel.yaml import events as ruamel_events
-from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.reader import ReaderError
+from yaml.reader import ReaderError
 
 from tol3d.errors import SceneError
 from tol3d.scene.node import Key, Node, Places, branch, plain
@@ -45,26 +40,18 @@ OCTAL_OR_HEX: Final = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
 FLOAT: Final = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 INFINITE_OR_NAN: Final = re.compile(r"([-+]?)\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
 
-UNLIKE: Final = re.compile(r"[\t\x85\u2028\u2029]|^%|[|>][-+0-9]* *(?:#.*)?$", re.MULTILINE)  # where parsers differ
-ALIAS: Final = (yaml.AliasEvent, ruamel_events.AliasEvent)
-SCALAR: Final = (yaml.ScalarEvent, ruamel_events.ScalarEvent)
-LIST: Final = (yaml.SequenceStartEvent, ruamel_events.SequenceStartEvent)
-LIST_END: Final = (yaml.SequenceEndEvent, ruamel_events.SequenceEndEvent)
-MAPPING: Final = (yaml.MappingStartEvent, ruamel_events.MappingStartEvent)
-MAPPING_END: Final = (yaml.MappingEndEvent, ruamel_events.MappingEndEvent)
-DOCUMENT: Final = (yaml.DocumentStartEvent, ruamel_events.DocumentStartEvent)
-END: Final = (yaml.StreamEndEvent, ruamel_events.StreamEndEvent)
+LOADER: Final[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the second, slower one where libyaml is not there
 
 HINTS: Final = {
     "mapping values are not allowed": 'a ":" too many or a wrong indent; text with ": " inside needs quotes',
-    r"character '\t'": "indent with spaces, not with tabs",
-    "expected <block end>": "look at the indents: keys of one level start in one column",
+    "tab character": "indent with spaces, not with tabs",
+    "did not find expected key": "look at the indents: keys of one level start in one column",
     "could not find expected ':'": 'a key needs ":" and a space after it',
-    "expected ',' or": "a comma or a closing bracket is missing",
+    "did not find expected ',' or": "a comma or a closing bracket is missing",
     "unexpected end of stream": "a quote is opened and never closed",
-    "found '<stream end>'": "a bracket is opened and never closed",
+    "did not find expected node content": "a bracket is opened and never closed",
+    r"'\t' that cannot start": "indent with spaces, not with tabs",
     "cannot start any token": "put text that starts with such a character into quotes",
-    "undefined alias": "put the anchor (&name) before its use (*name)",
 }
 
 
@@ -95,15 +82,21 @@ def scene_text(path: Path, content: bytes, *, included: bool = False) -> tuple[N
     Raises:
         SceneError: as of read_scene_text.
     """
-    text = _decoded(path, content)
-    origin = Origin(path, text)
-    if brackets := BRACKETS.search(text):
-        place = Place(text.count("\n", 0, brackets.start()) + 1, 1)
-        raise origin.error((), f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
-    top = _composed(_Source(text, str(path) if included else "", origin))
+    origin = Origin(path, _decoded(path, content))
+    top = _composed(_Source(origin.text, str(path) if included else "", origin))
     if not isinstance(top.value, dict):
         raise origin.error((), f"expected keys such as scene:, parts:, moves:, measures:, got {shown(plain(top))}")
-    return top, Origin(path, text, Places(top))
+    return top, replace(origin, places=Places(top))
+
+
+def values_in(path: Path, content: bytes) -> Any:
+    """Values of another file; keys that are numbers are as they are written.
+
+    Raises:
+        SceneError: as of read_scene_text.
+    """
+    origin = Origin(path, _decoded(path, content))
+    return plain(_composed(_Source(origin.text, "", origin, any_keys=True)))
 
 
 # the file ---------------------------------------------------------------------------------------
@@ -155,41 +148,22 @@ def near_file(path: Path) -> str:
 # its YAML ---------------------------------------------------------------------------------------
 
 
-class _OtherParserError(Exception):
-    """libyaml stumbles over a text: the other parser reads it, or reports the error."""
-
-
-def _quick_events(text: str) -> Iterator[Any]:
-    """libyaml's events.
-
-    Raises:
-        _OtherParserError: it is of no use for this text, or not there.
-    """
-    loader = getattr(yaml, "CSafeLoader", None)
-    if loader is None or UNLIKE.search(text):
-        raise _OtherParserError
+def _events(origin: Origin, text: str) -> Iterator[yaml.Event]:
+    """Events of a text; any fault gives one message."""
     try:
-        yield from yaml.parse(text, Loader=loader)
-    except (yaml.YAMLError, ValueError, OverflowError):
-        raise _OtherParserError from None
-
-
-def _events(origin: Origin, text: str) -> Iterator[Any]:
-    """The slower parser's events; any fault gives one message."""
-    try:
-        yield from YAML(typ="safe", pure=True).parse(text)
+        yield from yaml.parse(text, Loader=LOADER)
     except ReaderError as error:
-        line = text[: error.position].count("\n") + 1
-        character = f"U+{ord(text[error.position]):04X}"
-        raise origin.error((), f"not YAML: the character {character} is not allowed", Place(line, 1)) from None
-    except MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
+        character = error.character if isinstance(error.character, int) else ord(error.character)
+        line = text[: text.find(chr(character))].count("\n") + 1
+        raise origin.error((), f"not YAML: the character U+{character:04X} is not allowed", Place(line, 1)) from None
+    except yaml.MarkedYAMLError as error:
+        mark, start = error.problem_mark or error.context_mark, error.context_mark
         place = Place(mark.line + 1, mark.column + 1) if mark else Place(1, 1)
-        problem = " ".join(str(error.problem or error.context).split())
+        here = "".join(text.split("\n")[place.line - 1 : place.line])[place.column - 1 :][:1]
+        problem = str(error.problem or error.context).replace("character that", f"character {here!r} that")
         advice = next((f"; {advice}" for words, advice in HINTS.items() if words in problem), "")
-        raise origin.error((), f"not YAML: {problem} (column {place.column}){advice}", place) from None
-    except (ValueError, OverflowError) as error:  # escapes beyond Unicode, such as "\UFFFFFFFF"
-        raise origin.error((), f"not YAML: {error}") from None
+        begun = f", begun in line {start.line + 1}" if start and mark and start.line < mark.line else ""
+        raise origin.error((), f"not YAML: {problem} (column {place.column}{begun}){advice}", place) from None
 
 
 @dataclass(frozen=True)
@@ -199,60 +173,64 @@ class _Source:
     text: str
     file: str
     origin: Origin = field(compare=False)
+    any_keys: bool = False
 
 
 @lru_cache(maxsize=KEPT_TEXTS)
 def _composed(source: _Source) -> Node:
     """The document of a text, not to be changed: a scene is read again by each replay and comparison."""
-    try:
-        return _Composer(source.origin, _quick_events(source.text), source.file).document()
-    except (_OtherParserError, SceneError):  # what is wrong is said by one parser
-        return _Composer(source.origin, _events(source.origin, source.text), source.file).document()
+    if brackets := BRACKETS.search(source.text):
+        place = Place(source.text.count("\n", 0, brackets.start()) + 1, 1)
+        raise source.origin.error((), f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
+    return _Composer(source, _events(source.origin, source.text)).document()
 
 
 @dataclass
 class _Composer:
     """One pass over the events of a document: values, places, limits."""
 
-    origin: Origin
-    events: Iterator[Any]
-    file: str = ""
+    source: _Source
+    events: Iterator[yaml.Event]
     anchors: dict[str, Node] = field(default_factory=dict)
     nodes: int = 0
 
     def document(self) -> Node:
         """The only document of the file."""
         next(self.events)  # the start of the stream
-        if not isinstance(next(self.events), DOCUMENT):
-            raise self.origin.error((), "expected a scene (scene:, parts:, moves:, measures:), got an empty file")
+        if not isinstance(next(self.events), yaml.DocumentStartEvent):
+            raise self.source.origin.error(
+                (), "expected a scene (scene:, parts:, moves:, measures:), got an empty file"
+            )
         top = self._node(next(self.events), ())
         next(self.events)  # the end of the document
         following = next(self.events)
-        if not isinstance(following, END):
+        if not isinstance(following, yaml.StreamEndEvent):
             self._refuse((), 'expected one scene in a file, got a second document ("---")', self._place(following))
         return top
 
     def _place(self, event: Any) -> Place:
         mark = event.start_mark
-        return Place(mark.line + 1, mark.column + 1, self.file)
+        return Place(mark.line + 1, mark.column + 1, self.source.file)
 
     def _refuse(self, path: KeyPath, sentence: str, place: Place) -> NoReturn:
-        raise self.origin.error(path, sentence, place)
+        raise self.source.origin.error(path, sentence, place)
 
     def _node(self, event: Any, path: KeyPath) -> Node:
         place = self._place(event)
-        if isinstance(event, ALIAS):
+        if isinstance(event, yaml.AliasEvent):
             return self._alias(event, path)
-        assert isinstance(event, SCALAR + LIST + MAPPING)  # the parser's grammar
+        assert isinstance(
+            event, yaml.ScalarEvent | yaml.SequenceStartEvent | yaml.MappingStartEvent
+        )  # the parser's grammar
         if event.tag is not None:
             tag = shown(str(event.tag).replace("tag:yaml.org,2002:", "!!"))
             self._refuse(path, f"expected no tags, got {tag}; put text into quotes instead", place)
         if len(path) >= MAX_DEPTH:
             self._refuse(path[:3], f"expected at most {MAX_DEPTH} levels of brackets and indents, got more", place)
         self._count(1, path, place)
-        if isinstance(event, SCALAR):
+        if isinstance(event, yaml.ScalarEvent):
             node = Node(self._scalar(event, path), place)
-        elif isinstance(event, LIST):
+        elif isinstance(event, yaml.SequenceStartEvent):
             node = self._list(path, place)
         else:
             node = self._mapping(path, place)
@@ -286,14 +264,14 @@ class _Composer:
 
     def _list(self, path: KeyPath, place: Place) -> Node:
         children: dict[Key, tuple[Place, Node]] = {}
-        while not isinstance(event := next(self.events), LIST_END):
+        while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
             children[len(children)] = self._place(event), self._node(event, (*path, len(children)))
         return branch([], place, children)
 
     def _mapping(self, path: KeyPath, place: Place) -> Node:
         children: dict[Key, tuple[Place, Node]] = {}
         first: dict[str, Place] = {}
-        while not isinstance(event := next(self.events), MAPPING_END):
+        while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             key, here = self._key(event, path), self._place(event)
             if key in first:
                 lines = f"first in line {first[key].line}, again in line {here.line}"
@@ -316,9 +294,11 @@ class _Composer:
         return (entry for own in mappings for entry in own.children.items())
 
     def _key(self, event: Any, path: KeyPath) -> str:
-        key = self._scalar(event, path) if isinstance(event, SCALAR) and event.tag is None else None
+        key = self._scalar(event, path) if isinstance(event, yaml.ScalarEvent) and event.tag is None else None
+        if self.source.any_keys and key is not None:
+            return str(event.value)
         if not isinstance(key, str):
-            got = f"{shown(key)}; put it into quotes" if isinstance(event, SCALAR) else "something else"
+            got = f"{shown(key)}; put it into quotes" if isinstance(event, yaml.ScalarEvent) else "something else"
             self._refuse(path, f"expected a key that is text, got {got}", self._place(event))
         return key
 

@@ -14,7 +14,7 @@ import numpy as np
 from tol3d.distributions import DeviationLaw
 from tol3d.numerics.arrays import Array
 from tol3d.system.dependent import Dependent, Named, in_draw_order, reads_of
-from tol3d.system.draw import Each
+from tol3d.system.region import region_of
 
 PLACES: Final = 65
 """Number of places that are read at first: the effect is smooth but for a few bends."""
@@ -22,6 +22,8 @@ ZOOMS: Final = 14
 """Each to the two spans beside the best place, a quarter of the spans before: 5e-10 of all in the end."""
 SWEEPS: Final = 3
 """Through several contributors that are read."""
+ANY: Final = 1e-300
+"""In place of a slope of 0, so that what has none is at opposite ends too."""
 
 
 class Ended(Named, Protocol):
@@ -38,13 +40,10 @@ def ends_alone(contributor: Ended, slopes: Array, *, turning: bool) -> Array:
 
     Features that are drawn each for itself are all at their own worst ends. Not a number where a slope is none.
     """
-    law = contributor.distribution
     if np.isnan(slopes).any():
         return np.full((2, len(slopes)), np.nan)
-    if isinstance(contributor.draw, Each):
-        return np.stack([np.where(slopes > 0.0, law.low, law.high), np.where(slopes > 0.0, law.high, law.low)])
-    ends = contributor.draw.ends(lambda rows: rows @ slopes, turning=turning)[:2]
-    return ends if float(ends[0] @ slopes) <= float(ends[1] @ slopes) else ends[::-1]
+    along = np.where(slopes == 0.0, ANY, slopes)
+    return region_of(contributor.draw, turning=turning).furthest(np.stack([-along, along]))
 
 
 def ends_together(
