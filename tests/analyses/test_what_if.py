@@ -23,6 +23,7 @@ from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.distributions.normal import Normal
 from tol3d.report.sheet import as_text
 from tol3d.runs.run import open_run
+from tol3d.runs.summary.judged import JudgedMeasure
 from tol3d.simulate import load, simulation_of
 from tol3d.system.copula import Block
 from tol3d.system.draw import Scalar
@@ -262,3 +263,5 @@ def test_before_a_change_all_of_the_trials_is_what_a_run_has(scene: str, tmp_pat
         assert (before.mean, before.sigma, before.ppk) == (sample.mean, sample.sigma, sample.ppk)
         assert (before.low, before.high) == (sample.p0_135, sample.p99_865)
         assert before.failed == summary.trials - summary.seated
+        assert (before.out_ppm, before.out_ppm_95) == (sample.out_ppm, sample.out_ppm_95)
+        assert before.verdict == JudgedMeasure.of(summary).verdict

@@ -11,7 +11,8 @@ from printing import printed
 from scipy import stats
 
 from tol3d import load_scene
-from tol3d.report.verdict import AcceptedPpk, JudgedMeasure, verdict_table
+from tol3d.report.verdict import verdict_table
+from tol3d.runs.summary.judged import AcceptedPpk, JudgedMeasure
 from tol3d.runs.summary.sample import Sample as SampleSummary
 from tol3d.runs.summary.values import as_json
 from tol3d.statistics import Grid, Moments

@@ -45,8 +45,8 @@ from tol3d.errors import InputError
 from tol3d.import_path import named
 from tol3d.report.page import Table
 from tol3d.report.printed import Picture, Report, stacked
-from tol3d.report.verdict import ACCEPTED_PPM, Accepted, AcceptedPpk
 from tol3d.runs.run import Run
+from tol3d.runs.summary.judged import ACCEPTED_PPM, Accepted, AcceptedPpk
 from tol3d.runs.summary.values import Section
 from tol3d.scene import Scene
 from tol3d.simulate import load

@@ -8,7 +8,7 @@ reweighted: in the tails that would be off by a factor.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import Field
@@ -23,6 +23,7 @@ from tol3d.analyses.results import results_of
 from tol3d.analyses.stated_changes import Change, changed, known, told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.runs.summary.judged import JudgedMeasure, demand_of
 from tol3d.runs.summary.sample import Sample
 from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import (
@@ -91,6 +92,13 @@ class StateNumbers(Section):
     limits: dict[str, LimitNumbers] = Field(description="low, high: those that the measure has")
     ppk: Annotated[Maybe[Number], Shows("Ppk", "ppk")] = Field(
         default=LEFT_OUT, description="of the trials, by the rule of a run"
+    )
+    out_ppm: Maybe[Ppm] = Field(default=LEFT_OUT, description="out of limits or failed, of the trials")
+    out_ppm_95: Annotated[Maybe[PpmRange], Shows("out of limits, 95 %", "share range")] = Field(
+        default=LEFT_OUT, description="bounds of the true share, 95 % confidence"
+    )
+    verdict: Annotated[Maybe[Label], Shows("verdict", "words")] = Field(
+        default=LEFT_OUT, description="of the trials, by what the study accepts"
     )
 
 
@@ -244,6 +252,8 @@ def _numbers(
     response: Response, by_rates: float, values: Array, sample: Sample | None, edges: Array, draws: int, seed: int
 ) -> StateNumbers:
     good = values[np.isfinite(values)]
+    limits = limits_of(response.measures[0])
+    by_run = _of_a_run(sample, response.simulation.study.accept_ppk, limited=bool(limits)) if sample else {}
     return made(
         StateNumbers,
         sigma_by_rates=by_rates if np.isfinite(by_rates) else None,
@@ -252,13 +262,22 @@ def _numbers(
         low=sample.p0_135 if sample else None,
         high=sample.p99_865 if sample else None,
         failed=sample.trials - sample.count if sample else 0,
-        **({"ppk": sample.ppk} if sample and sample.ppk is not None else {}),
+        **by_run,
         counts=np.histogram(good, edges)[0].astype(float).tolist(),
         limits={
             side: _limit(response, side, limit, values, draws, seed, smooth=bool(np.isfinite(by_rates)))
-            for side, limit in limits_of(response.measures[0]).items()
+            for side, limit in limits.items()
         },
     )
+
+
+def _of_a_run(sample: Sample, accept_ppk: float | None, *, limited: bool) -> dict[str, Any]:
+    """Ppk, fraction out of limits and verdict as a run with these trials has them, as far as it knows them."""
+    judged = JudgedMeasure.by(sample, demand_of(accept_ppk), limited=limited)
+    found: dict[str, Any] = {"ppk": sample.ppk}
+    if judged.verdict != "no limits":
+        found |= {"out_ppm": judged.out_ppm, "out_ppm_95": judged.interval, "verdict": judged.verdict}
+    return {key: value for key, value in found.items() if value is not None}
 
 
 def _limit(

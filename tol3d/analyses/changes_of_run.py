@@ -11,8 +11,8 @@ from tol3d.analyses.compared_builds import limits_of
 from tol3d.analyses.response import response_of
 from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, Effort, changes_of
 from tol3d.report.heading import badness
-from tol3d.report.verdict import Accepted, AcceptedPpk, JudgedMeasure, accepted_in
 from tol3d.runs.run import Run
+from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, demand_of
 from tol3d.runs.summary.values import made
 from tol3d.study.simulation import Simulation
 from tol3d.system.method import ANALYTIC_METHOD
@@ -28,7 +28,7 @@ SECONDS: Final = 0.5
 
 def not_ok(run: Run, accepted: Accepted | None = None) -> list[str]:
     """Measures whose verdict is NOT OK, the worst first; by default by what the study asks."""
-    found, asked = run.found.measures, accepted_in(run.found, accepted)
+    found, asked = run.found.measures, demand_of(run.found.study.accept_ppk, accepted)
     names = [name for name, own in found.items() if JudgedMeasure.of(own, asked).verdict == "NOT OK"]
     return sorted(names, key=lambda name: badness(found[name].shares.out_ppm, found[name].shares.ppk))
 
@@ -38,7 +38,7 @@ def changes_of_run(run: Run, simulation: Simulation, accepted: Accepted | None =
 
     Where simulating them takes too long, no measure is looked at.
     """
-    asked = accepted_in(run.found, accepted)
+    asked = demand_of(run.found.study.accept_ppk, accepted)
     accepted_ppm, ppk = (asked.beyond_one_ppm, asked.ppk) if isinstance(asked, AcceptedPpk) else (asked, AIM)
     bad = [name for name in not_ok(run, asked) if run.found.measures[name].has_limits]
     if not bad:

@@ -58,6 +58,8 @@ def _answer(name: str, own: MeasureWhatIf) -> Line:
         told.append(f"out of limits {_out(own.before)} → {_out(own.after)}")
     if own.before.ppk is not None and own.after.ppk is not None:
         told.append(f"Ppk {own.before.ppk:.2f} → {own.after.ppk:.2f}")
+    if own.before.verdict and own.after.verdict:
+        told.append(f"{own.before.verdict} → {own.after.verdict}")
     return Line(((name, "bold"), (f": {'; '.join(told)}", "")))
 
 
@@ -112,8 +114,12 @@ def what_if_table(own: MeasureWhatIf) -> Table:
     for name, shows in shown_by(StateNumbers).items():
         before, after = getattr(own.before, name), getattr(own.after, name)
         if (before, after) != (None, None):
-            change = None if before is None or after is None else after - before
-            rows.append(Row(shows.heading, [formed(value, shows.form, unit) for value in (before, after, change)]))
+            cells = [formed(value, shows.form, unit) for value in (before, after)]
+            if isinstance(before, float) and isinstance(after, float):
+                cells.append(formed(after - before, shows.form, unit))
+            else:
+                cells.append(NOTHING if None in (before, after) else "")
+            rows.append(Row(shows.heading, cells))
     if own.before.failed or own.after.failed:
         rows.append(Row("builds that fail", (str(own.before.failed), str(own.after.failed), "")))
     for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):

@@ -22,7 +22,7 @@ from tol3d.analyses.stated_changes import told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.number import COUNTED
-from tol3d.report.verdict import ACCEPTED_PPM
+from tol3d.runs.summary.judged import ACCEPTED_PPM
 from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Count, Known, Label, Number, Positive, Ppm, PpmRange, Section, made
 from tol3d.statistics import LimitCounts

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from tol3d.report.verdict import Accepted
+    from tol3d.runs.summary.judged import Accepted
 
 PPM_PER = {"%": 1e4, "ppm": 1.0}
 WHOLE = re.compile(r"\d{1,19}(\.0*)?([eE]\+?\d{1,2})?")
@@ -111,7 +111,7 @@ def accepted_ppk(text: str | float) -> float:
 
 def accepted_of(share: float | None, ppk: float | None) -> "Accepted | None":
     """Demand of --accept or --accept-ppk on measures; None if neither is given."""
-    from tol3d.report.verdict import AcceptedPpk
+    from tol3d.runs.summary.judged import AcceptedPpk
 
     if share is not None and ppk is not None:
         raise typer.BadParameter("--accept states a share out of limits, --accept-ppk a Ppk; leave out one of them")

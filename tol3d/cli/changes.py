@@ -24,7 +24,7 @@ def changes(
     """Find what to change where limits are left: which nominal to move, which tolerance to halve."""
     from tol3d.analyses import changes as ask
     from tol3d.analyses.subject import subject_of
-    from tol3d.report.verdict import AcceptedPpk
+    from tol3d.runs.summary.judged import AcceptedPpk
 
     own = subject_of(subject, trust_parts=trust_parts, run_builders=run_builders)
     accepted = accepted_of(accept, accept_ppk)

@@ -45,8 +45,8 @@ if TYPE_CHECKING:
 
     from tol3d.execution.watch import Finisher, Watch
     from tol3d.report.page import Page
-    from tol3d.report.verdict import Accepted
     from tol3d.runs.run import Run
+    from tol3d.runs.summary.judged import Accepted
     from tol3d.study.simulation import Simulation
 
 PATIENCE = 5.0  # s; worker processes that will not end may hold up an interrupted command no longer
@@ -92,8 +92,8 @@ def run(
 
     from tol3d.execution.pools import Execution
     from tol3d.report.table import Detail, Elapsed, run_report
-    from tol3d.report.verdict import accepted_in, all_ok
     from tol3d.runs.occupant import BEING_WRITTEN, numbered
+    from tol3d.runs.summary.judged import all_ok, demand_of
     from tol3d.simulate import Overrides, folder_for, load, run_simulation, simulation_of, workers_for
     from tol3d.system.faults import faults_of
 
@@ -121,7 +121,7 @@ def run(
         finished = run_simulation(loaded, simulation, folder, execution=execution, force=force, watch=watch)
     shown = Detail.VERDICT if quiet else Detail.MEASURES if verbose else Detail.SHORT
     found = finished.found
-    accepted = accepted_in(found, asked)
+    accepted = demand_of(found.study.accept_ppk, asked)
     out_console.print(run_report(found, shown, accepted, elapsed=Elapsed(loading, seconds())))
     if not quiet and not all_ok(found, accepted):
         out_console.print(_what_to_change(finished, simulation, accepted))

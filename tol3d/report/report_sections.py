@@ -14,8 +14,9 @@ from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_blocks
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import measure_blocks, status_line
-from tol3d.report.verdict import Accepted, verdict_report
+from tol3d.report.verdict import verdict_report
 from tol3d.runs.run import Run
+from tol3d.runs.summary.judged import Accepted
 from tol3d.runs.summary.run import RunSummary
 
 VERDICT, MORE, CORRELATIONS, TRIALS, PROVENANCE = "verdict", "more", "correlations", "trials", "provenance"

@@ -32,8 +32,9 @@ from tol3d.report.presenter import Presenter, ShowsNotes, presenter_of
 from tol3d.report.published import published_blocks, published_notes
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.spectrum_table import spectrum_blocks
-from tol3d.report.verdict import Accepted, ppk_bounds_text, short_verdict, verdict_report
+from tol3d.report.verdict import ppk_bounds_text, short_verdict, verdict_report
 from tol3d.runs.summary.agreement import Agreement, Explanation, LinearPart
+from tol3d.runs.summary.judged import Accepted
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveMethods, Sample

@@ -2,8 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Final, Literal, get_args
+from typing import Final, get_args
 
 from tol3d.report.column import (
     columns_of,
@@ -26,14 +25,12 @@ from tol3d.report.number import (
     unsigned_zero,
 )
 from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Shown, Table, line, note
+from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, Verdict, demand_of
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
-from tol3d.statistics.limits import normal_share, ppk_beyond
+from tol3d.statistics.limits import ppk_beyond
 
-Verdict = Literal["OK", "NOT OK", "too few trials", "no limits"]
-
-ACCEPTED_PPM: Final = 2700.0  # fraction of a normal measure outside ±3 sigma, Pp = Ppk = 1
 PPK_BY: Final[Mapping[PpkBy, str]] = {
     "quantiles": "quantiles",
     "share out of limits": "share out",
@@ -49,33 +46,6 @@ FEW_MEASURES: Final = 4  # with so many, a few contributors of each are named
 FEW_NAMED: Final = 3
 LEAST_NAMED: Final = 0.5  # %; a smaller share is 0 in print
 STYLES: Final[Mapping[Verdict, str]] = {"NOT OK": "red", "too few trials": "yellow"}
-
-
-@dataclass(frozen=True)
-class AcceptedPpk:
-    """A Ppk that a measure must have, by the method that its verdict states."""
-
-    ppk: float
-
-    @property
-    def beyond_one_ppm(self) -> float:
-        """Share of a normal measure beyond a limit at this Ppk [ppm].
-
-        >>> round(AcceptedPpk(1.33).beyond_one_ppm), round(AcceptedPpk(1.0).beyond_one_ppm)
-        (33, 1350)
-        """
-        return 1e6 * normal_share(3 * self.ppk, 1.0)
-
-
-Accepted = float | AcceptedPpk
-"""The share of trials that may be out of a measure's limits [ppm], or the Ppk that it must have."""
-
-
-def accepted_in(run: RunSummary, given: Accepted | None = None) -> Accepted:
-    """Demand on the measures of a run: as given, or its study's, or 0.27 % out of limits."""
-    if given is not None:
-        return given
-    return ACCEPTED_PPM if run.study.accept_ppk is None else AcceptedPpk(run.study.accept_ppk)
 
 
 def accepted_text(accepted: Accepted, measures: Iterable[MeasureSummary] = ()) -> str:
@@ -96,60 +66,6 @@ def accepted_text(accepted: Accepted, measures: Iterable[MeasureSummary] = ()) -
     if len(ppks) == 1:
         words = f"{next(iter(ppks.values())):.2f}"
     return f"{share_text(accepted)} out of limits" + (f" (Ppk {words})" if accepted else "")
-
-
-@dataclass(frozen=True)
-class JudgedMeasure:
-    """A measure as it is judged.
-
-    Args:
-        out_ppm: share of all trials that is out of its limits or failed; None where it is not known.
-        interval: that holds the true share with 95 % confidence [ppm]; None where trials are too few.
-        verdict: whether that, or its Ppk, is accepted.
-    """
-
-    out_ppm: float | None
-    interval: tuple[float, float] | None
-    verdict: Verdict
-
-    @classmethod
-    def of(cls, measure: MeasureSummary, accepted: Accepted = ACCEPTED_PPM) -> "JudgedMeasure":
-        """A measure of a summary: OK or NOT OK where all of an interval is on one side of what is accepted.
-
-        The interval is that of the share of trials out of limits, or of Ppk. A measure without limits, of which builds
-        failed, is judged by the share that an accepted Ppk stands for; one that does not vary, by a single trial.
-        """
-        own, found = measure.shares, measure.shares.out_ppm_95
-        out, interval = own.out_ppm, (found[0], found[1]) if found else None
-        if not measure.has_limits and not out:
-            return cls(out, interval, "no limits")
-        if not isinstance(accepted, AcceptedPpk):
-            return cls(out, interval, _verdict(interval, accepted))
-        if not measure.has_limits:
-            return cls(out, interval, _verdict(interval, accepted.beyond_one_ppm))
-        if own.ppk is None and own.ppk_by == PLAIN and own.trials > 1:
-            return cls(out, interval, "NOT OK" if out else "OK")
-        low, high = own.ppk_95 or (None, None)
-        if low is not None and low > accepted.ppk:
-            return cls(out, interval, "OK")
-        return cls(out, interval, "NOT OK" if high is not None and high < accepted.ppk else "too few trials")
-
-
-def _verdict(interval: tuple[float, float] | None, accepted_ppm: float) -> Verdict:
-    """Verdict from an interval of the true fraction out of limits.
-
-    >>> [_verdict(found, ACCEPTED_PPM) for found in ((0.0, 1843.0), (2000.0, 3500.0), (2701.0, 9000.0), None)]
-    ['OK', 'too few trials', 'NOT OK', 'too few trials']
-    """
-    if interval is None or interval[0] <= accepted_ppm < interval[1]:
-        return "too few trials"
-    return "OK" if interval[1] <= accepted_ppm else "NOT OK"
-
-
-def all_ok(run: RunSummary, accepted: Accepted | None = None) -> bool:
-    """True if every measure that has limits, or failed trials, is OK."""
-    asked = accepted_in(run, accepted)
-    return all(JudgedMeasure.of(own, asked).verdict in ("OK", "no limits") for own in run.measures.values())
 
 
 def verdict_report(run: RunSummary, accepted: Accepted | None = None, *, blame: bool = False) -> list[PageItem]:
@@ -175,7 +91,7 @@ def short_verdict(run: RunSummary, accepted: Accepted | None = None) -> list[Pag
 def _verdict_line(run: RunSummary, accepted: Accepted | None) -> Line:
     """The worst verdict of all measures, how many of several have it, and the accepted share."""
     worst, judged, counted = _worst_verdict(run, accepted)
-    words = accepted_text(accepted_in(run, accepted), run.measures.values())
+    words = accepted_text(demand_of(run.study.accept_ppk, accepted), run.measures.values())
     told = f"{counted} · accepted: {words}" if judged else ""
     return Line((("\n", ""), ("verdict", TITLE), (": ", "dim"), (worst, _bold(worst)), (told, "dim")))
 
@@ -185,7 +101,7 @@ def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted: Accepted | N
     found = [(label, *_worst_verdict(run, accepted)) for label, run in runs]
     if not any(judged for _, _, judged, _ in found):
         return []
-    asked = {accepted_text(accepted_in(run, accepted)) for _, run in runs}
+    asked = {accepted_text(demand_of(run.study.accept_ppk, accepted)) for _, run in runs}
     head = Line(
         (("verdict", TITLE), (f" · accepted: {asked.pop() if len(asked) == 1 else 'as each study asks'}", "dim"))
     )
@@ -194,7 +110,7 @@ def verdict_lines(runs: Sequence[tuple[str, RunSummary]], accepted: Accepted | N
 
 def _worst_verdict(run: RunSummary, accepted: Accepted | None) -> tuple[Verdict, int, str]:
     """The worst verdict of all measures, the number of measures with limits, and how many of several have it."""
-    asked = accepted_in(run, accepted)
+    asked = demand_of(run.study.accept_ppk, accepted)
     found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
     judged = sum(found.values()) - found["no limits"]
     worst: Verdict = next((own for own in ("NOT OK", "too few trials", "OK") if found[own]), "no limits")
@@ -220,7 +136,7 @@ def _left_out(run: RunSummary, accepted: Accepted | None) -> Iterator[PageItem]:
     """Number of measures without a row, and the verdict of all; nothing if each has a row."""
     left = len(run.measures) - MOST_MEASURES
     if left > 0:
-        asked = accepted_in(run, accepted)
+        asked = demand_of(run.study.accept_ppk, accepted)
         found = Counter(JudgedMeasure.of(own, asked).verdict for own in run.measures.values())
         counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict])
         yield line(f" and {left} more, all in summary.json; the worst are shown, {WORST_FIRST}")
@@ -242,7 +158,7 @@ def verdict_table(
     headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
     wide = any(None not in measure.limits for measure in shown.values())
     headings += [Heading("limits", words=wide), Heading("fraction out of limits", words=True, below=True)]
-    asked = accepted_in(run, accepted)
+    asked = demand_of(run.study.accept_ppk, accepted)
     bounds = isinstance(asked, AcceptedPpk)
     headings += [Heading("Ppk", plain=True), *([Heading("95 % of Ppk", words=True, below=True)] if bounds else [])]
     by = not brief and any(measure.has_limits for measure in run.measures.values())

@@ -47,8 +47,9 @@ from tol3d.report.report_sections import (
 )
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import meanings, measure_blocks
-from tol3d.report.verdict import Accepted, JudgedMeasure, accepted_in, accepted_text, verdict_report
+from tol3d.report.verdict import accepted_text, verdict_report
 from tol3d.runs.run import Run
+from tol3d.runs.summary.judged import Accepted, JudgedMeasure, demand_of
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.scene.node import plain
@@ -142,7 +143,7 @@ def _single(
     run: Run, accepted: Accepted | None, best: str, kept: Mapping[str, Markup], trials: Sequence[int] | None
 ) -> Iterator[Markup]:
     found, shown, presenter = run.found, shown_run(run.found), _presenter(run.found)
-    asked = accepted_in(found, accepted)
+    asked = demand_of(found.study.accept_ppk, accepted)
     sections: dict[str, Inside] = {VERDICT: together(_badge(shown, asked), _verdict(shown, asked, best))}
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
