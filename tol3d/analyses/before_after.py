@@ -276,7 +276,7 @@ def _of_a_run(sample: Sample, accept_ppk: float | None, *, limited: bool) -> dic
     judged = JudgedMeasure.by(sample, demand_of(accept_ppk), limited=limited)
     found: dict[str, Any] = {"ppk": sample.ppk}
     if judged.verdict != "no limits":
-        found |= {"out_ppm": judged.out_ppm, "out_ppm_95": judged.interval, "verdict": judged.verdict}
+        found |= {"out_ppm": sample.out_ppm, "out_ppm_95": sample.out_ppm_95, "verdict": judged.verdict}
     return {key: value for key, value in found.items() if value is not None}
 
 
