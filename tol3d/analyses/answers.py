@@ -11,7 +11,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
-from tol3d.analyses.allocate_table import allocation_report
 from tol3d.analyses.allocated_scene import allocated_scene, groups_of
 from tol3d.analyses.allocation import allocation
 from tol3d.analyses.allocation_section import Allocation
@@ -20,13 +19,12 @@ from tol3d.analyses.before_after import WhatIf
 from tol3d.analyses.before_after import what_if as found_before_after
 from tol3d.analyses.changes_of_run import not_ok
 from tol3d.analyses.costs import Costs, costs_from
-from tol3d.analyses.effects_table import effects_report
 from tol3d.analyses.effects_table import whole_table as effects_table
+from tol3d.analyses.kept_pages import page_of
 from tol3d.analyses.methods_section import Methods
-from tol3d.analyses.methods_table import intervals_table, methods_report
+from tol3d.analyses.methods_table import intervals_table
 from tol3d.analyses.rare_events import Method, RareEvent, limits_left
 from tol3d.analyses.rare_section import RareEvents, rare_section
-from tol3d.analyses.rare_table import rare_report
 from tol3d.analyses.side_by_side import methods as found_side_by_side
 from tol3d.analyses.side_by_side import trials_of
 from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
@@ -38,12 +36,12 @@ from tol3d.analyses.tolerance_search import Question
 from tol3d.analyses.variant_sweep import Order, Sweep, SweepQuestion
 from tol3d.analyses.variant_sweep import sweep as swept
 from tol3d.analyses.variants import variable
-from tol3d.analyses.what_if_table import what_if_report, what_if_table
+from tol3d.analyses.what_if_table import what_if_table
 from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, changes_of, contributions_of
-from tol3d.analyses.what_to_change_table import changes_report, contributions_table
+from tol3d.analyses.what_to_change_table import contributions_table
 from tol3d.errors import InputError
 from tol3d.import_path import named
-from tol3d.report.page import Table
+from tol3d.report.page import Page, Table
 from tol3d.report.printed import Picture, Report, stacked
 from tol3d.runs.run import Run
 from tol3d.runs.summary.judged import ACCEPTED_PPM, Accepted, AcceptedPpk
@@ -161,6 +159,18 @@ def _of(asked: Asked | Subject, *, trust_parts: bool, run_builders: bool) -> Ite
     own.batches.clear()
 
 
+def _kept(
+    own: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
+) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Path | None]:
+    """What all answers have: page, findings, what makes the tables of the frame, the run's file."""
+    page = page_of(name, found, own.name, lambda: own.simulation.system.contributors)
+    return page, found, lambda: numbers(page), own.keep(name, found)
+
+
+def _first_table(page: Page) -> Mapping[str, Table]:
+    return {"": page.tables[0]}
+
+
 def _one_of(option: str, word: str, known: Sequence[str]) -> str:
     if word not in known:
         raise InputError(f"{option}: expected {', '.join(known[:-1])} or {known[-1]}, got {word!r}")
@@ -214,7 +224,7 @@ def what_if(
         trials, draws = (0, 0) if quick else (trials, draws)
         found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=activity)
     numbers = {name: what_if_table(each) for name, each in found.measures.items()}
-    return Answer(what_if_report(own.name, found), found, lambda: numbers, own.keep("what-if", found), warnings)
+    return Answer(*_kept(own, "what-if", found, lambda page: numbers), warnings)
 
 
 def effects(
@@ -247,8 +257,7 @@ def effects(
         response = own.response if measure is None else own.response.of(measure)
         as_input = _one_of("position", position, ("averaged", "as-input")) == "as-input"
         found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=activity)
-    kept = own.keep("effects", found)
-    return Answer(effects_report(found), found, lambda: {"": effects_table(found)}, kept, whole=True)
+    return Answer(*_kept(own, "effects", found, lambda page: {"": effects_table(found)}), whole=True)
 
 
 def rare(
@@ -279,8 +288,7 @@ def rare(
         _one_of("method", method, ("auto", "importance", "subset", "form", "sorm"))
         events = limits_left(own.response, measure, method=method, draws=draws, seed=seed, activity=activity)
         found = rare_section(own.name, seed, own.response, events)
-    report = rare_report(found)
-    return RareAnswer(report, found, lambda: {"": report.tables[0]}, own.keep("rare", found), events=tuple(events))
+    return RareAnswer(*_kept(own, "rare", found, _first_table), events=tuple(events))
 
 
 def changes(
@@ -316,10 +324,10 @@ def changes(
         response, bad = own.response, None if own.run is None else not_ok(own.run, accepted)
         found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=activity)
 
-    def numbers() -> Mapping[str, Table]:
+    def numbers(page: Page) -> Mapping[str, Table]:
         return {"": contributions_table(contributions_of(response, measure))}
 
-    return Answer(changes_report(own.name, found), found, numbers, own.keep("changes", found), whole=True)
+    return Answer(*_kept(own, "changes", found, numbers), whole=True)
 
 
 def methods(
@@ -346,8 +354,7 @@ def methods(
         response = own.response if measure is None else own.response.of(measure)
         found = found_side_by_side(response, trials_of(own, response, trials), activity)
     numbers = {name: intervals_table(each) for name, each in found.measures.items()}
-    report = methods_report(found, response.contributors)
-    return Answer(report, found, lambda: numbers, own.keep("methods", found))
+    return Answer(*_kept(own, "methods", found, lambda page: numbers))
 
 
 def allocate(
@@ -405,9 +412,7 @@ def allocate(
     def write() -> Scene:
         return allocated_scene(own.scene, response, found, question.stays)
 
-    report = allocation_report(own.name, found)
-    kept = own.keep("allocation", found)
-    return AllocationAnswer(report, found, lambda: {"": report.tables[0]}, kept, write=write)
+    return AllocationAnswer(*_kept(own, "allocation", found, _first_table), write=write)
 
 
 def sweep(
