@@ -11,11 +11,11 @@ from tol3d.runs.summary.values import Count, Known, Label, NotNegative, Number, 
 class Allocated(Section):
     """A tolerance: its factor, its cost, and the reason for it."""
 
-    factor: Annotated[NotNegative, Shows("factor", "short")]
-    cost: Annotated[Number, Shows("cost", "short")]
-    before: Annotated[Label, Shows("before", "words", words=True)]
-    after: Annotated[Label, Shows("after", "words", words=True)]
-    held: Annotated[Sentence, Shows("", "words", words=True)] = Field(
+    factor: Annotated[NotNegative, Shows("factor", ".4g")]
+    cost: Annotated[Number, Shows("cost", ".4g")]
+    before: Annotated[Label, Shows("before", "words")]
+    after: Annotated[Label, Shows("after", "words")]
+    held: Annotated[Sentence, Shows("", "words")] = Field(
         description='"", or what holds it: a bound, what is physical, frozen, cannot be scaled'
     )
 
@@ -36,7 +36,7 @@ class CostAt(Section):
     """The least cost for a share out of limits [ppm], by first order as corrected; None where no factors reach it."""
 
     ppm: Ppm
-    cost: Annotated[Known, Shows("cost", "short")]
+    cost: Annotated[Known, Shows("cost", ".4g")]
 
 
 class Allocation(Section):

@@ -90,7 +90,7 @@ class StateNumbers(Section):
     failed: Count
     counts: Numbers
     limits: dict[str, LimitNumbers] = Field(description="low, high: those that the measure has")
-    ppk: Annotated[Maybe[Number], Shows("Ppk", "ppk")] = Field(
+    ppk: Annotated[Maybe[Number], Shows("Ppk", ".2f")] = Field(
         default=LEFT_OUT, description="of the trials, by the rule of a run"
     )
     out_ppm: Maybe[Ppm] = Field(default=LEFT_OUT, description="out of limits or failed, of the trials")

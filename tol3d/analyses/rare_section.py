@@ -53,20 +53,20 @@ class LimitLeft(Section):
     )
     breitung_ppm: Ppm | None = Field(description="second order by Breitung")
     unseated_percent: Number = Field(description="share of the failing builds that cannot be assembled")
-    design_points: Annotated[Count, Shows("points", "count", optional=True)] = Field(
+    design_points: Annotated[Count, Shows("points", "d", optional=True)] = Field(
         description="of all positions together"
     )
     design_point: DesignBuild | None = Field(description="the nearest one")
     draws: Count
-    evaluations: Annotated[Count, Shows("builds", "count")] = Field(description="builds that it took")
+    evaluations: Annotated[Count, Shows("builds", "d")] = Field(description="builds that it took")
     warnings: list[Sentence]
 
-    @shown(Shows("β", "three", behind="second_order_ppm"))
+    @shown(Shows("β", ".3f", behind="second_order_ppm"))
     def beta(self) -> float | None:
         """Distance of its nearest design point."""
         return None if self.design_point is None else self.design_point.beta
 
-    @shown(Shows("limit", "words"))
+    @shown(Shows("limit", behind=""))
     def words(self) -> str:
         """The limit as it is left: `< 15 µm`."""
         return f"{'<' if self.side == 'low' else '>'} {limit_text(self.limit, self.unit)}"

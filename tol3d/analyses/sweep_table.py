@@ -7,11 +7,10 @@ from tol3d.analyses.variant_sweep import Sweep, Variant, VariantMeasure, measure
 from tol3d.report.declared import cells_of, headings
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
-from tol3d.runs.summary.shows import shown_by
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
-NUMBERS: Final = shown_by(VariantMeasure)
+NUMBERS: Final = headings(VariantMeasure)
 SPAN: Final = "low, high: mean ∓ 3 sigma, or the 0.135 % and 99.865 % quantiles of trials that end before"
 
 
@@ -72,7 +71,7 @@ def short_names(fields: Sequence[str]) -> list[str]:
 def _of_measure(found: Sweep, name: str) -> Table:
     built = [own for own in found.variants if name in own.measures]
     unit = built[0].measures[name].unit
-    heads = [*_headings(found), *headings(NUMBERS)]
+    heads = [*_headings(found), *NUMBERS]
     rows = [Row(str(k + 1), [*_values(own), *_cells(own.measures.get(name))]) for k, own in enumerate(found.variants)]
     return Table(f"variant [{_sign(unit)}]", heads, rows, repeated=len(found.fields))
 

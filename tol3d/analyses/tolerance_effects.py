@@ -52,7 +52,7 @@ class Index(Section):
 class ContributorEffects(Section):
     """Effect of a contributor on a measure."""
 
-    unit: Annotated[Label, Shows("unit", "unit sign", words=True)] = Field(description="of its deviation")
+    unit: Annotated[Label, Shows("unit", "unit sign")] = Field(description="of its deviation")
     slope: Annotated[Known, Shows("per unit [{unit}]", "digits")] = Field(
         description="change of the measure per unit at the mean build, averaged over positions; of several components "
         "the size of their gradient"

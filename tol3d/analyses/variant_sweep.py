@@ -45,8 +45,8 @@ class VariantMeasure(Section):
     high: Annotated[Known, Shows("high")]
     out_ppm: Annotated[Ppm | None, Shows("out of limits", "share")]
     out_ppm_95: PpmRange | None
-    ppk: Annotated[Known, Shows("Ppk", "ppk")]
-    failed: Annotated[Count, Shows("not assembled", "count")]
+    ppk: Annotated[Known, Shows("Ppk", ".2f")]
+    failed: Annotated[Count, Shows("not assembled", "d")]
 
 
 class Variant(Section):

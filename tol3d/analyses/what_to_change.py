@@ -81,7 +81,7 @@ class Spread(Section):
         description="failed or out of limits, of all builds"
     )
     out_ppm_95: Annotated[PpmRange | None, Shows("95 % interval", "share range", optional=True)]
-    ppk: Annotated[Known, Shows("Ppk", "ppk")]
+    ppk: Annotated[Known, Shows("Ppk", ".2f")]
 
 
 class Step(Section):

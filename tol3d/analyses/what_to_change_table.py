@@ -20,7 +20,6 @@ from tol3d.report.number import (
     with_unit,
 )
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
-from tol3d.runs.summary.shows import shown_by
 
 MOST_TAKEN: Final = 5
 """Contributors of a mean's shift that are shown."""
@@ -33,7 +32,7 @@ NOTE: Final = (
     "each change is simulated with the same uniforms: a nominal moved, or a tolerance half as wide; told is what makes "
     "the measure better beyond chance, and no other one with limits worse"
 )
-AFTER: Final = headings(shown_by(Spread))
+AFTER: Final = headings(Spread)
 
 
 def changes_report(name: str, found: Changes) -> Page:

@@ -8,16 +8,24 @@ from pydantic import Field
 from tol3d.runs.summary.kinds import SummaryKinds
 from tol3d.runs.summary.output_measure import OutputMeasureSummary
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Maybe, Number, Section
+
+PAPER: Final = "paper (reconstructed) [″]"
+FIRST_PRINCIPLES: Final = "first principles [″]"
 
 
 class SourceByFormula(Section):
     """One source of transmission error; three standard deviations of the output's angle [arc second]."""
 
-    tolerance_um: Number = Field(description="tolerance or run-out that its standard deviation stands for")
-    by_formula_arcsec: Number
-    first_principles_arcsec: Number
-    arcsec_per_um: Number = Field(description="first principles: turn of a disc whose best pin alone touches")
+    tolerance_um: Annotated[Number, Shows("tolerance [µm]", ".4g")] = Field(
+        description="tolerance or run-out that its standard deviation stands for"
+    )
+    by_formula_arcsec: Annotated[Number, Shows(PAPER, ".2f")]
+    first_principles_arcsec: Annotated[Number, Shows(FIRST_PRINCIPLES, ".2f")]
+    arcsec_per_um: Annotated[Number, Shows("per µm [″]", ".4f")] = Field(
+        description="first principles: turn of a disc whose best pin alone touches"
+    )
 
 
 class StageTotals(Section):

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
+from tol3d.report.page import Heading
 from tol3d.runs.summary.measure import MeasureSummary, SharesBy, Unexplained
 from tol3d.runs.summary.values import Section
 
@@ -47,6 +48,12 @@ class Column:
     def value(self, key: str) -> float | None:
         """A value by its key in summary.json, or None where this column has none."""
         return None if self.values is None else self.values.value(key)
+
+
+def heading_by(method: str, text: str) -> Heading:
+    """Head of values by a method: bold of the 3D simulation, green of what somebody published."""
+    ours = method in get_args(Method) and method != "published"
+    return Heading(text, "bold" if method == "geometric" else "" if ours else "green")
 
 
 def columns_of(measure: MeasureSummary) -> list[Column]:

@@ -1,56 +1,102 @@
-"""Tables of sections by the columns that their fields declare: a new field with a column is in all of them."""
+"""Tables by the columns that fields declare: a new field with a column is in all of them."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
-from tol3d.report.number import NOTHING, ppm_text, share_text, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, degrees_text, ppm_text, share_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Row, Shown, Table
-from tol3d.runs.summary.shows import Form, Shows, shown_by
-from tol3d.runs.summary.values import Section
+from tol3d.runs.summary.shows import Shows, columns_of, shown_by
+
+LEFT: Final = frozenset(("words", "unit sign"))
+"""Forms of cells that stand left and wrap."""
+PER: Final = {"": 1.0, "mm": 1.0, "µm": 1e3, "°": 180 / math.pi, "deg": 180 / math.pi, "%": 100.0, "10⁻⁶/K": 1e6}
+"""How much of a unit is 1 mm, 1 rad or the whole."""
 
 
-def declared_table(corner: str, rows: Iterable[tuple[str, Section]], unit: str = "") -> Table:
-    """A row a section, a column a field that declares one; of no section an empty table.
+def declared_table(corner: str, rows: Iterable[tuple[str | Row, Any]], unit: str = "") -> Table:
+    """A row an object, a column a field that declares one; of no object an empty table.
 
     Args:
         corner: head of the labels.
-        rows: sections of one kind, with their labels.
-        unit: of the measure that they are of; default: each section's own.
+        rows: objects with their labels, or with rows that have no cells yet. A field of objects of several kinds is
+            left out of those that lack it.
+        unit: of the measure that they are of; default: each object's own.
     """
-    told = list(rows)
-    columns = {
-        name: shows
-        for name, shows in (shown_by(type(told[0][1])) if told else {}).items()
-        if not shows.seldom or any(getattr(own, name) is not None for _, own in told)
-    }
-    cells = ([cell(own, name, shows, unit) for name, shows in columns.items()] for _, own in told)
-    return Table(
-        corner, headings(columns, unit), [Row(label, own) for (label, _), own in zip(told, cells, strict=True)]
-    )
+    told = [(own if isinstance(own, Row) else Row(own, ()), of) for own, of in rows]
+    columns = [*_columns([of for _, of in told])]
+    filled = [replace(row, cells=tuple(own.cell(of, unit) for own in columns)) for row, of in told]
+    return Table(corner, [own.heading(unit) for own in columns], filled)
 
 
-def headings(columns: Mapping[str, Shows], unit: str = "") -> list[Heading]:
-    """Heads of columns; those of a table of one measure have its unit."""
-    return [
-        Heading(shows.heading.format(unit=unit_sign(unit)), words=shows.words, optional=shows.optional)
-        for shows in columns.values()
-    ]
+def side_by_side(corner: str, columns: Iterable[tuple[str | Heading, Any]], unit: str = "") -> Table:
+    """A column an object, a row a field that declares one; see `declared_table`."""
+    told = [(own if isinstance(own, Heading) else Heading(own), of) for own, of in columns]
+    rows = []
+    for own in _columns([of for _, of in told]):
+        heading = own.heading(unit)
+        rows.append(Row(heading.text, tuple(own.cell(of, unit) for _, of in told), heading.style))
+    return Table(corner, [heading for heading, _ in told], rows)
 
 
-def cells_of(own: Section, unit: str = "") -> list[Shown | str]:
-    """All declared cells of a section."""
-    return [cell(own, name, shows, unit) for name, shows in shown_by(type(own)).items()]
+@dataclass(frozen=True)
+class _Column:
+    """A declared column of some objects: of a field, or of a key of a field that is a mapping."""
+
+    name: str
+    shows: Shows
+    key: str | Heading | None = None
+
+    def heading(self, unit: str) -> Heading:
+        if isinstance(self.key, Heading):
+            return self.key
+        own = self.shows
+        text = own.heading.format(unit=unit_sign(unit), key=self.key) + (f" [{own.unit}]" if own.unit else "")
+        style = "bold" if own.decides else "green" if own.given else ""
+        return Heading(text, style, own.form in LEFT, own.optional, own.plain, own.below, own.meaning)
+
+    def value(self, of: Any) -> Any:
+        value = getattr(of, self.name) if self.name in columns_of(of) else None
+        return value if self.key is None or value is None else value.get(self.key)
+
+    def cell(self, of: Any, unit: str) -> Shown | str:
+        value, own = self.value(of), self.shows
+        return formed(value * PER[own.unit] if _is_number(value) else value, own.form, unit or getattr(of, "unit", ""))
 
 
-def cell(own: Section, name: str, shows: Shows, unit: str = "") -> Shown | str:
-    """A cell of a section: the text of its value, with the number that it shows."""
-    return formed(getattr(own, name), shows.form, unit or getattr(own, "unit", ""))
+def _columns(objects: list[Any]) -> Iterator[_Column]:
+    for name, shows in {name: shows for own in objects for name, shows in columns_of(own).items()}.items():
+        values = [getattr(own, name) for own in objects if name in columns_of(own)]
+        mappings = [own for own in values if isinstance(own, Mapping)]
+        if mappings:
+            yield from (_Column(name, shows, key) for key in dict.fromkeys(key for own in mappings for key in own))
+        elif not shows.seldom or any(own is not None for own in values):
+            yield _Column(name, shows)
 
 
-def formed(value: Any, form: Form, unit: str = "") -> Shown | str:
-    """A value as a cell of that form; a dash for one that is not known."""
-    return Shown(NOTHING, None) if value is None else FORMS[form](value, unit)
+def headings(of: type, unit: str = "") -> list[Heading]:
+    """Heads of the columns that a class declares; those of a table of one measure have its unit."""
+    return [_Column(name, shows).heading(unit) for name, shows in shown_by(of).items()]
+
+
+def cells_of(own: Any, unit: str = "") -> list[Shown | str]:
+    """All declared cells of an object."""
+    return [_Column(name, shows).cell(own, unit) for name, shows in columns_of(own).items()]
+
+
+def formed(value: Any, form: str, unit: str = "") -> Shown | str:
+    """A value as a cell of that form; a dash for one that is not known, a text as it is."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return NOTHING if form in LEFT else Shown(NOTHING, None)
+    if isinstance(value, str):
+        return unit_sign(value) if form == "unit sign" else value
+    return FORMS[form](value, unit) if form in FORMS else Shown(unsigned_zero(f"{value:{form}}"), value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, float) and math.isfinite(value)
 
 
 def unit_sign(unit: str) -> str:
@@ -83,18 +129,14 @@ def _digits(value: float) -> str:
     return "0" if digits > 9 else f"{value:.{digits}f}"
 
 
-FORMS: Final[Mapping[Form, Callable[[Any, str], Shown | str]]] = {
+FORMS: Final[Mapping[str, Callable[[Any, str], Shown | str]]] = {
     "value": lambda value, unit: Shown(value_text(value, unit), value),
+    **{own: _number(partial(value_text, unit=own)) for own in ("um", "mm", "arcmin")},
     "ppm": _number(ppm_text),
     "ppm range": _range(ppm_text, " … "),
     "share": _number(share_text),
+    "degrees": lambda value, unit: Shown(degrees_text(value), math.degrees(value)),
     "share range": _range(share_text, " to "),
-    "ppk": _number(lambda value: unsigned_zero(f"{value:.2f}")),
     "index": _index,
     "digits": _number(_digits),
-    "three": _number(lambda value: f"{value:.3f}"),
-    "short": _number(lambda value: f"{value:.4g}"),
-    "words": lambda value, unit: str(value),
-    "unit sign": lambda value, unit: unit_sign(value),
-    "count": _number(lambda value: f"{value}"),
 }

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import replace
 
 from tol3d.report.column import (
     NOT_ATTRIBUTED,
@@ -11,6 +10,7 @@ from tol3d.report.column import (
     Method,
     columns_of,
     contributor_columns,
+    heading_by,
     ranked_contributors,
     seated_text,
     unexplained_of,
@@ -24,7 +24,7 @@ from tol3d.report.number import (
     unsigned_zero,
     value_cell,
 )
-from tol3d.report.page import Heading, Row, Shown, Table
+from tol3d.report.page import Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
 from tol3d.report.published import curve_columns, published_cell, published_counts, published_rows
 from tol3d.report.shown_unit import Spread
@@ -55,11 +55,6 @@ CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the co
 SHARE_HEADINGS: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D simulation"}
 
 
-def _headings(columns: Sequence[Column]) -> list[Heading]:
-    styles = {"geometric": "bold", "published": "green"}
-    return [Heading(column.heading, styles.get(column.method, "")) for column in columns]
-
-
 def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
     """Statistics of one scalar measure, one column a method, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
@@ -83,7 +78,7 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
     ]
     rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
     rows += published_rows(measure, columns, (*ROWS, *limit_rows(measure), *INDICES))
-    return Table(UNIT_HEADINGS[unit], _headings(columns), rows)
+    return Table(UNIT_HEADINGS[unit], [heading_by(own.method, own.heading) for own in columns], rows)
 
 
 def _statistic(measure: MeasureSummary, columns: Sequence[Column], key: str, label: str) -> Row:
@@ -174,13 +169,13 @@ def contributors_table(measure: MeasureSummary) -> Table:
     if left := not_attributed(measure):
         row = Row(NOT_ATTRIBUTED, [percent_cell(rest) for rest in left], "dim", unit="%")
         rows = [row, *rows] if measure.shares_by else [*rows, row]
-    return Table("share [%]", _headings([_headed(measure, column) for column in shares]), rows)
+    return Table("share [%]", [heading_by(own.method, _share_heading(measure, own)) for own in shares], rows)
 
 
-def _headed(measure: MeasureSummary, column: Column) -> Column:
-    """A column of shares with its heading, which says by what they are if not by regression."""
+def _share_heading(measure: MeasureSummary, column: Column) -> str:
+    """Heading of a column of shares, which says by what they are if not by regression."""
     heading, unexplained = SHARE_HEADINGS.get(column.method, column.heading), unexplained_of(measure, column)
-    return replace(column, heading=f"{heading}, {SHARES_BY[unexplained.by]}" if unexplained else heading)
+    return f"{heading}, {SHARES_BY[unexplained.by]}" if unexplained else heading
 
 
 def _share(measure: MeasureSummary, column: Column, name: str, error: float | None) -> Shown:
@@ -230,8 +225,6 @@ def curve_table(measure: MeasureSummary, curve: CurveMethods) -> Table:
     leading, own = [*curve.by_method.items()][-1]
     columns += [(f"{words[leading]} smallest", leading, own.min), (f"{words[leading]} largest", leading, own.max)]
     columns += [(text, "published", values) for text, values in curve_columns(measure)]
-    styles = {"geometric": "bold", "published": "green"}
-    headings = [Heading(text, styles.get(method, "")) for text, method, _ in columns]
     positions = [unsigned_zero(f"{position:.1f}") for position in measure.position_deg or ()]
     longest = max(map(len, positions), default=0)
     rows = [
@@ -242,7 +235,9 @@ def curve_table(measure: MeasureSummary, curve: CurveMethods) -> Table:
         )
         for index in shown_positions(measure)
     ]
-    return Table(f"{measure.position_word} at [°]".lstrip(), headings, rows)
+    return Table(
+        f"{measure.position_word} at [°]".lstrip(), [heading_by(method, text) for text, method, _ in columns], rows
+    )
 
 
 def shown_positions(measure: MeasureSummary) -> range:

@@ -35,7 +35,8 @@ class Heading:
     """Head of a column; words stand left and wrap, numbers right and whole.
 
     In a narrow terminal a column that may stand `below` becomes a line below the table for each row that has a cell
-    there, and an optional one is left out. Numbers below a plain one have no unit, whatever their rows have.
+    there, and an optional one is left out. Numbers below a plain one have no unit, whatever their rows have. Pages show
+    its meaning, a sentence, where the pointer rests on it.
     """
 
     text: str
@@ -44,6 +45,7 @@ class Heading:
     optional: bool = False
     plain: bool = False
     below: bool = False
+    meaning: str = ""
 
 
 @dataclass(frozen=True)

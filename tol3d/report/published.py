@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from tol3d.report.column import Column
+from tol3d.report.column import Column, heading_by
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
@@ -15,7 +15,7 @@ from tol3d.report.number import (
     share_text,
     value_text,
 )
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, title
+from tol3d.report.page import PageItem, Row, Shown, Table, note, title
 from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.joint import Joint
 from tol3d.runs.summary.measure import MeasureSummary
@@ -188,8 +188,7 @@ def published_blocks(run: RunSummary) -> list[PageItem]:
         return []
     units = {place: unit for own in columns.values() for place, unit in _units(own, ())}
     methods: list[Method] = [*dict.fromkeys(("analytic", run.best_method))]
-    headings = [Heading(HEADINGS[method], "bold" if method == "geometric" else "") for method in methods]
-    headings += [Heading(name, "green") for name in given]
+    headings = [heading_by(own, HEADINGS[own]) for own in methods] + [heading_by("published", own) for own in given]
     rows = []
     for place in places:
         unit = units.get(place, "")

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from tol3d.report.column import heading_by
 from tol3d.report.number import UNIT_SIGNS, value_cell
-from tol3d.report.page import Heading, PageItem, Row, Table, note
+from tol3d.report.page import PageItem, Row, Table, note
 from tol3d.report.published import spectrum_columns
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.sample import CurveMethods, SpectrumSample
@@ -27,21 +28,20 @@ def spectrum_blocks(measure: MeasureSummary, curve: CurveMethods) -> Iterator[Pa
 def _table(measure: MeasureSummary, found: Mapping[Method, SpectrumSample]) -> Table:
     words = {"analytic": "analytic", "geometric": "3D"}
     leading = [*found.values()][-1]
-    columns = [(f"{words[key]} {word}", key, values) for key, own in found.items() for word, values in _values(own)]
-    others = spectrum_columns(measure, leading.order)
-    headings = [Heading(text, "bold" if method == "geometric" else "") for text, method, _ in columns]
-    headings += [Heading(text, "green") for text, _ in others]
-    every = [*(values for _, _, values in columns), *(values for _, values in others)]
+    columns = [
+        (heading_by(key, f"{words[key]} {word}"), values) for key, own in found.items() for word, values in _values(own)
+    ]
+    columns += [(heading_by("published", text), values) for text, values in spectrum_columns(measure, leading.order)]
     rows = [
         Row(
             f"{leading.order[k]:g}",
-            [value_cell(values[k], measure.unit) for values in every],
+            [value_cell(values[k], measure.unit) for _, values in columns],
             unit=measure.unit,
         )
         for k in largest_orders(leading)
     ]
     unit = "" if measure.unit == "arcmin" else f" [{UNIT_SIGNS[measure.unit]}]"  # an angle's cells have their signs
-    return Table(f"amplitude{unit} of order", headings, rows)
+    return Table(f"amplitude{unit} of order", [heading for heading, _ in columns], rows)
 
 
 def _values(own: SpectrumSample) -> Iterator[tuple[str, list[float | None]]]:

@@ -3,7 +3,8 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,16 +13,18 @@ from tol3d.assembly.model import Assembly, Axis, Cone, Feature, Plane, Point, Ro
 from tol3d.assembly.model.dimension import longer
 from tol3d.assembly.placing.asked import touched
 from tol3d.assembly.placing.holding import Freedoms, HeldFreedoms, held_by, held_by_datums, in_words
-from tol3d.assembly.placing.placer import RockingPlacer
+from tol3d.assembly.placing.placer import Placer, RockingPlacer
 from tol3d.assembly.placing.plan import planned
 from tol3d.assembly.presenting.parts_tree import parts_tree
 from tol3d.assembly.system import AssemblySystem
 from tol3d.errors import InputError
 from tol3d.import_path import named as at_path
+from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.page import PageItem, Shown, note, titled
 from tol3d.report.presenter import Map
 from tol3d.report.system_check import MIDDLE, system_blocks
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.solids import BuiltShape
 from tol3d.solids.display_mesh import bounding_box
 from tol3d.solids.kept_shape import KeptShape
@@ -31,31 +34,45 @@ from tol3d.study.simulation import Simulation
 SIGNS: Final = "z: a shift along z; turns z: a turn about z; each holds of what those above it leave"
 
 
+class DatumFrameRow(RowOf[Freedoms]):
+    """The freedoms that a datum frame takes."""
+
+    takes = Computed(
+        Shows("each takes", "words"),
+        lambda own: "; ".join(f"{each.words}: {in_words(each)}" for each in own.of.taken),
+    )
+    left = Computed(Shows("stay as in the part", "words"), lambda own: _left(own.of))
+
+
 def datum_blocks(assembly: Assembly) -> Sequence[PageItem]:
     """Which freedoms datums take."""
-    rows: list[Row] = []
-    for frame in assembly.datum_frames.values():
-        found = held_by_datums(assembly, frame)
-        datums = [f"{own.words}: {in_words(own)}" for own in found.taken]
-        rows.append(Row(f"{frame.part}: {', '.join(frame.name.split('|')[1:])}", ("; ".join(datums), _left(found))))
-    words = [Heading(word, words=True) for word in ("each takes", "stay as in the part")]
-    return titled("datum frames, along the axes of their part", Table("", words, rows)) if rows else ()
+    rows = [
+        (f"{own.part}: {', '.join(own.name.split('|')[1:])}", DatumFrameRow(held_by_datums(assembly, own)))
+        for own in assembly.datum_frames.values()
+    ]
+    return titled("datum frames, along the axes of their part", declared_table("", rows)) if rows else ()
+
+
+@dataclass(frozen=True)
+class HeldRow:
+    """Freedoms of a move, and what holds them."""
+
+    freedoms: Annotated[str, Shows("freedoms", "words")]
+    held_by: Annotated[str, Shows("held by", "words")]
 
 
 def freedom_blocks(assembly: Assembly) -> Sequence[PageItem]:
     """Freedoms held by moves, and those left."""
-    rows: list[Row] = []
+    rows: list[tuple[str, HeldRow]] = []
     for move, plan in zip(assembly.moves, planned(assembly).moves, strict=True):
         found = held_by(assembly, plan) if len(move.parts) == 1 else None
         if found is None or not found.taken:
-            rows += [Row(move.name, own) for own in move.holds]
+            rows += [(move.name, HeldRow(*own)) for own in move.holds]
             continue
-        rows += [Row(move.name, (in_words(own), _by(own))) for own in found.taken]
+        rows += [(move.name, HeldRow(in_words(own), _by(own))) for own in found.taken]
         if found.left.count:
-            rows.append(Row(move.name, (_left(found), "left as drawn")))
-    words = [Heading(word, words=True) for word in ("freedoms", "held by")]
-    table = Table("", words, rows)
-    return (*titled("freedoms that moves hold, along the axes of the world", table), note(SIGNS))
+            rows.append((move.name, HeldRow(_left(found), "left as drawn")))
+    return (*titled("freedoms that moves hold, along the axes of the world", declared_table("", rows)), note(SIGNS))
 
 
 def _by(taken: HeldFreedoms) -> str:
@@ -67,7 +84,6 @@ def _left(freedoms: Freedoms) -> str:
     return f"{in_words(freedoms.left)}{f' {freedoms.where}' if freedoms.where else ''}"
 
 
-PLACE: Final = "at [mm]"
 MANY_ALIKE: Final = 3
 """Largest number of zones of one law that share a row."""
 
@@ -100,48 +116,57 @@ def workspace(simulation: Simulation, measure: str | None, activity: Callable[[s
     raise InputError("expected a scene with a linkage (kind: close_loop), got none")
 
 
+@dataclass(frozen=True)
+class FeatureRow:
+    """A feature of a part, nominally in the world."""
+
+    system: AssemblySystem
+    feature: Feature
+    shape = Computed(Shows("shape", "words"), lambda own: _shape(own.feature) + _facing(own.system, own.feature))
+    at = Computed(Shows("at [mm]"), lambda own: _place(own.system, own.feature))
+    frame = Computed(Shows("lies in the frame of", "words"), lambda own: _frame(own.feature))
+    face = Computed(Shows("face", "words", seldom=True), lambda own: own.feature.face or None)
+
+
+class MoveRow(RowOf[Placer]):
+    """A move, and the part that it places."""
+
+    kind = Computed(Shows("kind", "words"), lambda own: own.of.move.acts.words)
+    part = Computed(Shows("part", "words"), lambda own: ", ".join(own.of.move.parts or own.of.move.joined[:1]))
+    by = Computed(Shows("by", "words"), lambda own: own.of.words)
+
+
 def drawing_blocks(system: AssemblySystem) -> Sequence[PageItem]:
     """Features and moves."""
     named = [own for part in system.assembly.parts for own in part.features if own.is_named]
-    picked = any(own.face for own in named)
-    rows = [
-        Row(
-            own.name,
-            (
-                _shape(own) + _facing(system, own),
-                _place(system, own),
-                _frame(own),
-                *((own.face or "–",) if picked else ()),
-            ),
-        )
-        for own in named
-    ]
-    columns = ("shape", PLACE, "lies in the frame of", *(("face",) if picked else ()))
-    words = [Heading(word, words=word != PLACE) for word in columns]
-    features = titled("features, nominally in the world", Table("", words, rows))
+    rows = [(own.name, FeatureRow(system, own)) for own in named]
+    features = titled("features, nominally in the world", declared_table("", rows))
     plans = planned(system.assembly).moves
-    moves = [
-        Row(own.move.name, (own.move.acts.words, ", ".join(own.move.parts or own.move.joined[:1]), own.words))
-        for own in plans
-    ]
-    steps = titled("moves", Table("", [Heading(word, words=True) for word in ("kind", "part", "by")], moves))
+    steps = titled("moves", declared_table("", [(own.move.name, MoveRow(own)) for own in plans]))
     frames, freedoms = datum_blocks(system.assembly), freedom_blocks(system.assembly)
     presented = ((at_path(path), own) for own in plans if (path := own.move.acts.presents))
     others = (item for presents, own in presented for item in presents(own, system.assembly))
     return (*_solids(system), *features, *_dimensions(system), *frames, *steps, *freedoms, *others)
 
 
+@dataclass(frozen=True)
+class DimensionRow:
+    """The feature that a dimension moves."""
+
+    feature: Annotated[str, Shows("of", "words")]
+    moves: Annotated[str, Shows("a positive deviation moves it", "words")]
+
+
 def _dimensions(system: AssemblySystem) -> Sequence[PageItem]:
     """Dimensions, and the effect of a positive deviation on each."""
     named = {own.name for own in system.contributors if own.kind == "plus_minus"}
     rows = [
-        Row(by.contributor, (own.name, _positive(system, own, by.matrix[:, 0])))
+        (by.contributor, DimensionRow(own.name, _positive(system, own, by.matrix[:, 0])))
         for own in system.assembly.features.values()
         for by in own.moved_by
         if own.is_named and by.contributor in named
     ]
-    columns = [Heading("of", words=True), Heading("a positive deviation moves it", words=True)]
-    return titled("dimensions, along the axes of their part", Table("", columns, rows)) if rows else ()
+    return titled("dimensions, along the axes of their part", declared_table("", rows)) if rows else ()
 
 
 def _positive(system: AssemblySystem, feature: Feature, moved: NDArray[np.float64]) -> str:
@@ -170,31 +195,50 @@ def _builder_words(shape: BuiltShape) -> str:
     return "".join(f" {own.lower()}" if own.isupper() else own for own in type(shape).__name__).strip()
 
 
+@dataclass(frozen=True)
+class SolidRow:
+    """The solid of a part, and the ends of the box around it [mm]."""
+
+    solid: BuiltShape
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    builder = Computed(Shows("builder", "words"), lambda own: WORDS.get(type(own.solid)) or _builder_words(own.solid))
+    size = Computed(Shows("size x × y × z [mm]"), lambda own: _listed(own.high - own.low, " × "))
+    start = Computed(Shows("from [mm]"), lambda own: _listed(own.low, ", "))
+    end = Computed(Shows("to [mm]"), lambda own: _listed(own.high, ", "))
+
+
 def _solids(system: AssemblySystem) -> Sequence[PageItem]:
     """Solids of parts, by builder, with their sizes."""
-    rows = []
-    for part in system.assembly.parts:
-        if part.solid is not None:
-            low, high = bounding_box(part.solid)
-            builder = WORDS.get(type(part.solid)) or _builder_words(part.solid)
-            rows.append(Row(part.name, (builder, _listed(high - low, " × "), _listed(low, ", "), _listed(high, ", "))))
-    columns = [Heading("builder", words=True), *map(Heading, ("size x × y × z [mm]", "from [mm]", "to [mm]"))]
-    return titled("solids, in the frames of their parts", Table("", columns, rows)) if rows else ()
+    solids = {own.name: own.solid for own in system.assembly.parts if own.solid is not None}
+    rows = [(name, SolidRow(own, *bounding_box(own))) for name, own in solids.items()]
+    return titled("solids, in the frames of their parts", declared_table("", rows)) if rows else ()
 
 
 def _listed(numbers: NDArray[np.float64], between: str) -> str:
     return between.join(f"{number:g}" for number in numbers.round(4) + 0.0)
 
 
+@dataclass(frozen=True)
+class ContactRow:
+    """A contact of a part at rest, and the least and most that it carries."""
+
+    moving: Annotated[str, Shows("of the part", "words")]
+    target: Annotated[str, Shows("on", "words")]
+    carries: Annotated[str, Shows("carries of the force", "words")]
+
+
 def rest_blocks(plan: RockingPlacer, assembly: Assembly) -> Sequence[PageItem]:
     """Range of the force carried by each contact of a part at rest."""
     least, most = plan.carries()
     rows = [
-        Row(str(k), (touched(assembly, moving), touched(assembly, target), f"{100 * low:.0f} to {100 * high:.0f} %"))
+        (
+            str(k),
+            ContactRow(touched(assembly, moving), touched(assembly, target), f"{100 * low:.0f} to {100 * high:.0f} %"),
+        )
         for k, ((moving, target), low, high) in enumerate(zip(plan.contacts, least, most, strict=True), 1)
     ]
-    words = [Heading(word, words=True) for word in ("of the part", "on", "carries of the force")]
-    return titled(f"contacts of {plan.move.name}, one-sided", Table("", words, rows))
+    return titled(f"contacts of {plan.move.name}, one-sided", declared_table("", rows))
 
 
 def _shape(feature: Feature) -> str:
@@ -245,23 +289,30 @@ def _frame(feature: Feature) -> str:
     return "its part" if not feature.parent else feature.parent.partition("|")[2].replace("|", ", ")
 
 
+@dataclass(frozen=True)
+class LawRow:
+    """The law of a zone or of several, and the sigmas of their middles [µm]."""
+
+    law: Annotated[str, Shows("law", "words")]
+    sigmas: Sequence[float]
+    sigma = Computed(Shows("sigma [µm]", meaning=MIDDLE), lambda own: _sigma_words(own.sigmas))
+
+
 def law_blocks(laws: Mapping[str, str], sigmas: Mapping[str, float]) -> Sequence[PageItem]:
     """The laws of tolerances and sigmas of middles [um], by name; the commonest law in one row where it is of many."""
     commonest, count = Counter(laws.values()).most_common(1)[0]
     together = count >= MANY_ALIKE
     alike = [name for name, words in laws.items() if together and words == commonest]
-    rows = [Row(name, (words, _sigma_words([name], sigmas))) for name, words in laws.items() if name not in alike]
+    groups = {name: [name] for name in laws if name not in alike}
     if together:
-        name = f"the other {count}" if rows else f"all {count}"
-        rows.append(Row(name, (commonest, _sigma_words(alike, sigmas))))
-    table = Table("", [Heading("law", words=True), Heading("sigma [µm]")], rows)
-    return [*titled("laws of zones", table), note(MIDDLE)]
+        groups[f"the other {count}" if groups else f"all {count}"] = alike
+    rows = [(name, LawRow(laws[of[0]], [sigmas[own] for own in of if own in sigmas])) for name, of in groups.items()]
+    return [*titled("laws of zones", declared_table("", rows)), note(MIDDLE)]
 
 
-def _sigma_words(names: Sequence[str], sigmas: Mapping[str, float]) -> str:
+def _sigma_words(sigmas: Sequence[float]) -> str | Shown:
     """The sigma of one zone, or the least and largest of several."""
-    known = [sigmas[name] for name in names if name in sigmas]
-    if not known:
+    if not sigmas:
         return NOTHING
-    least, most = (f"{own:.3g}" for own in (min(known), max(known)))
-    return least if least == most else f"{least} … {most}"
+    least, most = (f"{own:.3g}" for own in (min(sigmas), max(sigmas)))
+    return Shown(least, sigmas[0]) if least == most else f"{least} … {most}"

@@ -1,17 +1,17 @@
 """Cycloid stages by formula as tables: the published formula (reconstructed) and first principles."""
 
-from collections.abc import Mapping, Sequence
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
 
-from tol3d.cycloid.summary_types import CycloidOfRun, CycloidStageSummary
+from tol3d.cycloid.summary_types import FIRST_PRINCIPLES, PAPER, CycloidOfRun, CycloidStageSummary
 from tol3d.gearing.summary.types import TrainsOfRun
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, note, titled
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Shows
 
-PAPER: Final = "paper (reconstructed) [″]"
-FIRST_PRINCIPLES: Final = "first principles [″]"
 IN_A_TRAIN: Final = "rv_reducer"
-TERM_HEADS: Final = ("tolerance [µm]", PAPER, FIRST_PRINCIPLES, "per µm [″]")
 NEGATIVE: Final = (
     "negative where pins press on both sides of their lobes at once: of rigid parts the turn by which lobes and pins "
     "would have to give way, a preload and no play"
@@ -55,20 +55,8 @@ def stage_blocks(stages: Mapping[str, CycloidStageSummary]) -> Sequence[PageItem
 
 
 def _blocks(name: str, own: CycloidStageSummary) -> Sequence[PageItem]:
-    rows = [
-        Row(
-            source,
-            [
-                Shown(f"{each.tolerance_um:.4g}", each.tolerance_um),
-                _seconds(each.by_formula_arcsec, 2),
-                _seconds(each.first_principles_arcsec, 2),
-                _seconds(each.arcsec_per_um, 4),
-            ],
-        )
-        for source, each in own.sources.items()
-    ]
-    terms = Table("source", [Heading(head) for head in TERM_HEADS], rows)
-    totals = Table("output", [Heading(PAPER), Heading(FIRST_PRINCIPLES)], _totals(own))
+    terms = declared_table("source", own.sources.items())
+    totals = declared_table("output", _totals(own))
     return [
         *titled(f"{name}: transmission error by formula", terms),
         note(WHAT),
@@ -77,18 +65,23 @@ def _blocks(name: str, own: CycloidStageSummary) -> Sequence[PageItem]:
     ]
 
 
-def _totals(own: CycloidStageSummary) -> list[Row]:
+@dataclass(frozen=True)
+class TotalRow:
+    """A sum of terms by the published formula and by first principles ["]."""
+
+    paper: Annotated[float | str, Shows(PAPER, ".3f")]
+    first_principles: Annotated[float, Shows(FIRST_PRINCIPLES, ".3f")]
+
+
+def _totals(own: CycloidStageSummary) -> Iterator[tuple[str, TotalRow]]:
     paper, ours = own.by_formula, own.first_principles
-    lines: list[tuple[str, float | None, float]] = [
-        ("cycloid stage, ±3σ", paper.cycloid_arcsec, ours.cycloid_arcsec),
-        ("  99.73 % half-range of its law", paper.cycloid_half_range_arcsec, ours.cycloid_arcsec),
-        ("carrier, ±3σ", paper.carrier_arcsec, ours.carrier_arcsec),
-        ("both added, as published", paper.added_arcsec, ours.added_arcsec),
-        ("both, root sum square", paper.root_sum_square_arcsec, ours.root_sum_square_arcsec),
-    ]
+    yield "cycloid stage, ±3σ", TotalRow(paper.cycloid_arcsec, ours.cycloid_arcsec)
+    yield "  99.73 % half-range of its law", TotalRow(paper.cycloid_half_range_arcsec, ours.cycloid_arcsec)
+    yield "carrier, ±3σ", TotalRow(paper.carrier_arcsec, ours.carrier_arcsec)
+    yield "both added, as published", TotalRow(paper.added_arcsec, ours.added_arcsec)
+    yield "both, root sum square", TotalRow(paper.root_sum_square_arcsec, ours.root_sum_square_arcsec)
     if own.sun_held is not None:
-        lines.append((f"  times {own.sun_held:.5f}, sun held", None, own.sun_held * ours.root_sum_square_arcsec))
-    return [Row(label, [_seconds(theirs, 3), _seconds(first, 3)]) for label, theirs, first in lines]
+        yield f"  times {own.sun_held:.5f}, sun held", TotalRow("", own.sun_held * ours.root_sum_square_arcsec)
 
 
 def _notes(own: CycloidStageSummary) -> list[str]:
@@ -97,7 +90,3 @@ def _notes(own: CycloidStageSummary) -> list[str]:
         f"{own.by_formula.cycloid_coverage_percent:.2f} % of the cycloid stage"
     )
     return [law, *([f"not in the formula: {', '.join(own.left_out)}"] if own.left_out else [])]
-
-
-def _seconds(value: float | None, digits: int) -> str:
-    return "" if value is None else Shown(f"{value:.{digits}f}", value)

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.cycloid.model.limits import largest_pin_radius
 from tol3d.cycloid.presenting.formulas import stage_blocks
@@ -13,8 +14,10 @@ from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.system import RVSystem
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
-from tol3d.report.page import Heading, PageItem, Row, Table, line
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, Table, line
 from tol3d.report.system_check import system_blocks
+from tol3d.runs.summary.shows import Computed, Shows
 from tol3d.study.simulation import Simulation
 from tol3d.system.contributor import Contributor
 
@@ -70,6 +73,15 @@ def _words(own: RVSet) -> list[str]:
     ]
 
 
+@dataclass(frozen=True)
+class LeverRow:
+    """The turn of a disc by 1 µm, and how much of it is 1 at the output."""
+
+    disc: Annotated[float, Shows("at the disc [″]", ".4f")]
+    held: float
+    output = Computed(Shows("at the output [″]", ".4f"), lambda own: own.disc / own.held)
+
+
 def _levers(own: RVSet) -> Table:
     radius, k = own.profile.pitch_radius, own.profile.shortening
     rows = {
@@ -78,10 +90,6 @@ def _levers(own: RVSet) -> Table:
         "pin round, lobe pitch": k,
         "pin radius, lobe profile": 1.0,
     }
-    per = {name: ARC_SECONDS * share / radius for name, share in rows.items()}
     held = 1 + own.rolling / own.profile.lobes
-    return Table(
-        "what 1 µm does at the best pin",
-        [Heading("at the disc [″]"), Heading("at the output [″]")],
-        [Row(name, [f"{each:.4f}", f"{each / held:.4f}"]) for name, each in per.items()],
-    )
+    levers = [(name, LeverRow(ARC_SECONDS * share / radius, held)) for name, share in rows.items()]
+    return declared_table("what 1 µm does at the best pin", levers)

@@ -1,15 +1,40 @@
 """Coefficients of a scene's contributors in its measures as tables, one for all measures that have the same."""
 
+import math
 from collections.abc import Sequence
 
 from tol3d.gearing.model import Backlash, Measure, Model
-from tol3d.gearing.slopes.coefficients import DISAGREES, ONE_SIDED, Coefficient, coefficients_by_value, of_one_value
-from tol3d.report.number import degrees_text, percent_cell
-from tol3d.report.page import Heading, PageItem, Row, Table, line, titled
+from tol3d.gearing.slopes.coefficients import (
+    DISAGREES,
+    ONE_SIDED,
+    Coefficient,
+    Slopes,
+    coefficients_by_value,
+    of_one_value,
+)
+from tol3d.report.declared import declared_table
+from tol3d.report.number import degrees_text
+from tol3d.report.page import PageItem, Shown, line, titled
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 
 OTHER = "≠"
 AT_ONE_POSITION = "of the value at a random position; run gives those of what is taken of all positions"
 NO_SUM = "the tighter load path counts, which is no sum; run gives the shares of its trials"
+
+
+class CoefficientRow(RowOf[Coefficient]):
+    """A coefficient by both methods."""
+
+    unit_sign = Computed(Shows("unit"), lambda own: own.of.unit)
+    stack_up = Computed(Shows("stack-up"), lambda own: _cell(own.of.stack_up))
+    geometry = Computed(Shows("3D"), lambda own: _cell(own.of.geometry, f"{OTHER} " if own.of.disagrees else ""))
+    share = Computed(Shows("share [%]", ".1f"), lambda own: own.of.percent)
+
+
+def _cell(own: Slopes, before: str = "") -> str:
+    """Slopes as a cell, with their number where they are one."""
+    one = not math.isnan(own.below + own.above) and not own.bends
+    return Shown(f"{before}{own}", (own.below + own.above) / 2) if one else f"{before}{own}"
 
 
 def coefficients_tables(model: Model) -> list[PageItem]:
@@ -17,7 +42,6 @@ def coefficients_tables(model: Model) -> list[PageItem]:
     names: dict[Measure, list[str]] = {}
     for measure in model.measures:
         names.setdefault(of_one_value(measure), []).append(measure.name)
-    headings = [Heading(word) for word in ("unit", "stack-up", "3D", "share [%]")]
     found = coefficients_by_value(model)
     tables = [
         block
@@ -25,18 +49,13 @@ def coefficients_tables(model: Model) -> list[PageItem]:
         if rows
         for block in titled(
             f"{', '.join(names[measure])}: change by each deviation, {_where(model, measure)}",
-            Table("", headings, [_row(own) for own in rows]),
+            declared_table("", [(own.name, CoefficientRow(own)) for own in rows]),
         )
     ]
     formless = [name for measure, of in names.items() if not measure.kind.adds_up for name in of]
     shown = {name for measure, of in names.items() if found[measure] and measure.kind.adds_up for name in of}
     elsewhere = [own.name for own in model.measures if own.take != "value" and own.name in shown]
     return [*tables, *(line(f" {note}", "dim") for note in _notes(model, formless, elsewhere))]
-
-
-def _row(own: Coefficient) -> Row:
-    geometry = f"{OTHER} {own.geometry}" if own.disagrees else str(own.geometry)
-    return Row(own.name, (own.unit, str(own.stack_up), geometry, percent_cell(own.percent)))
 
 
 def _where(model: Model, measure: Measure) -> str:

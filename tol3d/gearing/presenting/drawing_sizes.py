@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 from tol3d.distributions import DeviationLaw
 from tol3d.errors import GeometryError
@@ -10,8 +11,9 @@ from tol3d.gearing.effects import ToothThickness
 from tol3d.gearing.model import Model
 from tol3d.gears import Gear, InternalGear, SpurGear
 from tol3d.gears.tooth_measures import Span, ToothMeasure, pins_of, span_of
-from tol3d.report.number import NOTHING, value_cell
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, Row, note, titled
+from tol3d.runs.summary.shows import Shows
 
 MEANING = (
     "span and pins are those of the scene, or chosen to touch near the reference circle shifted by x m; their limits "
@@ -55,6 +57,16 @@ def _thicknesses(model: Model) -> Iterator[tuple[str, Thickness]]:
             yield effect.part, Thickness(contributor.distribution, arc, effect.over)
 
 
+@dataclass(frozen=True)
+class SizeRow:
+    """A size of a gear's teeth as shops measure it, nominal and at the limits of their thickness [mm]."""
+
+    size: Annotated[str, Shows("size", "words")]
+    nominal: Annotated[float | None, Shows("nominal", "mm")]
+    thinnest: Annotated[float | None, Shows("thinnest", "mm")]
+    thickest: Annotated[float | None, Shows("thickest", "mm")]
+
+
 def sizes_table(gears: Mapping[str, Gear], tolerances: Iterable[tuple[str, Thickness]]) -> list[PageItem]:
     """A table of what shops measure of gears [mm].
 
@@ -66,11 +78,11 @@ def sizes_table(gears: Mapping[str, Gear], tolerances: Iterable[tuple[str, Thick
     rows = [row for name, gear in gears.items() for row in _rows(name, gear, [own for of, own in stated if of == name])]
     if not rows:
         return []
-    headings = [Heading("size", words=True), *map(Heading, ("nominal", "thinnest", "thickest"))]
-    return [*titled("tooth thickness on a drawing", Table("[mm]", headings, rows, repeated=1)), note(MEANING)]
+    table = replace(declared_table("[mm]", rows), repeated=1)
+    return [*titled("tooth thickness on a drawing", table), note(MEANING)]
 
 
-def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[Row]:
+def _rows(name: str, gear: Gear, stated: Sequence[Thickness]) -> Iterator[tuple[Row, SizeRow]]:
     limits = [own.limits for own in stated]
     deviations = (0.0, sum(low for low, _ in limits), sum(high for _, high in limits))
     words = "arc s" if isinstance(gear, SpurGear | InternalGear) else "arc, mean section"
@@ -105,6 +117,5 @@ def _size(measure: ToothMeasure, gear: SpurGear | InternalGear, deviation: float
         return None
 
 
-def _row(label: str, words: str, sizes: list[float | None] | list[float]) -> Row:
-    known = [None if own is None or not math.isfinite(own) else own for own in sizes]
-    return Row(label, (words, *(value_cell(own, "mm") if own is not None else NOTHING for own in known)), unit="mm")
+def _row(label: str, words: str, sizes: Iterable[float | None]) -> tuple[Row, SizeRow]:
+    return Row(label, (), unit="mm"), SizeRow(words, *(own if math.isfinite(own or 0.0) else None for own in sizes))

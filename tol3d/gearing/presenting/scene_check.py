@@ -1,8 +1,8 @@
 """Tables of a scene of gears: gears, meshes, measures, contributors and their coefficients."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from functools import singledispatch
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Final
 
 from tol3d.gearing.model import Backlash, Contributor, LostMotion, Measure, Model, Planar, Train, TransmissionError
 from tol3d.gearing.model.links import LoadPath, Parallel, links_of
@@ -17,47 +17,59 @@ from tol3d.gears import (
     RIGHT,
     BevelGear,
     BevelPair,
-    Gear,
-    GearPair,
     InternalGear,
     InternalPair,
     SpurGear,
     SpurPair,
 )
 from tol3d.numerics.arrays import Array
-from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, limits_text, unsigned_zero, value_text
-from tol3d.report.page import Heading, Line, PageItem, Row, Table, line, title, titled
+from tol3d.report.declared import declared_table, side_by_side
+from tol3d.report.number import NOTHING, UNIT_SIGNS, degrees_text, limits_text
+from tol3d.report.page import Line, PageItem, line, title, titled
 from tol3d.report.system_check import law_name, sample_notes, system_blocks
 from tol3d.report.worst_found import worst_blocks
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.study.simulation import Simulation
 from tol3d.system.draw import JointDraw
 from tol3d.units import angle_text
+
+
+@dataclass(frozen=True)
+class ShaftRow:
+    """A shaft: what drives it, the gears on it, and its axis."""
+
+    driven_by: Annotated[str, Shows("driven by", "words")]
+    carries: Annotated[str, Shows("carries", "words")]
+    axis: Annotated[str, Shows("axis through [mm]", "words")]
+    along: Annotated[str, Shows("along", "words")]
+    turns: Annotated[str, Shows("turns")]
 
 
 def train_blocks(model: Model) -> list[PageItem]:
     """Shafts of a scene, if any of them carries or drives more than one gear; else nothing."""
     if len(model.layout.links) == len(model.layout.drives) and not model.trains:
         return []
-    words = [Heading(word, words=True) for word in ("driven by", "carries", "axis through [mm]", "along")]
-    table = Table("", [*words, Heading("turns")], list(_shaft_rows(model)))
+    table = declared_table("", _shaft_rows(model))
     note = line(" turns per turn of the first shaft; below 0: they turn opposite, each about its own axis", "dim")
     return [title("shafts"), table, note, *(_train_line(model, train) for train in model.trains)]
 
 
-def _shaft_rows(model: Model) -> Iterator[Row]:
+def _shaft_rows(model: Model) -> Iterator[tuple[str, ShaftRow]]:
     layout = model.layout
     for shaft, turning in layout.shaft_turn.items():
         pose = layout.world_from_shaft[shaft]
         link = layout.driving.get(shaft)
         carried = [gear for gear, (carrier, _) in layout.carrying.items() if carrier == shaft and gear != shaft]
-        cells = (
-            link.name if link else NOTHING,
-            ", ".join(carried) or NOTHING,
-            _vector_text(pose[:3, 3], 2),
-            _vector_text(pose[:3, 2], 3),
-            str(turning.rate),
+        yield (
+            shaft,
+            ShaftRow(
+                link.name if link else NOTHING,
+                ", ".join(carried) or NOTHING,
+                _vector_text(pose[:3, 3], 2),
+                _vector_text(pose[:3, 2], 3),
+                str(turning.rate),
+            ),
         )
-        yield Row(shaft, cells)
 
 
 def _train_line(model: Model, train: Train) -> Line:
@@ -104,9 +116,6 @@ def _vector_text(vector: Array, digits: int) -> str:
     return ", ".join(f"{round(float(value), digits) + 0.0:g}" for value in vector)
 
 
-UM = 1000.0  # um in a mm
-
-
 def check_blocks(simulation: Simulation) -> list[PageItem]:
     """Gears, meshes, trains, measures and contributors of a scene, with what follows from them.
 
@@ -125,85 +134,120 @@ def mechanics_blocks(model: Model) -> list[PageItem]:
     return [*gears_table(model), *housings, *drawing_sizes(model), *meshes_table(model), *train_blocks(model)]
 
 
-def _side_by_side(title: str, names: Sequence[str], rows: Mapping[str, Sequence[str]]) -> list[PageItem]:
-    """A column for each name."""
-    headings = [Heading(name) for name in names]
-    return titled(title, Table("", headings, [Row(label, cells) for label, cells in rows.items()]))
+class GearColumn(RowOf[Any]):
+    """A gear as it is shown beside others; lengths in mm."""
+
+    teeth = Computed(Shows("teeth z", "d"), lambda own: own.of.teeth)
+    module = Computed(Shows("module m [mm]", "g"), lambda own: own.of.module)
+    pressure_angle = Computed(Shows("pressure angle α [°]", "degrees"), lambda own: own.of.pressure_angle)
+    face_width = Computed(Shows("face width b [mm]", "g"), lambda own: own.of.face_width)
+    profile_shift = Computed(Shows("profile shift x", "g"), lambda own: own.of.profile_shift)
+    heights = Computed(Shows("addendum, dedendum [m]"), lambda own: f"{own.of.addendum:g}, {own.of.dedendum:g}")
+
+
+class CylindricalColumn(GearColumn):
+    """A spur gear, or what it shares with a ring."""
+
+    reference_diameter = Computed(Shows("reference diameter d [mm]", ".4f"), lambda own: own.of.reference_diameter)
+    tip_diameter = Computed(Shows("tip diameter d_a [mm]", ".4f"), lambda own: own.of.tip_diameter)
+    base_diameter = Computed(Shows("base diameter d_b [mm]", ".4f"), lambda own: own.of.base_diameter)
+    root_diameter = Computed(Shows("root diameter d_f [mm]", ".4f"), lambda own: own.of.root_diameter)
+    form_diameter = Computed(Shows("involute from diameter [mm]", ".4f"), lambda own: 2 * own.of.form_radius)
+    fillet = Computed(Shows("root fillet [mm]", ".4f"), lambda own: own.of.fillet_radius)
+    thickness = Computed(Shows("tooth thickness s [mm]", ".4f"), lambda own: own.of.tooth_thickness)
+    tip_thickness = Computed(Shows("thickness at the tip s_a [mm]", ".4f"), lambda own: own.of.tip_thickness)
+
+
+class SpurColumn(CylindricalColumn):
+    """An external gear."""
+
+    bore = Computed(Shows("bore [mm]", "g"), lambda own: own.of.bore or None)
+
+
+class RingColumn(CylindricalColumn):
+    """A gear with internal teeth."""
+
+    teeth = Computed(Shows("teeth z", "d"), lambda own: f"{own.of.teeth}, inside")
+    outer_diameter = Computed(Shows("outer diameter [mm]", ".4f"), lambda own: own.of.rim_diameter)
+
+
+class BevelColumn(GearColumn):
+    """A bevel gear."""
+
+    cones = Computed(
+        Shows("{key} angle", ".4f", "°"),
+        lambda own: {word: getattr(own.of, f"{word}_angle") for word in ("pitch", "tip", "base", "root")},
+    )
+    cone_distances = Computed(
+        Shows("cone distance, outer, mean, inner [mm]"),
+        lambda own: ", ".join(f"{getattr(own.of, f'{word}_cone_distance'):.4f}" for word in ("outer", "mean", "inner")),
+    )
+    outer_diameter_d_e = Computed(
+        Shows("reference diameter, outer d_e [mm]", ".4f"), lambda own: own.of.reference_diameter
+    )
+    mean_diameter = Computed(Shows("reference diameter, mean d_m [mm]", ".4f"), lambda own: 2 * own.of.mean_radius)
+    outer_tip_diameter = Computed(Shows("tip diameter, outer d_ae [mm]", ".4f"), lambda own: own.of.tip_diameter)
+    outer_thickness = Computed(Shows("tooth thickness, outer s [mm]", ".4f"), lambda own: own.of.tooth_thickness)
+    mean_thickness = Computed(Shows("tooth thickness, mean s_m [mm]", ".4f"), lambda own: own.of.mean_tooth_thickness)
+    outer_tip_thickness = Computed(Shows("thickness at the tip, outer [mm]", ".4f"), lambda own: own.of.tip_thickness)
+    bore = Computed(Shows("bore [mm]", "g"), lambda own: own.of.bore or None)
+
+
+class PartColumn(RowOf[Any]):
+    """What gears have as parts."""
+
+    expansion = Computed(Shows("expansion", "g", "10⁻⁶/K"), lambda own: own.of.expansion or None)
+
+
+class MeshColumn(RowOf[Any]):
+    """A mesh as it is shown beside others, with what the nominal pair gives."""
+
+    gears = Computed(Shows("driver → driven"), lambda own: f"{own.of.driver} → {own.of.driven}")
+    flank = Computed(Shows("driver's working flank"), lambda own: "right" if own.of.working_flank == RIGHT else "left")
+    housing = Computed(Shows("housing"), lambda own: own.of.housing or NOTHING)
+
+
+class ParallelColumn(MeshColumn):
+    """A mesh of gears on parallel axes."""
+
+    centre_distance = Computed(Shows("centre distance a [mm]", ".4f"), lambda own: own.of.pair.centre_distance)
+    tight_at = Computed(Shows("without backlash at [mm]", ".4f"), lambda own: own.of.pair.zero_backlash_centre_distance)
+    working_angle = Computed(
+        Shows("working pressure angle α_w [°]", "degrees"), lambda own: own.of.pair.working_pressure_angle
+    )
+    contact_ratio = Computed(Shows("contact ratio ε_α", ".4f"), lambda own: own.of.pair.contact_ratio)
+    period = Computed(Shows("same teeth meet after [turns]", "d"), lambda own: own.of.pair.long_period_turns)
+    normal = Computed(Shows("nominal normal backlash", "um", "µm"), lambda own: own.of.pair.normal_backlash)
+    circumferential = Computed(
+        Shows("nominal circumferential", "um", "µm"), lambda own: own.of.pair.circumferential_backlash
+    )
+    radial = Computed(Shows("nominal radial", "um", "µm"), lambda own: own.of.pair.radial_backlash)
+    angular = Computed(
+        Shows("nominal angular, driver / driven"),
+        lambda own: " / ".join(map(angle_text, own.of.pair.angular_backlash)),
+    )
+
+
+class BevelMeshColumn(MeshColumn):
+    """A mesh of bevel gears."""
+
+    shaft_angle = Computed(Shows("shaft angle Σ [°]", "degrees"), lambda own: own.of.pair.shaft_angle)
+    cone_distance = Computed(Shows("mean cone distance R_m [mm]", ".4f"), lambda own: own.of.pair.mean_cone_distance)
+    contact_ratio = Computed(Shows("contact ratio ε_α", ".4f"), lambda own: own.of.pair.contact_ratio)
+    period = Computed(Shows("same teeth meet after [turns]", "d"), lambda own: own.of.pair.long_period_turns)
+    normal = Computed(Shows("nominal normal backlash", "um", "µm"), lambda own: own.of.pair.normal_backlash)
+
+
+GEAR_COLUMNS: Final = {SpurGear: SpurColumn, InternalGear: RingColumn, BevelGear: BevelColumn}
+MESH_COLUMNS: Final = {SpurPair: ParallelColumn, InternalPair: ParallelColumn, BevelPair: BevelMeshColumn}
+"""Each kind of gear and of pair has its own rows."""
 
 
 def gears_table(model: Model) -> list[PageItem]:
     """The gears side by side, lengths in mm."""
-    rows = [gear_rows(part.gear) for part in model.gears]
-    expansions = [f"{1e6 * part.expansion:g}" if part.expansion else NOTHING for part in model.gears]
-    return _side_by_side(
-        "parts", [part.name for part in model.gears], _merged(rows) | {"expansion [10⁻⁶/K]": expansions}
-    )
-
-
-def _merged(columns: Sequence[Mapping[str, str]]) -> dict[str, list[str]]:
-    """Rows that some column has, in the columns' order; NOTHING where another kind has none."""
-    labels = dict.fromkeys(label for column in columns for label in column)
-    return {label: [column.get(label, NOTHING) for column in columns] for label in labels}
-
-
-@singledispatch
-def gear_rows(gear: Gear) -> dict[str, str]:
-    """Data of a gear, by label; each kind of gear registers its own."""
-    raise TypeError(f"there are no rows of {type(gear).__name__}")
-
-
-@gear_rows.register
-def _(gear: SpurGear) -> dict[str, str]:
-    bore = f"{gear.bore:g}" if gear.bore else NOTHING
-    return {"teeth z": str(gear.teeth), **_cylindrical_rows(gear), "bore [mm]": bore}
-
-
-@gear_rows.register
-def _(gear: InternalGear) -> dict[str, str]:
-    outer = f"{gear.rim_diameter:.4f}"
-    return {"teeth z": f"{gear.teeth}, inside", **_cylindrical_rows(gear), "outer diameter [mm]": outer}
-
-
-def _cylindrical_rows(gear: SpurGear | InternalGear) -> dict[str, str]:
-    """Rows common to external and internal gears, except the number of teeth."""
-    return {
-        "module m [mm]": f"{gear.module:g}",
-        "pressure angle α [°]": degrees_text(gear.pressure_angle),
-        "face width b [mm]": f"{gear.face_width:g}",
-        "profile shift x": f"{gear.profile_shift:g}",
-        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
-        "reference diameter d [mm]": f"{gear.reference_diameter:.4f}",
-        "tip diameter d_a [mm]": f"{gear.tip_diameter:.4f}",
-        "base diameter d_b [mm]": f"{gear.base_diameter:.4f}",
-        "root diameter d_f [mm]": f"{gear.root_diameter:.4f}",
-        "involute from diameter [mm]": f"{2 * gear.form_radius:.4f}",
-        "root fillet [mm]": f"{gear.fillet_radius:.4f}",
-        "tooth thickness s [mm]": f"{gear.tooth_thickness:.4f}",
-        "thickness at the tip s_a [mm]": f"{gear.tip_thickness:.4f}",
-    }
-
-
-@gear_rows.register
-def _(gear: BevelGear) -> dict[str, str]:
-    cones = {"pitch": gear.pitch_angle, "tip": gear.tip_angle, "base": gear.base_angle, "root": gear.root_angle}
-    distances = (gear.outer_cone_distance, gear.mean_cone_distance, gear.inner_cone_distance)
-    return {
-        "teeth z": str(gear.teeth),
-        "module m [mm]": f"{gear.module:g}",
-        "pressure angle α [°]": degrees_text(gear.pressure_angle),
-        "face width b [mm]": f"{gear.face_width:g}",
-        "profile shift x": f"{gear.profile_shift:g}",
-        "addendum, dedendum [m]": f"{gear.addendum:g}, {gear.dedendum:g}",
-        **{f"{name} angle [°]": f"{math.degrees(angle):.4f}" for name, angle in cones.items()},
-        "cone distance, outer, mean, inner [mm]": ", ".join(f"{distance:.4f}" for distance in distances),
-        "reference diameter, outer d_e [mm]": f"{gear.reference_diameter:.4f}",
-        "reference diameter, mean d_m [mm]": f"{2 * gear.mean_radius:.4f}",
-        "tip diameter, outer d_ae [mm]": f"{gear.tip_diameter:.4f}",
-        "tooth thickness, outer s [mm]": f"{gear.tooth_thickness:.4f}",
-        "tooth thickness, mean s_m [mm]": f"{gear.mean_tooth_thickness:.4f}",
-        "thickness at the tip, outer [mm]": f"{gear.tip_thickness:.4f}",
-        "bore [mm]": f"{gear.bore:g}" if gear.bore else NOTHING,
-    }
+    gears = side_by_side("", [(own.name, GEAR_COLUMNS[type(own.gear)](own.gear)) for own in model.gears])
+    parts = side_by_side("", [(own.name, PartColumn(own)) for own in model.gears])
+    return titled("parts", replace(gears, rows=[*gears.rows, *parts.rows]))
 
 
 def housings_line(model: Model) -> Line:
@@ -214,55 +258,20 @@ def housings_line(model: Model) -> Line:
 
 def meshes_table(model: Model) -> list[PageItem]:
     """The moves, with what the nominal pair gives."""
-    rows: Mapping[str, list[str]] = {
-        "driver → driven": [f"{mesh.driver} → {mesh.driven}" for mesh in model.meshes],
-        "driver's working flank": ["right" if mesh.working_flank == RIGHT else "left" for mesh in model.meshes],
-        "housing": [mesh.housing or NOTHING for mesh in model.meshes],
-    }
-    pairs = _merged([pair_rows(mesh.pair) for mesh in model.meshes])
-    return _side_by_side("moves", [mesh.name for mesh in model.meshes], {**rows, **pairs})
+    return titled("moves", side_by_side("", [(own.name, MESH_COLUMNS[type(own.pair)](own)) for own in model.meshes]))
 
 
-@singledispatch
-def pair_rows(pair: GearPair) -> dict[str, str]:
-    """Data of a nominal pair, by label; each kind of pair registers its own."""
-    raise TypeError(f"there are no rows of {type(pair).__name__}")
+class MeasureRow(RowOf[Measure]):
+    """A measure: what of which mesh or train, where, and its limits."""
 
-
-@pair_rows.register(SpurPair)
-@pair_rows.register(InternalPair)
-def _(pair: SpurPair | InternalPair) -> dict[str, str]:
-    driver, driven = pair.angular_backlash
-    return {
-        "centre distance a [mm]": f"{pair.centre_distance:.4f}",
-        "without backlash at [mm]": f"{pair.zero_backlash_centre_distance:.4f}",
-        "working pressure angle α_w [°]": degrees_text(pair.working_pressure_angle),
-        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
-        "same teeth meet after [turns]": str(pair.long_period_turns),
-        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
-        "nominal circumferential [µm]": value_text(pair.circumferential_backlash * UM, "um"),
-        "nominal radial [µm]": value_text(pair.radial_backlash * UM, "um"),
-        "nominal angular, driver / driven": f"{angle_text(driver)} / {angle_text(driven)}",
-    }
-
-
-@pair_rows.register
-def _(pair: BevelPair) -> dict[str, str]:
-    return {
-        "shaft angle Σ [°]": degrees_text(pair.shaft_angle),
-        "mean cone distance R_m [mm]": f"{pair.mean_cone_distance:.4f}",
-        "contact ratio ε_α": f"{pair.contact_ratio:.4f}",
-        "same teeth meet after [turns]": str(pair.long_period_turns),
-        "nominal normal backlash [µm]": value_text(pair.normal_backlash * UM, "um"),
-    }
+    what = Computed(Shows("what", "words"), lambda own: _what(own.of))
+    positions = Computed(Shows("positions", "words"), lambda own: _positions(own.of))
+    limits = Computed(Shows("limits", "words"), lambda own: _limits(own.of))
 
 
 def measures_table(model: Model) -> list[PageItem]:
     """The measures with limits and positions."""
-    rows = []
-    for measure in model.measures:
-        rows.append(Row(measure.name, (_what(measure), _positions(measure), _limits(measure))))
-    return titled("measures", Table("", [Heading(word, words=True) for word in ("what", "positions", "limits")], rows))
+    return titled("measures", declared_table("", [(own.name, MeasureRow(own)) for own in model.measures]))
 
 
 def _what(measure: Measure) -> str:
@@ -311,18 +320,19 @@ def _limits(measure: Measure) -> str:
     return limits_text(lower, upper, measure.unit)
 
 
-def contributors_table(model: Model) -> list[PageItem]:
-    """The contributors: law and limits, and their coefficients in each measure.
+class ContributorRow(RowOf[Contributor]):
+    """A contributor; low and high of one with a direction are lengths, its sigma is that along any one axis."""
 
-    Low and high of one with a direction are lengths, its sigma is that along any one axis.
-    """
-    rows = []
-    for contributor in model.contributors:
-        law, per = contributor.distribution, contributor.per_unit
-        numbers = (f"{law.low / per:.4g}", f"{law.high / per:.4g}", f"{contributor.draw.sigma / per:.3g}")
-        cells = (*map(unsigned_zero, numbers), UNIT_SIGNS[contributor.unit])
-        rows.append(Row(contributor.name, (distribution_words(contributor), *cells)))
-    table = Table("", [Heading("law", words=True), *map(Heading, ("low", "high", "sigma", "unit"))], rows)
+    law = Computed(Shows("law", "words"), lambda own: distribution_words(own.of))
+    low = Computed(Shows("low", ".4g"), lambda own: own.of.distribution.low / own.of.per_unit)
+    high = Computed(Shows("high", ".4g"), lambda own: own.of.distribution.high / own.of.per_unit)
+    sigma = Computed(Shows("sigma", ".3g"), lambda own: own.of.draw.sigma / own.of.per_unit)
+    unit_sign = Computed(Shows("unit"), lambda own: UNIT_SIGNS[own.of.unit])
+
+
+def contributors_table(model: Model) -> list[PageItem]:
+    """The contributors: law and limits, and their coefficients in each measure."""
+    table = declared_table("", [(own.name, ContributorRow(own)) for own in model.contributors])
     notes = sample_notes((own.name, own.distribution, own.per_unit, own.unit) for own in model.contributors)
     return [*titled("contributors", table), *notes, *coefficients_tables(model)]
 

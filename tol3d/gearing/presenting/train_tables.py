@@ -1,6 +1,7 @@
 """The trains of a run as tables: contribution of each stage to the lost motion, and the sum of the stages."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from tol3d.gearing.presenting.shown_stage import (
     Range,
@@ -16,11 +17,14 @@ from tol3d.gearing.presenting.shown_stage import (
     whole_ratio_text,
 )
 from tol3d.gearing.summary.types import TrainSummary
-from tol3d.report.number import percent_text, tip_mm, value_cell
-from tol3d.report.page import BLANK, Heading, PageItem, Row, Shown, Table, line, note, title
+from tol3d.report.column import heading_by
+from tol3d.report.declared import declared_table
+from tol3d.report.number import tip_mm, value_cell
+from tol3d.report.page import BLANK, PageItem, Row, Shown, Table, line, note, title
 from tol3d.report.presenter import FurtherRow
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Computed, Shows
 
 METHOD_WORDS = {"analytic": "analytic (same trials)", "geometric": "3D simulation"}
 SUMS_MEAN = (
@@ -64,27 +68,31 @@ def train_words(train: TrainSummary) -> str:
     return f"{' → '.join(shafts)} · {train.held} held{turns}"
 
 
+@dataclass(frozen=True)
+class StageRow:
+    """A stage of a train whose lost motion is read at a shaft; angles [arcmin]."""
+
+    of: ShownStage
+    shaft: str
+
+    ratio = Computed(Shows("ratio", plain=True), lambda own: own.of.ratio_text)
+    sense = Computed(Shows("sense"), lambda own: sense_text(own.of))
+    low = Computed(Shows("low", "arcmin"), lambda own: own.of.own.low)
+    mean = Computed(Shows("mean", "arcmin"), lambda own: own.of.own.mean)
+    high = Computed(Shows("high", "arcmin"), lambda own: own.of.own.high)
+    at_shaft = Computed(Shows("mean at {key}", "arcmin", decides=True), lambda own: {own.shaft: own.of.at_shaft.mean})
+    share = Computed(Shows("share of variance [%]", ".1f", plain=True), lambda own: own.of.share)
+    published = Computed(
+        Shows("{key}: high", "arcmin", given=True),
+        lambda own: {name: each.high for name, each in own.of.published.items()},
+    )
+
+
 def stages_table(train: TrainSummary, stages: list[ShownStage]) -> Table:
     """One row per stage, and the whole train below; angles in minutes and seconds of arc."""
-    published = list(dict.fromkeys(name for stage in stages for name in stage.published))
-    headings = [
-        *(Heading(word, plain=word == "ratio") for word in ("ratio", "sense", "low", "mean", "high")),
-        Heading(f"mean at {train.shaft}", "bold"),
-        Heading("share of variance [%]"),
-        *(Heading(f"{name}: high", "green") for name in published),
-    ]
-    return Table("stage", headings, [Row(stage.link, _cells(stage, published), unit="arcmin") for stage in stages])
-
-
-def _cells(stage: ShownStage, published: list[str]) -> list[str]:
-    highs = [stage.published[name].high if name in stage.published else None for name in published]
-    return [
-        stage.ratio_text,
-        sense_text(stage),
-        *(_angle(value) for value in (stage.own.low, stage.own.mean, stage.own.high, stage.at_shaft.mean)),
-        percent_text(stage.share),
-        *map(_angle, highs),
-    ]
+    return declared_table(
+        "stage", [(Row(stage.link, (), unit="arcmin"), StageRow(stage, train.shaft)) for stage in stages]
+    )
 
 
 def _angle(arcmin: float | None) -> Shown:
@@ -108,6 +116,5 @@ def sums_table(train: TrainSummary, summary: RunSummary) -> Table:
         rows.append(Row(f"{train.point}, sum of highs [mm]", [value_cell(value, "mm") for value in worst], unit="mm"))
         tips = [value_cell(tip_mm(high, lever), "mm") for high in highs]
         rows.append(Row(f"{train.point}, mean + 3 sigma [mm]", tips, unit="mm"))
-    styles = {"geometric": "bold", "analytic": ""}
-    headings = [Heading(METHOD_WORDS.get(name, name), styles.get(name, "green")) for name in columns]
+    headings = [heading_by(name, METHOD_WORDS.get(name, name)) for name in columns]
     return Table(f"at {train.shaft}", headings, rows)

@@ -104,9 +104,14 @@ class Slopes:
     def __str__(self) -> str:
         if math.isnan(self.below + self.above):
             return NOTHING
-        if self.differs(Slopes(self.above, self.below), KINK):
+        if self.bends:
             return f"{_slope_text(self.below)}/{_slope_text(self.above)}"
         return _slope_text((self.below + self.above) / 2)
+
+    @property
+    def bends(self) -> bool:
+        """True if the two sides are not one slope."""
+        return self.differs(Slopes(self.above, self.below), KINK)
 
     def differs(self, other: "Slopes", share: float) -> bool:
         """True if either slope is off by more than a fraction of the largest of all."""

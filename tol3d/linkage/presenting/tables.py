@@ -1,17 +1,20 @@
 """Tables of a closed loop without deviations."""
 
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 import numpy as np
 
 from tol3d.assembly.model import Assembly
 from tol3d.errors import InputError
 from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError
-from tol3d.linkage.loop import ClosedLoop, Closing, LoopInput
-from tol3d.linkage.structure import FREEDOMS
+from tol3d.linkage.loop import ClosedLoop, Closing
+from tol3d.linkage.structure import FREEDOMS, Step
 from tol3d.linkage.workspace import range_of
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, note, titled
+from tol3d.runs.summary.shows import Computed, Shows
 
 TILTS: Final = 10.0
 """Step of the table of inputs [deg]."""
@@ -31,24 +34,48 @@ def loop_blocks(plan: Closing, assembly: Assembly) -> Sequence[PageItem]:
     return (*_freedoms(move), *_poses(move), *_inverse(move), *_forward(move))
 
 
+@dataclass(frozen=True)
+class JointRow:
+    """A joint of a loop."""
+
+    move: ClosedLoop
+    step: Step
+    between = Computed(Shows("between", "words"), lambda own: f"{own.step.joint.on} – {own.step.joint.of}")
+    freedoms = Computed(
+        Shows("freedoms", "words"),
+        lambda own: ", ".join(FREEDOMS[own.step.joint.kind]) if own.step.joint.kind else "all turns",
+    )
+    inputs = Computed(
+        Shows("inputs", "words"),
+        lambda own: ", ".join(name for name, each in own.move.inputs.items() if each.joint == own.step.joint.name),
+    )
+    shuts = Computed(Shows("", "words"), lambda own: "shuts a loop" if own.step in own.move.structure.shut else "")
+
+
+@dataclass(frozen=True)
+class PoseRow:
+    """A pose of a loop: its inputs in words, the direction of its output [deg], and the condition of its equations."""
+
+    inputs: Annotated[Mapping[str, str], Shows("{key}")]
+    tilt: Annotated[float | str | None, Shows("tilt [deg]", ".6g", seldom=True)]
+    azimuth: Annotated[float | str | None, Shows("azimuth [deg]", ".6g", seldom=True)]
+    condition: Annotated[float | str, Shows("condition", ".4g")]
+
+
+@dataclass(frozen=True)
+class InverseRow:
+    """The inputs in words at a tilt of the output [deg], or how far it goes."""
+
+    tilt: Annotated[float | str, Shows("tilt [deg]", "g")]
+    inputs: Annotated[Mapping[str, str], Shows("{key}")]
+    condition: Annotated[float | str, Shows("condition", ".4g")]
+
+
 def _freedoms(move: ClosedLoop) -> Sequence[PageItem]:
     own = move.structure
-    rows = []
-    for step in own.steps:
-        joint, given = step.joint, [name for name, each in move.inputs.items() if each.joint == step.joint.name]
-        rows.append(
-            Row(
-                joint.name,
-                (
-                    f"{joint.on} – {joint.of}",
-                    ", ".join(FREEDOMS[joint.kind]) if joint.kind else "all turns",
-                    ", ".join(given),
-                    "shuts a loop" if step in own.shut else "",
-                ),
-            )
-        )
-    words = [Heading(word, words=True) for word in ("between", "freedoms", "inputs", "")]
-    table = titled(f"{move.name}: joints", Table("", words, rows))
+    table = titled(
+        f"{move.name}: joints", declared_table("", [(step.joint.name, JointRow(move, step)) for step in own.steps])
+    )
     free = int(own.free(inputs=False).max(initial=-1)) + 1
     idle = move.kinematics.idle_freedoms()
     told = (
@@ -61,19 +88,19 @@ def _freedoms(move: ClosedLoop) -> Sequence[PageItem]:
 
 def _poses(move: ClosedLoop) -> Sequence[PageItem]:
     stations = move.stations or {"as placed": move.kinematics.drawn}
-    tilts = _has_tilt(move.kinematics)
-    heads = [*move.inputs, *(("tilt [deg]", "azimuth [deg]") if tilts else ()), "condition"]
-    rows = []
-    for name, at in stations.items():
-        cells = [own.told(value) for own, value in _values(move, at)]
-        rows.append(Row(name, (*cells, *(_direction(move.kinematics, at) if tilts else ()), f"{at.condition:.4g}")))
-    table = titled(f"{move.name}: poses", Table("", [Heading(own) for own in heads], rows))
+    rows = [(name, _pose(move, at, _told(move, at))) for name, at in stations.items()]
+    table = titled(f"{move.name}: poses", declared_table("", rows))
     return (*table, note(CONDITION.format(length=move.structure.length)))
 
 
-def _values(move: ClosedLoop, at: Position) -> Sequence[tuple[LoopInput, float]]:
+def _pose(move: ClosedLoop, at: Position, inputs: Mapping[str, str]) -> PoseRow:
+    tilt, azimuth = _direction(move.kinematics, at) if _has_tilt(move.kinematics) else (None, None)
+    return PoseRow(inputs, tilt, azimuth, at.condition)
+
+
+def _told(move: ClosedLoop, at: Position) -> Mapping[str, str]:
     values = move.kinematics.inputs_at(at)
-    return [(own, values[name]) for name, own in move.inputs.items()]
+    return {name: own.told(values[name]) for name, own in move.inputs.items()}
 
 
 def _has_tilt(kinematics: Kinematics) -> bool:
@@ -81,18 +108,17 @@ def _has_tilt(kinematics: Kinematics) -> bool:
     return output is not None and not output.whole
 
 
-def _direction(kinematics: Kinematics, at: Position) -> tuple[str, str]:
+def _direction(kinematics: Kinematics, at: Position) -> tuple[float, float]:
     x, y = kinematics.tilt_at(at)
-    tilt = np.degrees(np.hypot(x, y))
-    azimuth = np.degrees(np.arctan2(-x, y)) % 360.0 if tilt > 1e-9 else 0.0
-    return f"{tilt:.6g}", f"{azimuth:.6g}"
+    tilt = float(np.degrees(np.hypot(x, y)))
+    return tilt, float(np.degrees(np.arctan2(-x, y)) % 360.0) if tilt > 1e-9 else 0.0
 
 
 def _inverse(move: ClosedLoop) -> Sequence[PageItem]:
     """Inputs by tilt and azimuth, as far as the loop reaches."""
     if not _has_tilt(move.kinematics) or not move.inputs:
         return ()
-    rows = []
+    rows: list[tuple[str, InverseRow]] = []
     for azimuth in AZIMUTHS:
         angle, at, tilt = np.radians(azimuth), move.kinematics.drawn, TILTS
         while tilt < 180.0:
@@ -101,14 +127,13 @@ def _inverse(move: ClosedLoop) -> Sequence[PageItem]:
                 at = move.kinematics.at_output(vector, at)
             except UnreachedError as error:
                 reached = _direction(move.kinematics, error.position)[0]
-                rows.append(Row(f"{azimuth:g} deg", (f"up to {float(reached):.4g}", *[""] * len(move.inputs), "")))
+                rows.append(
+                    (f"{azimuth:g} deg", InverseRow(f"up to {reached:.4g}", dict.fromkeys(move.inputs, ""), ""))
+                )
                 break
-            cells = [own.told(value) for own, value in _values(move, at)]
-            rows.append(Row(f"{azimuth:g} deg", (f"{tilt:g}", *cells, f"{at.condition:.4g}")))
+            rows.append((f"{azimuth:g} deg", InverseRow(tilt, _told(move, at), at.condition)))
             tilt += TILTS
-    heads = ["tilt [deg]", *move.inputs, "condition"]
-    table = Table("azimuth", [Heading(own) for own in heads], rows)
-    return titled(f"{move.name}: inputs by the output (inverse)", table)
+    return titled(f"{move.name}: inputs by the output (inverse)", declared_table("azimuth", rows))
 
 
 def _forward(move: ClosedLoop) -> Sequence[PageItem]:
@@ -119,19 +144,15 @@ def _forward(move: ClosedLoop) -> Sequence[PageItem]:
         ranges = [range_of(move, name) for name in move.inputs]
     except InputError:
         return ()
-    rows = []
+    first, rows = next(iter(move.inputs)), list[tuple[str, PoseRow]]()
     for values in np.stack(np.meshgrid(*(np.linspace(*own, STEPS) for own in ranges), indexing="ij"), -1).reshape(
         -1, len(ranges)
     ):
         inputs = dict(zip(move.inputs, values.tolist(), strict=True))
-        told = [own.told(value) for own, value in zip(move.inputs.values(), values, strict=True)]
+        others = {name: own.told(inputs[name]) for name, own in move.inputs.items()}
+        label = others.pop(first)
         try:
-            at = move.kinematics.at_inputs(inputs)
-            cells = (*told[1:], *_direction(move.kinematics, at), f"{at.condition:.4g}")
+            rows.append((label, _pose(move, move.kinematics.at_inputs(inputs), others)))
         except UnreachedError:
-            cells = (*told[1:], "not reached", "", "")
-        rows.append(Row(told[0], cells))
-    first, *others = move.inputs
-    heads = [*others, "tilt [deg]", "azimuth [deg]", "condition"]
-    table = Table(first, [Heading(own) for own in heads], rows[:MOST_ROWS])
-    return titled(f"{move.name}: the output by the inputs (forward)", table)
+            rows.append((label, PoseRow(others, "not reached", "", "")))
+    return titled(f"{move.name}: the output by the inputs (forward)", declared_table(first, rows[:MOST_ROWS]))

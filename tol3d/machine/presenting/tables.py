@@ -1,6 +1,6 @@
 """Tables of a scene of gears in a housing."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import numpy as np
@@ -9,9 +9,12 @@ from tol3d.assembly.presenting.parts_tree import Laid, parts_tree
 from tol3d.assembly.presenting.tables import drawing_blocks
 from tol3d.gearing.presenting.scene_check import mechanics_blocks
 from tol3d.machine.bores import Bores
+from tol3d.machine.nominal import HousedShaft
 from tol3d.machine.system import MachineSystem
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, note, titled
 from tol3d.report.system_check import system_blocks
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.study.simulation import Simulation
 
 HELD: Final = "bores hold a shaft across its axis and against tilts; along it and about it its train decides"
@@ -38,20 +41,20 @@ def parts_blocks(simulation: Simulation) -> Sequence[PageItem]:
     return parts_tree(assembly, shafts)
 
 
+class ShaftRow(RowOf[HousedShaft]):
+    """A shaft in its bores."""
+
+    bores = Computed(Shows("in", "words"), lambda own: ", ".join(bore.words for bore in own.of.bores))
+    at = Computed(Shows("at its z [mm]", "words"), lambda own: _listed(map(own.of.along, own.of.bores)))
+    origin = Computed(Shows("origin at [mm]", "words"), lambda own: _listed(np.round(own.of.frame[:3, 3], 6) + 0.0))
+    z_axis = Computed(Shows("z along", "words"), lambda own: _listed(np.round(own.of.frame[:3, 2], 6) + 0.0))
+
+
 def shafts_table(bores: Bores) -> Sequence[PageItem]:
     """Table of the positions of shafts: their bores, and the bores' places along the shaft."""
-    rows = [
-        Row(
-            own.shaft,
-            (
-                ", ".join(bore.words for bore in own.bores),
-                ", ".join(f"{own.along(bore):g}" for bore in own.bores),
-                ", ".join(f"{number:g}" for number in np.round(own.frame[:3, 3], 6) + 0.0),
-                ", ".join(f"{number:g}" for number in np.round(own.frame[:3, 2], 6) + 0.0),
-            ),
-        )
-        for own in bores.shafts
-    ]
-    words = ("in", "at its z [mm]", "origin at [mm]", "z along")
-    table = Table("", [Heading(word, words=True) for word in words], rows)
+    table = declared_table("", [(own.shaft, ShaftRow(own)) for own in bores.shafts])
     return (*titled("shafts in bores", table), note(HELD))
+
+
+def _listed(numbers: Iterable[float]) -> str:
+    return ", ".join(f"{number:g}" for number in numbers)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 from tol3d.planetary.design.efficiency import (
@@ -19,8 +20,9 @@ from tol3d.planetary.design.search import Candidate, Found, Wish, in_order, teet
 from tol3d.planetary.design.shifted_set import step_name
 from tol3d.planetary.design.working_mesh import WorkingMesh
 from tol3d.planetary.model.tooth_set import CARRIER
-from tol3d.report.number import NOTHING, unsigned_zero
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title
+from tol3d.report.declared import declared_table, side_by_side
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title
+from tol3d.runs.summary.shows import Computed, Shows
 from tol3d.units import Quantity
 
 FACE_WIDTH: Final = 10.0  # modules, until the user says otherwise
@@ -119,66 +121,67 @@ def design_report(found: Found, wish: Wish, detail: int) -> Page:
     return page(*blocks, *map(note, _notes(found, wish)), *chosen, *map(note, _own_notes(own)))
 
 
+@dataclass(frozen=True)
+class CandidateRow:
+    """A set that can be assembled."""
+
+    of: Candidate
+    family: Family
+
+    teeth = Computed(Shows("{key}"), lambda own: {own.family.order: teeth_text(own.of.own.teeth)})
+    ratio = Computed(Shows("ratio", ".6g"), lambda own: own.of.ratio)
+    centre_distance = Computed(Shows("a", ".4f", "mm"), lambda own: own.of.own.centre_distance)
+    forward = Computed(Shows("forward", ".3f", "%"), lambda own: _driven(own.of.forward))
+    backward = Computed(Shows("backward", ".3f", "%"), lambda own: _driven(own.of.backward))
+    planet_gap = Computed(Shows("planet gap", ".3f", "mm"), lambda own: own.of.own.planet_gap(own.of.task.planets))
+    shifts = Computed(
+        Shows("x {key}", ".3f", optional=True),
+        lambda own: dict(zip(own.family.order.split("/"), in_order(own.of.own.teeth, own.of.own.shifts), strict=True)),
+    )
+
+
 def candidate_table(found: Found, family: Family) -> Table:
     """A row for each candidate."""
-    headings = [
-        Heading(family.order),
-        Heading("ratio"),
-        Heading("a [mm]"),
-        Heading("forward [%]"),
-        Heading("backward [%]"),
-        Heading("planet gap [mm]"),
-        *(Heading(f"x {sign}", optional=True) for sign in family.order.split("/")),
-    ]
-    return Table("", headings, [_candidate_row(k, own) for k, own in enumerate(found.candidates, 1)])
+    return declared_table("", [(str(k), CandidateRow(own, family)) for k, own in enumerate(found.candidates, 1)])
 
 
-def _candidate_row(number: int, own: Candidate) -> Row:
-    gap = own.own.planet_gap(own.task.planets)
-    cells = [
-        teeth_text(own.own.teeth),
-        Shown(f"{own.ratio:.6g}", own.ratio),
-        Shown(f"{own.own.centre_distance:.4f}", own.own.centre_distance),
-        _percent(own.forward),
-        _percent(own.backward),
-        Shown(f"{gap:.3f}", gap) if math.isfinite(gap) else Shown(NOTHING, None),
-        *(Shown(unsigned_zero(f"{shift:.3f}"), shift) for shift in in_order(own.own.teeth, own.own.shifts)),
-    ]
-    return Row(str(number), cells)
+def _driven(value: float) -> float | str:
+    return value if value > 0.0 else LOCKS_ITSELF
 
 
-def _percent(value: float) -> str:
-    return Shown(f"{100 * value:.3f}", 100 * value) if value > 0.0 else LOCKS_ITSELF
+@dataclass(frozen=True)
+class MeshColumn:
+    """A mesh of a candidate."""
+
+    of: WorkingMesh
+    friction: float
+
+    teeth = Computed(Shows("teeth of the central gear", "d"), lambda own: own.of.mesh.teeth)
+    planet_teeth = Computed(Shows("teeth of the planet", "d"), lambda own: own.of.mesh.planet_teeth)
+    shift = Computed(Shows("profile shift x of the central gear", ".4f"), lambda own: own.of.central_shift)
+    planet_shift = Computed(Shows("profile shift x of the planet", ".4f"), lambda own: own.of.planet_shift)
+    angle = Computed(Shows("working pressure angle", ".4f", "deg"), lambda own: own.of.working_angle)
+    contact_ratio = Computed(Shows("contact ratio", ".4f"), lambda own: own.of.contact_ratio)
+    tip = Computed(Shows("tip thickness of the central gear", ".4f", "mm"), lambda own: own.of.tip_thicknesses[0])
+    planet_tip = Computed(Shows("tip thickness of the planet", ".4f", "mm"), lambda own: own.of.tip_thicknesses[1])
+    clearance = Computed(Shows("least tip clearance", ".4f", "mm"), lambda own: min(own.of.tip_clearances))
+    sliding = Computed(Shows("E, published formula", ".5f"), lambda own: sliding_factor(*own.of.contact_ratios))
+    shared = Computed(
+        Shows("E, equal shares of the load", ".5f"), lambda own: shared_sliding_factor(*own.of.contact_ratios)
+    )
+    efficiency = Computed(Shows("efficiency, published formula", ".6f"), lambda own: own.by("formula"))
+    equal_shares = Computed(Shows("efficiency, equal shares", ".6f"), lambda own: own.by("equal shares"))
+
+    def by(self, kind: Sharing) -> float:
+        """Its efficiency by the way in which teeth share the load."""
+        return mesh_efficiency(self.of, self.friction, kind)
 
 
 def mesh_table(own: Candidate) -> Table:
     """A column for each mesh of a candidate."""
-    meshes, friction = own.own.meshes, own.task.friction
-    names = [f"{mesh.mesh.central} – {step_name(own.own.teeth, mesh.mesh.step)}" for mesh in meshes]
-
-    def row(label: str, unit: str, digits: int, values: Sequence[float]) -> Row:
-        said = f"{label} [{unit}]" if unit not in ("", "1") else label
-        return Row(said, [Shown(unsigned_zero(f"{value:.{digits}f}"), value) for value in values], unit=unit)
-
-    def each(kind: Sharing) -> list[float]:
-        return [mesh_efficiency(mesh, friction, kind) for mesh in meshes]
-
-    rows = [
-        row("teeth of the central gear", "1", 0, [mesh.mesh.teeth for mesh in meshes]),
-        row("teeth of the planet", "1", 0, [mesh.mesh.planet_teeth for mesh in meshes]),
-        row("profile shift x of the central gear", "1", 4, [mesh.central_shift for mesh in meshes]),
-        row("profile shift x of the planet", "1", 4, [mesh.planet_shift for mesh in meshes]),
-        row("working pressure angle", "deg", 4, [math.degrees(mesh.working_angle) for mesh in meshes]),
-        row("contact ratio", "1", 4, [mesh.contact_ratio for mesh in meshes]),
-        row("tip thickness of the central gear", "mm", 4, [mesh.tip_thicknesses[0] for mesh in meshes]),
-        row("tip thickness of the planet", "mm", 4, [mesh.tip_thicknesses[1] for mesh in meshes]),
-        row("least tip clearance", "mm", 4, [min(mesh.tip_clearances) for mesh in meshes]),
-        row("E, published formula", "1", 5, [sliding_factor(*mesh.contact_ratios) for mesh in meshes]),
-        row("E, equal shares of the load", "1", 5, [shared_sliding_factor(*mesh.contact_ratios) for mesh in meshes]),
-        row("efficiency, published formula", "1", 6, each("formula")),
-        row("efficiency, equal shares", "1", 6, each("equal shares")),
-    ]
-    return Table("mesh", [Heading(name) for name in names], rows)
+    names = [f"{mesh.mesh.central} – {step_name(own.own.teeth, mesh.mesh.step)}" for mesh in own.own.meshes]
+    columns = [MeshColumn(mesh, own.task.friction) for mesh in own.own.meshes]
+    return side_by_side("mesh", zip(names, columns, strict=True))
 
 
 def _title(wish: Wish) -> Line:

@@ -1,11 +1,14 @@
 """Efficiencies of planetary sets and torques of their springs, as tables."""
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
-from tol3d.planetary.summary_types import EfficiencySummary, PlanetaryOfRun, PlanetarySetSummary
-from tol3d.report.page import Heading, PageItem, Row, Shown, Table, note, titled
+from tol3d.planetary.summary_types import PlanetaryOfRun, PlanetarySetSummary
+from tol3d.report.declared import declared_table, side_by_side
+from tol3d.report.page import PageItem, Shown, note, titled
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Shows
 
 BALANCE: Final = "torques in equilibrium, pairs in contact carry alike"
 FORMULA: Final = "closed form of a 3K set, published E"
@@ -25,36 +28,46 @@ def set_blocks(sets: Mapping[str, PlanetarySetSummary]) -> Sequence[PageItem]:
     return [block for name, own in sets.items() for block in (*_efficiencies(name, own), *_torques(name, own))]
 
 
+@dataclass(frozen=True)
+class SpringTorques:
+    """Torques of a carrier's spring at a shaft."""
+
+    breakaway: Annotated[float, Shows("breakaway torque [N mm]", ".4g")]
+    stiffness: Annotated[float, Shows("stiffness from there on [N mm/′]", ".4g")]
+
+
+@dataclass(frozen=True)
+class EfficiencyRow:
+    """Efficiencies of a set by the shaft that drives it [%]."""
+
+    driven_at: Annotated[Mapping[str, Shown], Shows("driven at {key} [%]")]
+
+
 def _torques(name: str, own: PlanetarySetSummary) -> Sequence[PageItem]:
     if own.spring is None:
         return ()
     spring = own.spring
-    heads = [Heading(f"at {shaft}") for shaft in spring.breakaway_n_mm]
-    rows = [
-        Row("breakaway torque [N mm]", [Shown(f"{each:.4g}", each) for each in spring.breakaway_n_mm.values()]),
-        Row(
-            "stiffness from there on [N mm/′]",
-            [Shown(f"{each:.4g}", each) for each in spring.low_stiffness_n_mm_per_arcmin.values()],
-        ),
-    ]
+    stiffness = spring.low_stiffness_n_mm_per_arcmin
+    torques = [(f"at {shaft}", SpringTorques(own, stiffness[shaft])) for shaft, own in spring.breakaway_n_mm.items()]
     given = (
         f"force {spring.force_n:g} N, stiffness {spring.stiffness_n_per_mm:g} N/mm, friction {spring.friction_n:g} N"
     )
     words = "of the mean build; it holds torques up to the breakaway, then gives way until contacts stop the planets"
-    return [*titled(f"{name}: the spring of its carrier", Table("", heads, rows)), note(f"{given}; {words}")]
+    return [*titled(f"{name}: the spring of its carrier", side_by_side("", torques)), note(f"{given}; {words}")]
 
 
 def _efficiencies(name: str, own: PlanetarySetSummary) -> Sequence[PageItem]:
     if own.efficiency is None:
         return ()
-    rows = [Row(BALANCE, _cells(own.efficiency))]
-    if own.efficiency_by_formula is not None:
-        rows.append(Row(FORMULA, _cells(own.efficiency_by_formula)))
-    heads = [Heading(f"driven at {own.input} [%]"), Heading(f"driven at {own.output} [%]")]
-    table = Table(f"coefficient of friction {own.friction:g}", heads, rows)
+    found = {BALANCE: own.efficiency, FORMULA: own.efficiency_by_formula}
+    rows = [
+        (label, EfficiencyRow({own.input: _percent(each.forward_percent), own.output: _percent(each.backward_percent)}))
+        for label, each in found.items()
+        if each is not None
+    ]
+    table = declared_table(f"coefficient of friction {own.friction:g}", rows)
     return [*titled(f"{name}: efficiency", table), note(NEGLECTED)]
 
 
-def _cells(own: EfficiencySummary) -> list[Shown]:
-    found = (own.forward_percent, own.backward_percent)
-    return [Shown(f"{each:.2f}" if each > LOCKED else "locks itself", each) for each in found]
+def _percent(value: float) -> Shown:
+    return Shown(f"{value:.2f}" if value > LOCKED else "locks itself", value)

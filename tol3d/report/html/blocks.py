@@ -65,7 +65,8 @@ def table(own: Table, narrow: str = SCROLLS) -> Markup:
 
 
 def _head(heading: Heading) -> Markup:
-    return tag("th", heading.text, scope="col", class_="words" if heading.words else "number")
+    kind, meaning = "words" if heading.words else "number", heading.meaning or None
+    return tag("th", heading.text, scope="col", class_=kind, title=meaning)
 
 
 def _row(row: Row, headings: Sequence[Heading], *, roles: bool) -> Markup:
