@@ -28,6 +28,7 @@ from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
 from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.numerics.plane import turned
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
@@ -70,7 +71,7 @@ class RVLink(OutputLink):
 
     def is_compiled(self) -> bool:
         """See StatedLink."""
-        return bool((rests if self.own.plays else first_contacts).kept)
+        return bool(rests.kept and cone_programmes.kept if self.own.plays else first_contacts.kept)
 
     # its play ---------------------------------------------------------------------------------------
 
@@ -140,11 +141,8 @@ class RVLink(OutputLink):
 
     def slopes_at(self, piece: LinkTrials, turns: Array) -> Rates:
         """See OutputLink: by the pins and planets that touch, of both ends, and how each end counts."""
-        own, deviated, rates = self.own, self.deviated(piece, turns[:, 0]), []
-        for sense, counts in BOTH_WAYS:
-            found = linear_turning(own).turned(deviated, turns, sense)
-            rates.append((counts, linear_rates(own, deviated, turns[:, 0], found, sense)))
-        return rates
+        own, deviated = self.own, self.deviated(piece, turns[:, 0])
+        return [(counts, linear_rates(own, deviated, turns[:, 0], sense)) for sense, counts in BOTH_WAYS]
 
     @property
     def pins(self) -> Sequence[tuple[float, float]]:

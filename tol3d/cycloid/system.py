@@ -18,6 +18,7 @@ from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import STATUSES, RVMethod, RVTrials
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
@@ -68,7 +69,9 @@ class RVSystem(RVTrials):
 
     def is_compiled(self, method: str) -> bool:
         """See System."""
-        return method != "exact" or (rests if self.own.plays else first_contacts).kept
+        if self.own.plays:
+            return cone_programmes.kept and (method != "exact" or rests.kept)
+        return method != "exact" or first_contacts.kept
 
     def materials(self, method: str) -> Any:
         """See System: the strips of a disc's solid, for FCL."""

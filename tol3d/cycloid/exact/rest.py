@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.cycloid.exact.contact import NONE_COUNTED, ContactStage, contact_shape
-from tol3d.cycloid.exact.rest_kernel import rests
+from tol3d.cycloid.exact.rest_kernel import rests, work_arrays
 from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.numerics.arrays import Array, Places
 
@@ -83,5 +83,6 @@ class RestStage(ContactStage):
             found.loads,
             found.near,
             found.status,
+            *work_arrays(self.discs, self.cranks, self.profile.pins),
         )
         return found

@@ -16,7 +16,8 @@ import numpy as np
 
 from tol3d.cycloid.exact.pin_contact import ContactShape
 from tol3d.cycloid.exact.rest_rows import ARM, ROOM, TURNS, based, bearing_at, mesh_written, pins_written, working_pins
-from tol3d.numerics.compiled import kernel, part
+from tol3d.numerics.arrays import Array, Places
+from tol3d.numerics.compiled import kernel, nested
 from tol3d.numerics.loops import fill
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED, new_rooms, solve_lp
 
@@ -35,7 +36,7 @@ PIN: Final = -1.0  # in place of a bearing's number
 CARRIES: Final = 1e-9  # of a gap's multiplier
 
 
-@part
+@nested
 def boxed(count: int, basis: Any, loads: Any) -> bool:
     """True if the room given to a body carries some of the torque."""
     carried = 0.0
@@ -45,14 +46,14 @@ def boxed(count: int, basis: Any, loads: Any) -> bool:
     return carried > CARRIES
 
 
-@part
+@nested
 def begin(count: int, basis: Any, sides: Any) -> None:
     """Put the first basis: the room of each body."""
     for k in range(count):
         basis[k], sides[k] = k, 1.0
 
 
-@part
+@nested
 def room_written(count: int, discs: int, near: float, z: Any, lower: Any, upper: Any) -> None:
     """Write the limits of the next step of bodies: to the end of their room, and no farther than near."""
     for k in range(count):
@@ -60,7 +61,7 @@ def room_written(count: int, discs: int, near: float, z: Any, lower: Any, upper:
         lower[k], upper[k] = max(-most - z[k], -near), min(most - z[k], near)
 
 
-@part
+@nested
 def bend_kept(pin: int, gap: float, row: Any, z: Any, bend: Any) -> None:
     """Keep the tangent of a pin's gap: slopes, gap at z = 0, and the row of the pin."""
     count = z.shape[0]
@@ -70,7 +71,7 @@ def bend_kept(pin: int, gap: float, row: Any, z: Any, bend: Any) -> None:
         bend[count] -= row[j] * z[j]
 
 
-@part
+@nested
 def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any) -> None:
     """Write the row of a tangent that was kept.
 
@@ -90,7 +91,7 @@ def bend_written(bend: Any, z: Any, row: int, rows: Any, lower: Any, upper: Any)
     lower[row], upper[row] = -value, ROOM * ARM
 
 
-@part
+@nested
 def bends_written(
     step: int, pinned: int, first: int, cuts: int, z: Any, planes: Any, bends: Any, rows: Any, lower: Any, upper: Any
 ) -> int:  # fmt: skip
@@ -107,7 +108,7 @@ def bends_written(
     return cuts
 
 
-@part
+@nested
 def begin_planes(bearings: int, planes: Any) -> int:
     """Put the first planes: across two directions of each bearing; their number."""
     cuts = 0
@@ -118,7 +119,7 @@ def begin_planes(bearings: int, planes: Any) -> int:
     return cuts
 
 
-@part
+@nested
 def rested(
     shape: Any, stage: Any, throws: Any, made: Any, base: Any, pins: Any, clearances: Any, working: Any, sense: float,
     rooms: Any,
@@ -179,7 +180,7 @@ def rested(
     return STALLED, np.nan
 
 
-@part
+@nested
 def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, loads: Any) -> None:
     """Write the force on each pin per torque [1/mm]."""
     count, first = basis.shape[0], pinned + working.shape[0]
@@ -195,12 +196,15 @@ def note(pinned: int, working: Any, basis: Any, multipliers: Any, bends: Any, lo
     ContactShape,
     arrays="f8[::1], f8[:,:,::1], f8[:,:,::1], f8[:,:,:,::1], f8[:,:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,::1], "
     "f8[:,:,::1], f8[:,:,::1], f8[:,::1], f8[:,:,:,::1], f8[::1], f8[:,::1], f8, f8[:,::1], f8[:,:,::1], i8[:,::1], "
-    "i1[:,::1]",
+    "i1[:,::1], f8[:,::1], f8[::1], f8[::1], i8[::1], f8[::1], f8[::1], f8[:,::1], f8[:,::1], f8[:,::1], i8[::1], "
+    "f8[:,::1], f8[:,::1]",
 )
 def rests(
     shape: Any, throws: Any, linkage: Any, holes: Any, thrown: Any, bored: Any, places: Any, radii: Any,
     lobe_pitch: Any, lobe_profile: Any, leans: Any, radial: Any, free: Any, leaving: Any, phis: Any, sense: float,
     turns: Any, loads: Any, near: Any, status: Any,
+    rows: Any, lower: Any, upper: Any, basis: Any, x: Any, z: Any, planes: Any, across: Any, bends: Any, working: Any,
+    poses: Any, axes: Any,
 ) -> None:  # fmt: skip
     """Rests of trials at crank angles.
 
@@ -219,20 +223,14 @@ def rests(
         loads: on pins per torque (trials, positions, discs pins) [1/mm]; written.
         near: working pins whose gap is at most the shape's deflection then (trials, positions); written.
         status: of the positions; written.
+        rows: zeros, to write in, as are lower, upper, basis, x, z, planes, across, bends, working, poses, axes: see
+            `work_arrays`.
     """
-    discs, cranks = throws.shape[0], holes.shape[1]
-    count = 1 + 3 * (discs + cranks)
-    bearings = cranks * (discs + 1)
-    most = bearings * (2 + CUTS) + BENDS
+    discs, cranks, count = throws.shape[0], holes.shape[1], z.shape[0]
     pinned = count + 2 * cranks
-    size = pinned + discs * radii.shape[1] + most
     solving = new_rooms(count)
-    rows, lower, upper = np.zeros((size, count)), np.empty(size), np.empty(size)
-    rooms = (
-        rows, lower, upper, np.empty(count, np.int64), solving, np.empty(count), np.empty(count), np.empty((most, 3)),
-        np.empty((3, count)), np.empty((most, count + 2)),
-    )  # fmt: skip
-    working, base = np.empty(discs * radii.shape[1], np.int64), (np.empty((discs, 4)), np.empty((cranks, 2)))
+    rooms = (rows, lower, upper, basis, solving, x, z, planes, across, bends)
+    base = (poses, axes)
     for i in range(phis.shape[0]):
         made = (holes[i], thrown[i], bored[i])
         pins = (places[i], radii[i], lobe_pitch[i], lobe_profile[i], leans[i])
@@ -252,6 +250,18 @@ def rests(
             near[i, p] = 0
             fill(loads[i, p], 0.0)
             if status[i, p] == OK:
-                note(pinned, working[:number], rooms[3], solving[3][0], rooms[9], loads[i, p])
+                note(pinned, working[:number], basis, solving[3][0], bends, loads[i, p])
                 for k in range(number):
                     near[i, p] += -lower[pinned + k] <= shape.deflection
+
+
+def work_arrays(discs: int, cranks: int, pins: int) -> tuple[Array | Places, ...]:
+    """Arrays that `rests` writes in: made in it, each takes numba as long to compile as ten lines."""
+    count, bearings = 1 + 3 * (discs + cranks), cranks * (discs + 1)
+    most = bearings * (2 + CUTS) + BENDS
+    size = count + 2 * cranks + discs * pins + most
+    return (
+        *(np.zeros((size, count)), np.empty(size), np.empty(size), np.empty(count, np.int64)),
+        *(np.empty(count), np.empty(count), np.empty((most, 3)), np.empty((3, count)), np.empty((most, count + 2))),
+        *(np.empty(discs * pins, np.int64), np.empty((discs, 4)), np.empty((cranks, 2))),
+    )

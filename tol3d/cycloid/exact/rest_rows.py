@@ -5,7 +5,7 @@ from typing import Any, Final
 import numpy as np
 
 from tol3d.cycloid.exact.pin_contact import TURN, lobe_at, lobe_turn, placed
-from tol3d.numerics.compiled import part
+from tol3d.numerics.compiled import nested
 from tol3d.numerics.loops import fill
 
 ARM: Final = 100.0  # mm; turns count as lengths there, so that all rows are of one size
@@ -15,7 +15,7 @@ FOOT_STEPS: Final = 30
 FOOT_XTOL: Final = 1e-12  # rad
 
 
-@part
+@nested
 def pin_gap(shape: Any, pose: Any, clock: float, flanks: Any, pin: Any, u: float) -> Any:
     """Gap between a pin and a disc where it lies [mm], and its slopes: along x, y and by a turn of the disc [mm/rad].
 
@@ -54,7 +54,7 @@ def pin_gap(shape: Any, pose: Any, clock: float, flanks: Any, pin: Any, u: float
     return gap, -n_x, -n_y, n_x * away_y - n_y * away_x
 
 
-@part
+@nested
 def bearing_at(stage: Any, made: Any, base: Any, z: Any, bearing: int, row: Any) -> Any:
     """Displacement in a bearing (x, y) [mm], and its slopes written into two rows (2, unknowns).
 
@@ -95,7 +95,7 @@ def bearing_at(stage: Any, made: Any, base: Any, z: Any, bearing: int, row: Any)
     return axes[i, 0] + z[own] - a_x, axes[i, 1] + z[own + 1] - a_y
 
 
-@part
+@nested
 def mesh_written(stage: Any, meshes: Any, z: Any, crank: int, off: Any, across: Any, rows: Any, sides: Any) -> None:
     """Write the rows of a planet's two flanks against the sun's: by its turn, and by where the bearing lets it lie.
 
@@ -124,7 +124,7 @@ def mesh_written(stage: Any, meshes: Any, z: Any, crank: int, off: Any, across: 
         sides[1][side] = free if side == 1 else TURNS * ROOM
 
 
-@part
+@nested
 def based(stage: Any, linkage: Any, made: Any, poses: Any, axes: Any) -> None:
     """Write where discs and crank axes begin: held without play, at the crank's angle."""
     discs, cranks, _, phi, chi = stage
@@ -137,7 +137,7 @@ def based(stage: Any, linkage: Any, made: Any, poses: Any, axes: Any) -> None:
         axes[i, 1] = sin_chi * holes[i, 0] + cos_chi * holes[i, 1]
 
 
-@part
+@nested
 def pins_written(
     shape: Any, stage: Any, throws: Any, pins: Any, base: Any, z: Any, working: Any, rows: Any, lower: Any, begun: int
 ) -> float:  # fmt: skip
@@ -171,7 +171,7 @@ def pins_written(
     return deepest
 
 
-@part
+@nested
 def working_pins(shape: Any, throws: Any, phi: float, sense: float, working: Any) -> int:
     """Write the places of pins that stop a disc in a sense; their number."""
     found, count = 0, int(shape.pins)

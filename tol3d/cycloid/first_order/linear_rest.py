@@ -30,10 +30,6 @@ from tol3d.numerics.plane import as_complex
 
 LEAST_PLAY: Final = 1e-6  # mm on the radius; of a bearing without, so that logarithms have room
 FAR: Final = 1.0  # mm, the gap of a pin that does not work
-SHRINKS: Final = 0.1  # the weight, once Newton's method is near
-CLOSE: Final = 1.0  # Newton decrement at which it is
-INSIDE: Final = 0.95  # of the way to where the first gap closes
-MOST_STEPS: Final = 120
 
 
 @dataclass(frozen=True)

@@ -59,8 +59,7 @@ def _senses(measure: RVMeasure) -> tuple[tuple[int, float], ...]:
 
 
 def _rates(system: RVTrials, deviated: RVDeviated, turns: Array, sense: tuple[int, float]) -> tuple[float, RVDeviated]:
-    found = linear_turning(system.own).turned(deviated, turns[:, None], sense[0])
-    return sense[1], linear_rates(system.own, deviated, turns, found, sense[0])
+    return sense[1], linear_rates(system.own, deviated, turns, sense[0])
 
 
 def _term(system: RVTrials, name: str, rates: Sequence[tuple[float, RVDeviated]], values: Array) -> Array:
@@ -81,7 +80,7 @@ def parts_over_turn(system: RVTrials, measure: RVMeasure, trials: Trials) -> Par
         np.broadcast_to(own, weights.shape)[rows, positions][:, None] for own in (turned.places, turned.planets)
     )
     found = Turned(turned.turns[rows, positions][:, None], places, planets)
-    rates = linear_rates(system.own, deviated[rows], at[0, positions], found, measure.sense)
+    rates = linear_rates(system.own, deviated[rows], at[0, positions], measure.sense, found)
 
     def part_of(own: Contributor, off: Array) -> Array:
         terms = weights[rows, positions] * rates.term(system.acts[own.name], off[rows])

@@ -192,8 +192,10 @@ def linear_turning(own: RVSet) -> Turning:
     return LinearResting(own) if own.plays else LinearTurning(own)
 
 
-def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, found: Turned, sense: int) -> RVDeviated:
-    """Derivatives of the turn at output turns (trials,) by each deviation, at the contacts found."""
+def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Turned | None = None) -> RVDeviated:
+    """Derivatives of the turn at output turns (trials,) by each deviation, at the contacts found or to be found."""
     if own.plays:
         return LinearResting(own).rates(deviated, turns, sense)
-    return LinearTurning(own).rates(deviated.disc_tilts, turns, found, sense)
+    turning = LinearTurning(own)
+    touching = found or turning.turned(deviated, turns[:, None], sense)
+    return turning.rates(deviated.disc_tilts, turns, touching, sense)
