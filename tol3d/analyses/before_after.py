@@ -57,8 +57,8 @@ class ChangeMade(Section):
     """A tolerance before and after, in words."""
 
     contributor: Label
-    before: Label
-    after: Label
+    before: Annotated[Label, Shows("before", "words")]
+    after: Annotated[Label, Shows("after", "words")]
 
 
 class LimitNumbers(Section):

@@ -1,12 +1,14 @@
 """Effects as tables: for each measure the effect of every contributor, and the matrix of all as a file."""
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.analyses.tolerance_effects import ContributorEffects, Effects, Index, MeasureEffects
 from tol3d.report.declared import declared_table
 from tol3d.report.number import measured_text, share_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, title, titled
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title, titled
+from tol3d.runs.summary.shows import Computed, Shows
 
 MOST_SHOWN: Final = 15
 """Contributors of a measure."""
@@ -80,18 +82,30 @@ def _plain(own: Index) -> str:
 COLUMNS: Final = ("first", "total", "shapley", "failures", "failures_total")
 
 
+@dataclass(frozen=True)
+class EffectRow:
+    """Effect of a contributor on a measure, with all digits."""
+
+    of: ContributorEffects
+    contributor: Annotated[str, Shows("contributor")]
+    measure_unit: Annotated[str, Shows("measure unit")]
+    own_unit = Computed(Shows("contributor unit"), lambda own: own.of.unit)
+    slope = Computed(Shows("slope", "g"), lambda own: own.of.slope)
+    change = Computed(Shows("change", "g"), lambda own: own.of.change)
+    indices = Computed(Shows("{key}", "g"), lambda own: _numbers(own.of))
+
+
+def _numbers(own: ContributorEffects) -> Mapping[str, float | None]:
+    """Each index, and the ends of its 95 %."""
+    ends = {"": "share", "_low_95": "low", "_high_95": "high"}
+    return {f"{name}{end}": getattr(getattr(own, name), key, None) for name in COLUMNS for end, key in ends.items()}
+
+
 def whole_table(found: Effects) -> Table:
     """A row for each measure and contributor, all numbers with all their digits."""
-    heads = ["contributor", "measure unit", "contributor unit", "slope", "change"]
-    heads += [f"{name}{end}" for name in COLUMNS for end in ("", "_low_95", "_high_95")]
     rows = []
     for name, own in found.measures.items():
         parts = {**own.contributors, **({"position": own.position} if own.position else {})}
         for contributor, each in parts.items():
-            cells = [contributor, own.unit, each.unit, Shown("", each.slope), Shown("", each.change)]
-            for column in COLUMNS:
-                index: Index | None = getattr(each, column)
-                numbers = (None,) * 3 if index is None else (index.share, index.low, index.high)
-                cells += [Shown("", number) for number in numbers]
-            rows.append(Row(name, cells))
-    return Table("measure", [Heading(text) for text in heads], rows)
+            rows.append((name, EffectRow(each, contributor, own.unit)))
+    return declared_table("measure", rows)

@@ -1,11 +1,14 @@
 """Methods side by side as tables: for each measure one row per method, and the worst builds found."""
 
-from collections.abc import Iterator, Sequence
-from typing import Final
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.analyses.methods_section import BuildFound, MeasureMethods, Methods
-from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, number_text, value_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
+from tol3d.report.declared import declared_table
+from tol3d.report.number import UNIT_SIGNS, limit_text, measured_text, number_text
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, titled, warning
+from tol3d.runs.summary.shows import Computed, Shows
 from tol3d.system.contributor import Contributor
 
 MOST_SHOWN: Final = 12
@@ -37,18 +40,39 @@ def methods_report(found: Methods, contributors: Sequence[Contributor]) -> Page:
     return page(*blocks, BLANK, note(WORDS), note(f"builds that were evaluated: {found.evaluations}"))
 
 
-HEADS: Final = (
-    Heading("low"),
-    Heading("high"),
-    Heading("unit", words=True),
-    Heading("half range"),
-    Heading("of the limits [%]", optional=True),
-)
+@dataclass(frozen=True)
+class IntervalRow:
+    """The interval of a measure by a method, in its unit."""
+
+    unit: str
+    between_limits: float | None
+    low: Annotated[float | None, Shows("low")]
+    high: Annotated[float | None, Shows("high")]
+    sign = Computed(Shows("unit", "words"), lambda own: "′, ″" if own.unit == "arcmin" else UNIT_SIGNS[own.unit])
+    half_range = Computed(Shows("half range"), lambda own: own.half)
+    share = Computed(
+        Shows("of the limits", ".1f", "%", optional=True),
+        lambda own: None if own.half is None or not own.between_limits else 2 * own.half / own.between_limits,
+    )
+
+    @property
+    def half(self) -> float | None:
+        """Half of it."""
+        return None if self.low is None or self.high is None else (self.high - self.low) / 2
+
+
+@dataclass(frozen=True)
+class DeviationRow:
+    """The deviations of a contributor in the worst builds."""
+
+    builds: Annotated[Mapping[str, str], Shows("{key}", "words")]
+    unit_sign: Annotated[str, Shows("unit", "words")]
 
 
 def intervals_table(own: MeasureMethods) -> Table:
     """A row a method."""
-    return Table("", HEADS, [*_rows(own)])
+    width = None if own.lower_limit is None or own.upper_limit is None else own.upper_limit - own.lower_limit
+    return declared_table("", [(words, IntervalRow(own.unit, width, *ends)) for words, *ends in intervals_of(own)])
 
 
 def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float | None]]:
@@ -65,21 +89,6 @@ def intervals_of(own: MeasureMethods) -> Iterator[tuple[str, float | None, float
     if sample.law is not None:
         yield f"fitted law, {sample.law.name}", sample.law.low, sample.law.high
     yield "least and largest trial", sample.sample_min, sample.sample_max
-
-
-def _rows(own: MeasureMethods) -> Iterator[Row]:
-    width = None if own.lower_limit is None or own.upper_limit is None else own.upper_limit - own.lower_limit
-    for words, low, high in intervals_of(own):
-        half = None if low is None or high is None else (high - low) / 2
-        share = None if half is None or not width else 200 * half / width
-        cells = (
-            Shown(value_text(low, own.unit), low),
-            Shown(value_text(high, own.unit), high),
-            "′, ″" if own.unit == "arcmin" else UNIT_SIGNS[own.unit],
-            Shown(value_text(half, own.unit), half),
-            Shown(NOTHING if share is None else f"{share:.1f}", share),
-        )
-        yield Row(words, cells)
 
 
 def _limits(own: MeasureMethods) -> str:
@@ -133,14 +142,12 @@ def _builds(own: MeasureMethods, contributors: Sequence[Contributor]) -> Iterato
         builds["cannot be assembled"] = own.worst.unseated
     if not builds:
         return
-    rows = [
-        Row(each.name, (*(_deviations(build, each.name) for build in builds.values()), UNIT_SIGNS[each.unit]))
-        for each in contributors
-        if any(each.name in build.deviations for build in builds.values())
-    ]
-    heads = [Heading(f"{word}: {build.status}", words=True) for word, build in builds.items()]
-    table = Table("worst found", [*heads, Heading("unit", words=True)], rows).shortened(MOST_SHOWN)
-    yield table
+    rows = []
+    for each in contributors:
+        if any(each.name in build.deviations for build in builds.values()):
+            deviations = {f"{word}: {build.status}": _deviations(build, each.name) for word, build in builds.items()}
+            rows.append((each.name, DeviationRow(deviations, UNIT_SIGNS[each.unit])))
+    yield declared_table("worst found", rows).shortened(MOST_SHOWN)
     yield note(f"by {own.worst.evaluations} builds")
 
 

@@ -1,12 +1,14 @@
 """Rare events as tables: probability beyond each limit, and the most likely build beyond it."""
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.analyses.rare_section import DesignBuild, LimitLeft, RareEvents
 from tol3d.report.declared import declared_table
 from tol3d.report.number import number_text
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
+from tol3d.report.page import BLANK, Line, Page, PageItem, note, page, titled, warning
+from tol3d.runs.summary.shows import Shows
 
 MOST_SHOWN: Final = 8
 """Contributors of a design point."""
@@ -51,16 +53,24 @@ def _notes(limits: Sequence[LimitLeft]) -> Iterator[str]:
             yield f"{own.measure}, {own.words}: {share} cannot be assembled"
 
 
+@dataclass(frozen=True)
+class DesignRow:
+    """A contributor in the most likely build beyond a limit."""
+
+    deviation: Annotated[str, Shows("deviation")]
+    unit_sign: Annotated[str, Shows("unit", "words")]
+    share: Annotated[float, Shows("share of the distance [%]", ".1f")]
+
+
 def _design_point(own: LimitLeft, build: DesignBuild) -> Sequence[PageItem]:
     """Deviations of the contributors that lead there, the largest parts first."""
     rows = []
     for each in build.contributors[:MOST_SHOWN]:
         told = ", ".join(number_text(round(value, 3) + 0.0) for value in each.deviations)
         unit = "µm" if each.unit == "um" else each.unit
-        rows.append(Row(each.name, (told, unit, Shown(f"{each.percent:.1f}", each.percent))))
+        rows.append((each.name, DesignRow(told, unit, each.percent)))
     side = "below" if own.side == "low" else "above"
     kind = "within" if build.beta < 0.0 else side
     title = f"{own.measure}: the most likely build {kind} its {'lower' if own.side == 'low' else 'upper'} limit"
     at = ", ".join(f"{name} {number_text(round(value, 2))}" for name, value in build.positions.items())
-    heads = [Heading("deviation"), Heading("unit", words=True), Heading("share of the distance [%]")]
-    return [*titled(title, Table("", heads, rows)), *([note(at)] if at else [])]
+    return [*titled(title, declared_table("", rows)), *([note(at)] if at else [])]

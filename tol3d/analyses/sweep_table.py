@@ -1,12 +1,14 @@
 """A sweep as tables: a row a variant, for each measure, and all of it in one for files."""
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.analyses.variant_sweep import Sweep, Variant, VariantMeasure, measures_of
-from tol3d.report.declared import cells_of, headings
+from tol3d.report.declared import cells_of, declared_table, headings
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.runs.summary.shows import Shows
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
@@ -86,12 +88,19 @@ def _cells(own: VariantMeasure | None) -> Sequence[Shown | str]:
     return cells_of(own)
 
 
+@dataclass(frozen=True)
+class ReasonRow:
+    """A variant that could not be assembled."""
+
+    why: Annotated[str, Shows("why", "words")]
+
+
 def _not_built(found: Sweep) -> Iterator[PageItem]:
-    rows = [Row(str(k + 1), [str(own.reason)]) for k, own in enumerate(found.variants) if own.reason is not None]
+    rows = [(str(k), ReasonRow(own.reason)) for k, own in enumerate(found.variants, 1) if own.reason is not None]
     if rows:
         yield title("could not be assembled")
         yield BLANK
-        yield Table("variant", [Heading("why", words=True)], rows)
+        yield declared_table("variant", rows)
 
 
 def whole_table(found: Sweep) -> Table:

@@ -1,15 +1,15 @@
 """Tables of other tolerances' effect: a measure before, after, and the change."""
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.analyses.before_after import LimitNumbers, MeasureWhatIf, StateNumbers, WhatIf
-from tol3d.report.declared import formed
+from tol3d.report.declared import declared_table, formed
 from tol3d.report.number import NOTHING, UNIT_SIGNS, limit_text, ppm_text, share_text, value_cell, with_unit
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
-from tol3d.runs.summary.shows import shown_by
+from tol3d.report.page import BLANK, Line, Page, PageItem, Shown, Table, note, page, titled
+from tol3d.runs.summary.shows import Shows, shown_by
 
-HEADS: Final = (Heading("before"), Heading("after"), Heading("change"))
 WORDS: Final = (
     "sigma by rates: from the slopes at the mean build; first order: Φ(−β), with β the distance to the most likely "
     "build beyond the limit; by sampling: importance sampling around that build, with its 95 % interval, or where none "
@@ -30,8 +30,7 @@ def what_if_report(name: str, found: WhatIf) -> Page:
         found: what they do.
     """
     head = Line(((name, "bold"), (" · what if", "")))
-    rows = [Row(own.contributor, (own.before, own.after)) for own in found.changes]
-    changes = Table("", (Heading("before", words=True), Heading("after", words=True)), rows)
+    changes = declared_table("", ((own.contributor, own) for own in found.changes))
     answers = [_answer(measure, own) for measure, own in found.measures.items()]
     blocks: list[PageItem] = [head, BLANK, *answers, BLANK, *titled("tolerances", changes)]
     for measure, own in found.measures.items():
@@ -107,10 +106,19 @@ def _unseen(name: str, own: MeasureWhatIf) -> Iterator[str]:
         )
 
 
+@dataclass(frozen=True)
+class BeforeAfter:
+    """What is told of a measure before and after."""
+
+    before: Annotated[str, Shows("before")]
+    after: Annotated[str, Shows("after")]
+    change: Annotated[str, Shows("change")]
+
+
 def what_if_table(own: MeasureWhatIf) -> Table:
     """Table of one measure."""
     unit = own.unit
-    rows = []
+    rows: list[tuple[str, BeforeAfter]] = []
     for name, shows in shown_by(StateNumbers).items():
         before, after = getattr(own.before, name), getattr(own.after, name)
         if (before, after) != (None, None):
@@ -119,26 +127,28 @@ def what_if_table(own: MeasureWhatIf) -> Table:
                 cells.append(formed(after - before, shows.form, unit))
             else:
                 cells.append(NOTHING if None in (before, after) else "")
-            rows.append(Row(shows.heading, cells))
+            rows.append((shows.heading, BeforeAfter(*cells)))
     if own.before.failed or own.after.failed:
-        rows.append(Row("builds that fail", (str(own.before.failed), str(own.after.failed), "")))
+        rows.append(
+            ("builds that fail", BeforeAfter(formed(own.before.failed, "d"), formed(own.after.failed, "d"), ""))
+        )
     for side, limit in (("low", own.lower_limit), ("high", own.upper_limit)):
         if limit is not None:
             sign = "<" if side == "low" else ">"
             rows += _limit(f"{sign} {limit_text(limit, unit)}", own.before.limits[side], own.after.limits[side])
-    return Table("", HEADS, rows)
+    return declared_table("", rows)
 
 
-def _limit(label: str, before: LimitNumbers, after: LimitNumbers) -> Iterator[Row]:
-    first = [own.first_order for own in (before, after)]
-    yield Row(f"{label}, first order [ppm]", (*map(_ppm, first), _times(*first)))
+def _limit(label: str, before: LimitNumbers, after: LimitNumbers) -> Iterator[tuple[str, BeforeAfter]]:
+    first = (before.first_order, after.first_order)
+    yield f"{label}, first order [ppm]", BeforeAfter(_ppm(first[0]), _ppm(first[1]), _times(*first))
     if before.ppm is None or after.ppm is None or before.interval is None or after.interval is None:
         return
-    sampled = (_bounded(before), _bounded(after), _times(before.ppm, after.ppm))
-    yield Row(f"{label}, by sampling [ppm]", sampled)
+    sampled = BeforeAfter(_bounded(before), _bounded(after), _times(before.ppm, after.ppm))
+    yield f"{label}, by sampling [ppm]", sampled
     if before.below is None or after.below is None:
-        spans = ("" if own.below is not None else _span(own.interval) for own in (before, after))
-        yield Row("    95 %", (*spans, ""))
+        first_span, last_span = ("" if own.below is not None else _span(own.interval) for own in (before, after))
+        yield "    95 %", BeforeAfter(first_span, last_span, "")
 
 
 def _span(interval: Sequence[float] | None) -> str:

@@ -1,13 +1,14 @@
 """Recommended changes, as tables, and as a few lines below a verdict."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import islice
-from typing import Final
+from typing import Annotated, Final
 
 from tol3d.analyses.compared_builds import SURE
 from tol3d.analyses.slopes import Rates
 from tol3d.analyses.what_to_change import Beside, Changes, MeasureChanges, Proposal, Spread, Step
-from tol3d.report.declared import cells_of, headings
+from tol3d.report.declared import cells_of, declared_table, headings
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
@@ -20,6 +21,7 @@ from tol3d.report.number import (
     with_unit,
 )
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.runs.summary.shows import Shows
 
 MOST_TAKEN: Final = 5
 """Contributors of a mean's shift that are shown."""
@@ -97,6 +99,14 @@ def _beside(own: Beside) -> str:
     return f"{text}, Ppk {_ppk(own.now)} → {_ppk(own.after)}" if own.has_limits else text
 
 
+@dataclass(frozen=True)
+class TakenRow:
+    """How far something takes a mean off nominal."""
+
+    by_mean: Annotated[str, Shows("by its mean")]
+    by_spread: Annotated[str, Shows("by its spread")]
+
+
 def _taken_table(own: MeasureChanges) -> Table | None:
     """Table of causes of a mean off nominal; None if there are none."""
     unit, sigma = own.unit, own.now.sigma or 0.0
@@ -105,13 +115,12 @@ def _taken_table(own: MeasureChanges) -> Table | None:
         return None
     shown = large[:MOST_TAKEN]
     rest = [each for each in own.taken if each not in shown]
-    rows = [Row(each.contributor, [_off(each.first_order, unit), _off(each.second_order, unit)]) for each in shown]
+    rows = [(each.contributor, TakenRow(_off(each.first_order, unit), _off(each.second_order, unit))) for each in shown]
     if rest:
         sums = (sum(each.first_order for each in rest), sum(each.second_order for each in rest))
-        rows.append(Row(counted(len(rest), "other"), [_off(value, unit) for value in sums]))
-    rows.append(Row("interactions and sampling", ["", _with_error(own.taken_together, own.taken_error, unit)]))
-    corner = f"mean off nominal ({_valued(own.nominal, unit)})"
-    return Table(corner, [Heading("by its mean"), Heading("by its spread")], rows)
+        rows.append((counted(len(rest), "other"), TakenRow(*(_off(value, unit) for value in sums))))
+    rows.append(("interactions and sampling", TakenRow("", _with_error(own.taken_together, own.taken_error, unit))))
+    return declared_table(f"mean off nominal ({_valued(own.nominal, unit)})", rows)
 
 
 def _with_error(value: float | None, error: float | None, unit: str) -> Shown | str:
@@ -219,30 +228,35 @@ def _told(after: Spread) -> str:
 # all measures -------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class ContributionRow:
+    """What a contributor gives to a measure, in its unit."""
+
+    contributor: Annotated[str, Shows("contributor", "words")]
+    slope_unit: Annotated[str, Shows("of the slope", "words")]
+    slope: Annotated[float, Shows("slope", ".6g")]
+    share: Annotated[float, Shows("share of variance, estimated by slopes", ".6g", "%")]
+    share_95: Annotated[float, Shows("95 % ± of that", ".6g", "%")]
+    sigma: Annotated[float, Shows("sigma it gives", ".6g")]
+    mean: Annotated[float, Shows("mean it gives", ".6g")]
+    by_spread: Annotated[float, Shows("mean by its spread", ".6g")]
+
+
 def contributions_table(rates: Rates) -> Table:
     """A row for each measure and contributor: slopes, share of the variance, and what it takes the mean off."""
     rows = []
     for measure, of in enumerate(rates.response.measures):
         for k, own in enumerate(rates.response.contributors):
             slopes = rates.slopes[measure, rates.response.slices[own.name]] * own.per_unit
-            numbers = (
+            row = ContributionRow(
+                own.name,
+                f"{of.unit} per {own.unit}",
                 float(slopes[0] if len(slopes) == 1 else (slopes * slopes).sum() ** 0.5),
-                100 * float(rates.shares[measure, k]),
-                100 * ERRORS * float(rates.share_errors[measure, k]),
+                float(rates.shares[measure, k]),
+                ERRORS * float(rates.share_errors[measure, k]),
                 float(rates.mean_variances[measure, k]) ** 0.5,
                 float(rates.first[measure, k]),
                 float(rates.second[measure, k]),
             )
-            cells = [own.name, f"{of.unit} per {own.unit}", *(Shown(f"{number:.6g}", number) for number in numbers)]
-            rows.append(Row(of.name, cells, unit=of.unit))
-    heads = (
-        "contributor",
-        "of the slope",
-        "slope",
-        "share of variance, estimated by slopes [%]",
-        "95 % ± of that [%]",
-        "sigma it gives",
-        "mean it gives",
-        "mean by its spread",
-    )
-    return Table("measure", [Heading(own, words=own in heads[:2]) for own in heads], rows)
+            rows.append((Row(of.name, (), unit=of.unit), row))
+    return declared_table("measure", rows)

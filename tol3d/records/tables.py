@@ -1,8 +1,9 @@
 """Tables of an identification, and of a rig's expected accuracy."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Final
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final
 
 from tol3d.records.findings import Identified
 from tol3d.records.pair import ARCSEC, TURN, Specimen
@@ -11,8 +12,10 @@ from tol3d.records.prediction import Figure
 from tol3d.records.rig import Rig
 from tol3d.records.scene_mesh import SceneMesh
 from tol3d.records.summary import UNITS, alone_figures
+from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, titled, warning
+from tol3d.runs.summary.shows import Computed, Shows
 
 WORDS: Final = {
     "e1": "e1, eccentricity of the driver",
@@ -32,7 +35,6 @@ WORDS: Final = {
 }
 SIGNS: Final = {"um": "µm", "deg": "°", "arcsec": "″"}
 PLAN_DIGITS: Final = 3  # significant ones; a half-width known better says nothing
-DIGITS: Final = {"um": 3, "deg": 3, "arcsec": 3}
 
 
 def identified_report(found: Identified, own: SceneMesh) -> Page:
@@ -61,40 +63,44 @@ def _read_lines(found: Identified) -> Iterator[Line]:
         yield line(f"{side} side: {rows} rows{several}, {turns:.2f} turns of the driver{moved}", "dim")
 
 
+@dataclass(frozen=True)
+class FigureRow:
+    """A figure by both sides and by each alone; `one` is 1 of its unit."""
+
+    of: Figure
+    one: float
+    drive_alone: Figure | None = None
+    back_alone: Figure | None = None
+    both = Computed(Shows("both sides", ".3f", decides=True), lambda own: own.of.value / own.one)
+    half_width = Computed(Shows("± 95 %", ".3f"), lambda own: own.of.half_width / own.one)
+    drive = Computed(Shows("drive alone", ".3f"), lambda own: own.drive_alone and own.drive_alone.value / own.one)
+    back = Computed(Shows("back alone", ".3f"), lambda own: own.back_alone and own.back_alone.value / own.one)
+
+
+@dataclass(frozen=True)
+class OrderRow:
+    """Amplitudes that a fit leaves at an order ["]."""
+
+    drive: Annotated[float, Shows("drive", ".3f")]
+    back: Annotated[float, Shows("back", ".3f")]
+    noise: Annotated[float, Shows("white noise below, 95 %", ".3f")]
+
+
 def _figures(found: Identified) -> Table:
-    headings = [Heading("both sides", "bold"), Heading("± 95 %"), Heading("drive alone"), Heading("back alone")]
-    alone = [alone_figures(own) for own in found.alone.values()]
-    rows = [
-        Row(f"{WORDS[name]} [{SIGNS[UNITS[name][0]]}]", [*_cells(name, own), *_alone(name, alone)], unit=UNITS[name][0])
-        for name, own in found.figures.items()
-    ]
-    for words, encoders in (("once per turn", found.encoders), ("twice per turn", found.encoders_twice)):
-        for name, own in encoders.items():
-            cells = [*(Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width))]
-            rows.append(Row(f"{name}, {words} [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
+    drive, back = (alone_figures(own) for own in found.alone.values())
+    rows = []
+    for name, own in found.figures.items():
+        unit, one = UNITS[name]
+        row = FigureRow(own, one, drive.get(name), back.get(name))
+        rows.append((Row(f"{WORDS[name]} [{SIGNS[unit]}]", (), unit=unit), row))
+    others = {f"{name}, once per turn": own for name, own in found.encoders.items()}
+    others |= {f"{name}, twice per turn": own for name, own in found.encoders_twice.items()}
     for closing, own in found.closure.items():
-        what = "backlash" if closing == "backlash" else f"{closing} side"
-        cells = [Shown(f"{value / ARCSEC:.3f}", value / ARCSEC) for value in (own.value, own.half_width)]
-        rows.append(Row(f"closure of the {what} [″]", [*cells, NOTHING, NOTHING], unit="arcsec"))
+        others[f"closure of the {'backlash' if closing == 'backlash' else f'{closing} side'}"] = own
+    rows += [(Row(f"{name} [″]", (), unit="arcsec"), FigureRow(own, ARCSEC)) for name, own in others.items()]
     if found.winding is not None:
-        cells = [Shown(f"{x / ARCSEC:.3f}", x / ARCSEC) for x in (found.winding.value, found.winding.half_width)]
-        rows.append(Row("winding 1/k [″/(N m)]", [*cells, NOTHING, NOTHING], unit="arcsec/(N m)"))
-    return Table("", headings, rows)
-
-
-def _cells(name: str, own: Figure) -> list[Shown]:
-    unit, one = UNITS[name]
-    return [Shown(f"{value / one:.{DIGITS[unit]}f}", value / one) for value in (own.value, own.half_width)]
-
-
-def _alone(name: str, alone: Sequence[Mapping[str, Figure]]) -> list[str]:
-    unit, one = UNITS[name]
-    found: list[str] = []
-    for own in alone:
-        figure = own.get(name)
-        value = None if figure is None else figure.value / one
-        found.append(NOTHING if value is None else Shown(f"{value:.{DIGITS[unit]}f}", value))
-    return found
+        rows.append((Row("winding 1/k [″/(N m)]", (), unit="arcsec/(N m)"), FigureRow(found.winding, ARCSEC)))
+    return declared_table("", rows)
 
 
 def _notes(found: Identified) -> Iterator[str]:
@@ -132,8 +138,8 @@ def _orders(found: Identified) -> Table:
     rows = []
     for own in found.spectrum.lines:
         values = [*(own.amplitude[side] / ARCSEC for side in sides), max(own.noise.values()) / ARCSEC]
-        rows.append(Row(f"{own.order}: {own.words}", [Shown(f"{value:.3f}", value) for value in values]))
-    return Table("[″]", [Heading("drive"), Heading("back"), Heading("white noise below, 95 %")], rows)
+        rows.append((f"{own.order}: {own.words}", OrderRow(*values)))
+    return declared_table("[″]", rows)
 
 
 def plan_report(plans: Sequence[RigPlan], specimen: Specimen, rig: Rig, scene: str) -> Page:

@@ -2,9 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -12,13 +13,15 @@ from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.column import seated_text
+from tol3d.report.declared import declared_table
 from tol3d.report.ends import is_bounded
 from tol3d.report.joint import joint_comparison
-from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text, value_cell
-from tol3d.report.page import BLANK, Heading, Page, PageItem, Row, Shown, Table, line, note, page, title
+from tol3d.report.number import NOTHING, UNIT_SIGNS, difference_text, share_text
+from tol3d.report.page import BLANK, Page, PageItem, Row, Shown, Table, line, note, page, title
 from tol3d.report.verdict import verdict_lines
 from tol3d.runs.run import Run
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Method
 from tol3d.system.outcome import METHODS, outcome_of, status_column, value_column
 
@@ -251,23 +254,36 @@ class _Found:
         return f"{self.count} of {self.trials}" if self.trials != self.count else str(self.count)
 
 
+@dataclass(frozen=True)
+class ComparedRow:
+    """A method in one of several runs: what it found of a measure, and how far it is from the other."""
+
+    method: Annotated[str, Shows("method", "words")]
+    trials: Annotated[str, Shows("trials")]
+    mean: Annotated[float | None, Shows("mean")]
+    sigma: Annotated[float | None, Shows("sigma")]
+    low: Annotated[float | None, Shows("low")]
+    high: Annotated[float | None, Shows("high")]
+    out: Annotated[str | None, Shows("out of limits", seldom=True)]
+    largest: Annotated[str, Shows("max")]
+    rms: Annotated[str, Shows("rms")]
+    shift: Annotated[str | None, Shows("shift", seldom=True)]
+
+
 def _table(name: str, unit: str, runs: Sequence[tuple[str, Run]]) -> Table:
-    shift = ("shift",) if len(runs) > 1 else ()
-    out = ("out of limits",) if any(_judged(run.found.measures[name]) for _, run in runs) else ()
-    numbers = ("trials", "mean", "sigma", "low", "high", *out, "max", "rms", *shift)
-    headings = [Heading("method", words=True), *(Heading(word) for word in numbers)]
+    judged = any(_judged(run.found.measures[name]) for _, run in runs)
     rows, first = [], dict[str, float]()
     for label, run in runs:
         for index, (method, found) in enumerate(_found(run.found.measures[name])):
+            largest, rms = _differences(run, name, unit) if method == "geometric" else (NOTHING, NOTHING)
+            shifted = None if found.mean is None else found.mean - first.setdefault(method, found.mean)
+            shift = _bare(shifted, unit) if len(runs) > 1 else None
             values = (found.mean, found.sigma, found.low, found.high)
-            cells = [SHORT[method], found.trials_text, *(value_cell(value, unit) for value in values)]
-            cells += [share_text(found.out_ppm)] if out else []
-            cells += _differences(run, name, unit) if method == "geometric" else [NOTHING, NOTHING]
-            if shift:
-                shifted = None if found.mean is None else found.mean - first.setdefault(method, found.mean)
-                cells.append(_bare(shifted, unit))
-            rows.append(Row(label if index == 0 else "", cells, unit=unit))
-    return Table("run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]", headings, rows, repeated=1)
+            out = share_text(found.out_ppm) if judged else None
+            row = ComparedRow(SHORT[method], found.trials_text, *values, out, largest, rms, shift)
+            rows.append((Row(label if index == 0 else "", (), unit=unit), row))
+    corner = "run" if unit == "arcmin" else f"run [{UNIT_SIGNS[unit]}]"
+    return replace(declared_table(corner, rows, unit), repeated=1)
 
 
 def _judged(measure: MeasureSummary) -> bool:

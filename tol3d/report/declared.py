@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
 
-from tol3d.report.number import NOTHING, degrees_text, ppm_text, share_text, unsigned_zero, value_text
+from tol3d.report.number import NOTHING, degrees_text, ppm_text, share_text, short_text, unsigned_zero, value_text
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.runs.summary.shows import Shows, columns_of, shown_by
 
@@ -131,6 +131,7 @@ def _digits(value: float) -> str:
 
 FORMS: Final[Mapping[str, Callable[[Any, str], Shown | str]]] = {
     "value": lambda value, unit: Shown(value_text(value, unit), value),
+    "short": lambda value, unit: Shown(short_text(value, unit), value),
     **{own: _number(partial(value_text, unit=own)) for own in ("um", "mm", "arcmin")},
     "ppm": _number(ppm_text),
     "ppm range": _range(ppm_text, " … "),

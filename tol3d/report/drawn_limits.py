@@ -1,11 +1,14 @@
 """Limits written in a scene as on a drawing, and their meaning."""
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 from tol3d.distributions.base import DistributionSpec
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, note, titled
 from tol3d.report.system_check import law_name
+from tol3d.runs.summary.shows import Shows
 from tol3d.scene.schema import Scene
 from tol3d.scene.tolerance import laws_in
 from tol3d.standards import iso_2768
@@ -15,13 +18,22 @@ NOMINAL_NOTE = (
 )
 
 
+@dataclass(frozen=True)
+class DrawnRow:
+    """A limit as drawn, and its numbers."""
+
+    drawn: Annotated[str, Shows("as drawn", "words")]
+    lower: Annotated[str, Shows("lower")]
+    upper: Annotated[str, Shows("upper")]
+    law: Annotated[str, Shows("law", "words")]
+
+
 def drawn_limits(scene: Scene) -> list[PageItem]:
     """Every limit that stands as on a drawing, with its numbers; nothing where there are none."""
-    rows = [Row(name, (*_written(law), law_name(law.resolve(scene.files)))) for name, law in _drawn(scene)]
+    rows = [(name, _row(law, law_name(law.resolve(scene.files)))) for name, law in _drawn(scene)]
     if not rows:
         return []
-    words = (Heading("as drawn", words=True), Heading("lower"), Heading("upper"), Heading("law", words=True))
-    return [*titled("limits as drawn", Table("", words, rows)), note(NOMINAL_NOTE), *_general(scene)]
+    return [*titled("limits as drawn", declared_table("", rows)), note(NOMINAL_NOTE), *_general(scene)]
 
 
 def _general(scene: Scene) -> Iterator[PageItem]:
@@ -44,11 +56,13 @@ def _drawn(scene: Scene) -> Iterator[tuple[str, DistributionSpec]]:
                 yield str(name), law
 
 
-def _written(law: DistributionSpec) -> Iterator[str]:
+def _row(law: DistributionSpec, name: str) -> DrawnRow:
     """Its limits as drawn, and as numbers, with the signs of their units."""
     given = law.quantities()
-    for text in (_told(law.drawn), given["lower"], given["upper"]):
-        yield str(text).replace(" um", " µm")
+    drawn, lower, upper = (
+        str(text).replace(" um", " µm") for text in (_told(law.drawn), given["lower"], given["upper"])
+    )
+    return DrawnRow(drawn, lower, upper, name)
 
 
 def _told(written: Any) -> str:

@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Final
+from typing import Annotated, Final
 
+from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING, unsigned_zero
-from tol3d.report.page import Heading, Line, PageItem, Row, Shown, Table, note, title
+from tol3d.report.page import Line, PageItem, Row, Shown, Table, note, title
 from tol3d.runs.summary.joint import Correlations, Joint
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import Method
 
 MOST_PAIRS: Final = 12  # correlations that are printed, the largest; all are in correlations.csv
@@ -87,31 +90,43 @@ def _noise(count: int) -> float:
     return math.tanh(NORMAL_95 / math.sqrt(count - FISHER_FREEDOM)) if count > FISHER_FREEDOM else 1.0
 
 
+@dataclass(frozen=True)
+class CorrelationRow:
+    """Correlation of two measures: by the best method, its interval if known, and by the other method."""
+
+    r: Annotated[Mapping[str, float | None], Shows("{key}", ".3f", decides=True)]
+    interval: Annotated[str | None, Shows("95 % interval", seldom=True)]
+    trials: Annotated[int, Shows("trials", "d")]
+    other: Annotated[Mapping[str, float | None], Shows("{key}", ".3f")]
+
+
 def _table(joint: Joint, best: Method, pairs: list[Pair]) -> Table:
-    """One row per pair: r of the best method, its interval if known, the number of trials, r of the other method."""
     methods = joint.correlations or {}
     own = methods[best]
     low, high = own.r_low_95, own.r_high_95
-    headings = [Heading(HEADINGS[best], "bold")]
-    headings += [Heading("95 % interval")] if low and high else []
-    headings += [Heading("trials")]
-    headings += [Heading(HEADINGS["analytic"])] if best != "analytic" else []
     rows = []
     for i, j in pairs:
-        cells: list[str] = [_r_cell(own.r[i][j])]
-        cells += [f"{_r_text(low[i][j])} to {_r_text(high[i][j])}"] if low and high else []
-        cells += [Shown(str(own.trials[i][j]), own.trials[i][j])]
-        cells += [_r_cell(methods["analytic"].r[i][j])] if best != "analytic" else []
-        rows.append(Row(f"{joint.correlated[i]} · {joint.correlated[j]}", cells))
-    return Table("measures", headings, rows, repeated=1)
-
-
-def _r_cell(r: float | None) -> Shown:
-    return Shown(_r_text(r), r)
+        interval = f"{_r_text(low[i][j])} to {_r_text(high[i][j])}" if low and high else None
+        other = {} if best == "analytic" else {HEADINGS["analytic"]: methods["analytic"].r[i][j]}
+        row = CorrelationRow({HEADINGS[best]: own.r[i][j]}, interval, own.trials[i][j], other)
+        rows.append((f"{joint.correlated[i]} · {joint.correlated[j]}", row))
+    return replace(declared_table("measures", rows), repeated=1)
 
 
 def _r_text(r: float | None) -> str:
     return NOTHING if r is None else unsigned_zero(f"{r:.3f}")
+
+
+@dataclass(frozen=True)
+class YieldRow:
+    """The share of trials within all limits by a method, and its 95 % interval [%]."""
+
+    method: Annotated[str, Shows("method", "words")]
+    trials: Annotated[int, Shows("trials", "d", plain=True)]
+    share: Annotated[Shown, Shows("yield")]
+    low: Annotated[Shown, Shows("from")]
+    high: Annotated[Shown, Shows("to")]
+    measures: Annotated[int, Shows("measures with limits", "d", plain=True)]
 
 
 def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[PageItem]:
@@ -120,16 +135,13 @@ def joint_comparison(runs: Sequence[tuple[str, RunSummary]]) -> list[PageItem]:
     for label, run in runs:
         joint = joint_of(run)
         for index, (method, own) in enumerate(((joint.yields if joint else None) or {}).items()):
-            low, high = own.yield_ppm_95 or (None, None)
-            counted = Shown(str(own.trials), own.trials)
-            cells = [HEADINGS[method], counted, *map(_yield_cell, (own.yield_ppm, low, high))]
-            measures = str(len(joint.limited)) if joint else ""
-            rows.append(Row("" if index else label, [*cells, measures], unit="%"))
+            share, low, high = map(_yield_cell, (own.yield_ppm, *(own.yield_ppm_95 or (None, None))))
+            row = YieldRow(HEADINGS[method], own.trials, share, low, high, len(joint.limited) if joint else 0)
+            rows.append((Row("" if index else label, (), unit="%"), row))
     if not rows:
         return []
-    headings = [Heading("method", words=True), *map(Heading, ("trials", "yield", "from", "to", "measures with limits"))]
     words = "yield: share of all trials within the limits of all measures that have any; from, to: 95 % confidence"
-    return [title("all limits together"), Table("run", headings, rows, repeated=1), note(words)]
+    return [title("all limits together"), replace(declared_table("run", rows), repeated=1), note(words)]
 
 
 def _yield_cell(ppm: float | None) -> Shown:

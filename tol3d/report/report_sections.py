@@ -3,13 +3,15 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
+from typing import Annotated
 
 from tol3d.errors import InputError
 from tol3d.report.compare import comparison_report, labelled
+from tol3d.report.declared import declared_table
 from tol3d.report.heading import MOST_MEASURES, shown_measures
 from tol3d.report.joint import correlation_blocks
 from tol3d.report.number import number_cell
-from tol3d.report.page import Heading, Line, Page, PageItem, Row, Shown, Table
+from tol3d.report.page import Line, Page, PageItem, Table
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.published import published_blocks
 from tol3d.report.shown_unit import shown_run
@@ -18,6 +20,7 @@ from tol3d.report.verdict import verdict_report
 from tol3d.runs.run import Run
 from tol3d.runs.summary.judged import Accepted
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 
 VERDICT, MORE, CORRELATIONS, TRIALS, PROVENANCE = "verdict", "more", "correlations", "trials", "provenance"
 RUNS, MEASURES = "runs", "measures"
@@ -70,42 +73,60 @@ def more_blocks(run: RunSummary, presenter: Presenter) -> list[PageItem]:
     return [*presenter.sections(run), *published_blocks(run)]
 
 
+@dataclass(frozen=True)
+class ReasonRow:
+    """Why builds failed, and how many."""
+
+    reason: Annotated[str, Shows("why builds failed", "words")]
+    trials: Annotated[int, Shows("trials", "d")]
+
+
+@dataclass(frozen=True)
+class MadeRow:
+    """What a run was made from."""
+
+    text: Annotated[str, Shows("", "words")]
+
+
+class RunRow(RowOf[Run]):
+    """One of several runs."""
+
+    scene = Computed(Shows("scene", "words"), lambda own: own.of.found.scene)
+    trials = Computed(Shows("trials", "d"), lambda own: own.of.trials)
+    seed = Computed(Shows("seed"), lambda own: str(own.of.found.seed))
+    engine = Computed(Shows("engine", "words"), lambda own: own.of.found.engine)
+
+
 def trials_blocks(run: RunSummary) -> list[PageItem]:
     """Numbers of trials by status, with reasons."""
     found: list[PageItem] = [status_line(run)]
     reasons = [
-        Row(name, (reason, Shown(str(count), count)))
+        (name, ReasonRow(reason, count))
         for name, own in run.measures.items()
         for reason, count in (own.reasons or {}).items()
     ]
     if reasons:
-        heads = [Heading("why builds failed", words=True), Heading("trials")]
-        found.append(Table("measure", heads, reasons[:MOST_MEASURES]))
+        found.append(declared_table("measure", reasons[:MOST_MEASURES]))
     return found
 
 
 def provenance_blocks(run: Run) -> list[PageItem]:
     """Provenance of a run: seed, engine, checksums, versions."""
     found = run.found
-    rows = [
-        Row("seed", (str(found.seed),)),
-        Row("sampler", (found.study.sampler.replace("_", " "),)),
-        Row("engine", (found.engine,)),
-        Row("chord error [µm]", (number_cell(found.chord_error_um),)),
-        *(Row(f"SHA-256 of {name}", (own,)) for name, own in found.files.items()),
-        *(Row(name, (version,)) for name, version in found.versions.items()),
-    ]
-    return [Table("made from", [Heading("", words=True)], rows)]
+    made = {
+        "seed": str(found.seed),
+        "sampler": found.study.sampler.replace("_", " "),
+        "engine": found.engine,
+        "chord error [µm]": number_cell(found.chord_error_um),
+        **{f"SHA-256 of {name}": own for name, own in found.files.items()},
+        **found.versions,
+    }
+    return [declared_table("made from", [(name, MadeRow(own)) for name, own in made.items()])]
 
 
 def runs_blocks(runs: Sequence[Run]) -> list[PageItem]:
     """Which runs are beside each other."""
-    rows = [
-        Row(label, (run.found.scene, Shown(str(run.trials), run.trials), str(run.found.seed), run.found.engine))
-        for label, run in labelled(runs)
-    ]
-    heads = [Heading("scene", words=True), Heading("trials"), Heading("seed"), Heading("engine", words=True)]
-    return [Table("run", heads, rows)]
+    return [declared_table("run", [(label, RunRow(run)) for label, run in labelled(runs)])]
 
 
 def compared_blocks(runs: Sequence[Run]) -> list[PageItem]:

@@ -1,29 +1,93 @@
 """The features of foreign parts as tables: what each is, where it lies, and a line that selects it."""
 
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, note, page, titled
+from tol3d.report.declared import declared_table
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, titled
+from tol3d.runs.summary.shows import Computed, Shows
 from tol3d.step.found import FoundFeature
 from tol3d.step.reading import StepFile, StepPart
 from tol3d.step.refused import shown
 from tol3d.step.selecting import best_line, names, numbers
 
+UNDIRECTED: Final = ("ball", "socket", "free form")
+TURNED: Final = ("hole", "pin", "fillet", "round", "cone")
 LONGEST_FACES: Final = 4  # faces of a feature that are listed
 WORDS: Final = (
     "a hole or pin turns more than half round, a fillet or round less; planes by the rectangle around them, or their "
     "circle; places in the frame of the part, where the middle is; `#` numbers are those of faces in this file and "
     "change when it is exported again"
 )
-HEADINGS: Final = (
-    Heading("kind", words=True),
-    Heading("size [mm]", words=True),
-    Heading("place [mm]"),
-    Heading("direction"),
-    Heading("faces", words=True, optional=True),
-    Heading("in the file", words=True, optional=True),
-    Heading("select it by", words=True),
-)
+
+
+@dataclass(frozen=True)
+class FeatureRow:
+    """A feature of a part as a screen shows it."""
+
+    part: StepPart
+    of: FoundFeature
+    kind = Computed(Shows("kind", "words"), lambda own: own.of.kind + " (beside the solid)" * own.of.loose)
+    size = Computed(Shows("size [mm]", "words"), lambda own: size_text(own.of))
+    place = Computed(Shows("place [mm]"), lambda own: _numbers(own.of.at, 4))
+    direction = Computed(
+        Shows("direction"), lambda own: "–" if own.of.kind in UNDIRECTED else _numbers(own.of.direction, 4)
+    )
+    faces = Computed(Shows("faces", "words", optional=True), lambda own: _first_faces(own.of))
+    told = Computed(
+        Shows("in the file", "words", optional=True),
+        lambda own: (
+            ", ".join(
+                [
+                    *_drawn(own.part, own.of),
+                    *(repr(shown(name)) for name in own.of.names),
+                    *filter(None, [own.of.colour]),
+                ]
+            )
+            or "–"
+        ),
+    )
+    line = Computed(Shows("select it by", "words"), lambda own: best_line(own.part, own.of))
+
+
+@dataclass(frozen=True)
+class FeatureNumbers:
+    """All numbers of a feature [mm, rad, mm²]."""
+
+    part: StepPart
+    of: FoundFeature
+    product = Computed(Shows("product"), lambda own: shown(own.part.name))
+    kind = Computed(Shows("kind"), lambda own: own.of.kind)
+    at = Computed(Shows("{key}", "g"), lambda own: dict(zip("xyz", own.of.at, strict=True)))
+    direction = Computed(Shows("direction {key}", "g"), lambda own: dict(zip("xyz", own.of.direction, strict=True)))
+    length = Computed(Shows("length or first extent", "g"), lambda own: own.of.extent[0])
+    width = Computed(Shows("second extent", "g"), lambda own: own.of.extent[1])
+    diameter = Computed(Shows("diameter", "g"), lambda own: 2 * own.of.radius or None)
+    smaller_diameter = Computed(
+        Shows("smaller diameter", "g"),
+        lambda own: 2 * own.of.minor_radius if own.of.kind in ("cone", "torus") else None,
+    )
+    half_angle = Computed(Shows("half angle", "g"), lambda own: own.of.half_angle if own.of.kind == "cone" else None)
+    turn = Computed(Shows("turn", "g"), lambda own: own.of.turn if own.of.kind in TURNED else None)
+    area = Computed(Shows("area", "g"), lambda own: own.of.area)
+    faces = Computed(Shows("faces"), lambda own: numbers(own.of))
+    repeated = Computed(Shows("loose faces on it"), lambda own: ", ".join(f"#{face}" for face in own.of.repeated))
+    drawn = Computed(Shows("in the drawing"), lambda own: ", ".join(_drawn(own.part, own.of)))
+    names = Computed(Shows("names"), lambda own: ", ".join(map(shown, own.of.names)))
+    colour = Computed(Shows("colour"), lambda own: own.of.colour)
+    line = Computed(Shows("line"), lambda own: best_line(own.part, own.of))
+
+
+@dataclass(frozen=True)
+class UseRow:
+    """A part where it stands in the file."""
+
+    product: Annotated[str, Shows("product", "words")]
+    frame: Sequence[Sequence[float]]
+    origin = Computed(Shows("origin [mm]"), lambda own: _numbers(own.frame[0], 4))
+    z_axis = Computed(Shows("z"), lambda own: _numbers(own.frame[1], 6))
+    x_axis = Computed(Shows("x"), lambda own: _numbers(own.frame[2], 6))
 
 
 def features_report(file: StepFile) -> Page:
@@ -46,12 +110,8 @@ def features_report(file: StepFile) -> Page:
 def _uses(file: StepFile) -> Table:
     """Pose of each part, as in `use` and `placed` of a scene."""
     products = {own.body.product: shown(own.name) for own in file.parts}
-    rows = []
-    for own in file.uses:
-        at, z, x = own.frame
-        cells = (products[own.product], _numbers(at, 4), _numbers(z, 6), _numbers(x, 6))
-        rows.append(Row(shown(own.path), cells))
-    return Table("use", [Heading("product", words=True), *map(Heading, ("origin [mm]", "z", "x"))], rows)
+    rows = [(shown(own.path), UseRow(products[own.product], own.frame)) for own in file.uses]
+    return declared_table("use", rows)
 
 
 def _counted(part: StepPart) -> str:
@@ -67,26 +127,14 @@ def _counted(part: StepPart) -> str:
 
 
 def _table(part: StepPart) -> Table:
-    rows = [_row(part, name, own) for name, own in zip(names(part.features), part.features, strict=True)]
-    return Table("", HEADINGS, rows)
+    named = zip(names(part.features), part.features, strict=True)
+    return declared_table("", [(name, FeatureRow(part, own)) for name, own in named])
 
 
-def _row(part: StepPart, name: str, feature: FoundFeature) -> Row:
-    beside = " (beside the solid)" if feature.loose else ""
-    colour = [feature.colour] if feature.colour else []
-    listed = numbers(feature)
-    if len(feature.faces) > LONGEST_FACES:
-        listed = f"{', '.join(f'#{own}' for own in feature.faces[:LONGEST_FACES])}, … ({len(feature.faces)})"
-    cells = (
-        f"{feature.kind}{beside}",
-        size_text(feature),
-        _numbers(feature.at, 4),
-        "–" if feature.kind in ("ball", "socket", "free form") else _numbers(feature.direction, 4),
-        listed,
-        ", ".join([*_drawn(part, feature), *(repr(shown(own)) for own in feature.names), *colour]) or "–",
-        best_line(part, feature),
-    )
-    return Row(name, cells)
+def _first_faces(feature: FoundFeature) -> str:
+    if len(feature.faces) <= LONGEST_FACES:
+        return numbers(feature)
+    return f"{', '.join(f'#{own}' for own in feature.faces[:LONGEST_FACES])}, … ({len(feature.faces)})"
 
 
 def _drawn(part: StepPart, feature: FoundFeature) -> list[str]:
@@ -122,59 +170,11 @@ def _numbers(values: Sequence[float], decimals: int) -> str:
     return ", ".join(f"{round(own, decimals) + 0.0:.9g}" for own in values)
 
 
-NUMBERS: Final = (
-    "x", "y", "z", "direction x", "direction y", "direction z", "length or first extent", "second extent", "diameter",
-    "smaller diameter", "half angle", "turn", "area",
-)  # fmt: skip
-
-
 def features_csv(file: StepFile) -> str:
     """All numbers with all their digits, a line a feature [mm, rad, mm²]."""
-    heads = [
-        Heading(own)
-        for own in (
-            "product",
-            "kind",
-            *NUMBERS,
-            "faces",
-            "loose faces on it",
-            "in the drawing",
-            "names",
-            "colour",
-            "line",
-        )
-    ]
     rows = [
-        Row(name, (shown(part.name), own.kind, *_all_numbers(own), *_words(part, own)))
+        (name, FeatureNumbers(part, own))
         for part in file.parts
         for name, own in zip(names(part.features), part.features, strict=True)
     ]
-    return Table("feature", heads, rows).csv()
-
-
-def _all_numbers(feature: FoundFeature) -> Sequence[Shown]:
-    minor = 2 * feature.minor_radius if feature.kind in ("cone", "torus") else None
-    values = (
-        *feature.at,
-        *feature.direction,
-        *feature.extent,
-        2 * feature.radius if feature.radius else None,
-        minor,
-        feature.half_angle if feature.kind == "cone" else None,
-        feature.turn if feature.kind in ("hole", "pin", "fillet", "round", "cone") else None,
-        feature.area,
-    )
-    return [Shown("" if own is None else f"{own:g}", own) for own in values]
-
-
-def _words(part: StepPart, feature: FoundFeature) -> Sequence[str]:
-    repeated = ", ".join(f"#{own}" for own in feature.repeated)
-    drawn = ", ".join(_drawn(part, feature))
-    return (
-        numbers(feature),
-        repeated,
-        drawn,
-        ", ".join(map(shown, feature.names)),
-        feature.colour,
-        best_line(part, feature),
-    )
+    return declared_table("feature", rows).csv()

@@ -2,9 +2,12 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Final
+from dataclasses import dataclass
+from typing import Annotated, Final
 
-from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page
+from tol3d.report.declared import declared_table
+from tol3d.report.page import BLANK, Line, Page, PageItem, Table, line, note, page
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.step.datum import Datum
 from tol3d.step.dimension import Dimension
 from tol3d.step.feature import NamedFeature
@@ -22,31 +25,51 @@ WORDS: Final = (
     "frames and dimensions are in the unit that the file has them in, limits in mm or rad; `#` numbers stand in this "
     'file: those of faces select a feature in a scene, faces: ["#12", "#13"]; a + joins faces of one hole'
 )
-DATUM_HEADINGS: Final = (
-    Heading("what it is", words=True),
-    Heading("faces", words=True),
-    Heading("targets", words=True),
-)
-TOLERANCE_HEADINGS: Final = (
-    Heading("unit", words=True),
-    Heading("name", words=True, optional=True),
-    Heading("at", words=True),
-    Heading("of", words=True),
-    Heading("faces", words=True, optional=True),
-    Heading("in a scene", words=True),
-    Heading("as", words=True, optional=True),
-    Heading("what is lost, or why it is left out", words=True),
-)
-DIMENSION_HEADINGS: Final = (
-    Heading("unit", words=True),
-    Heading("name", words=True, optional=True),
-    Heading("at", words=True),
-    Heading("kind", words=True),
-    Heading("least"),
-    Heading("most"),
-    Heading("faces", words=True, optional=True),
-)
-REMARK_HEADINGS: Final = (Heading("what", words=True), Heading("why", words=True))
+
+
+@dataclass(frozen=True)
+class DatumRow:
+    """A datum of a drawing."""
+
+    is_a: Annotated[str, Shows("what it is", "words")]
+    of: Datum
+    faces = Computed(Shows("faces", "words"), lambda own: _faces(own.of.features))
+    targets = Computed(Shows("targets", "words"), lambda own: shown(_targets(own.of)) or "–")
+
+
+@dataclass(frozen=True)
+class ToleranceRow:
+    """A tolerance of a drawing, and what it means in a scene."""
+
+    of: Tolerance
+    meaning: Meaning
+    unit = Computed(Shows("unit", "words"), lambda own: _unit(own.of.magnitude))
+    name = Computed(Shows("name", "words", optional=True), lambda own: shown(own.of.name) or "–")
+    at = Computed(Shows("at", "words"), lambda own: f"#{own.of.id}")
+    shape = Computed(Shows("of", "words"), lambda own: own.meaning.shape)
+    faces = Computed(Shows("faces", "words", optional=True), lambda own: _faces((own.of.feature,)))
+    how = Computed(Shows("in a scene", "words"), lambda own: own.meaning.how)
+    kind = Computed(Shows("as", "words", optional=True), lambda own: own.meaning.kind or "–")
+    why = Computed(Shows("what is lost, or why it is left out", "words"), lambda own: own.meaning.why or "–")
+
+
+class DimensionRow(RowOf[Dimension]):
+    """A dimension of a drawing."""
+
+    unit = Computed(Shows("unit", "words"), lambda own: _unit(own.of.nominal or own.of.least))
+    name = Computed(Shows("name", "words", optional=True), lambda own: shown(own.of.name) or "–")
+    at = Computed(Shows("at", "words"), lambda own: f"#{own.of.id}")
+    kind = Computed(Shows("kind", "words"), lambda own: shown(own.of.kind))
+    least = Computed(Shows("least", ".6g"), lambda own: (own.of.limits or (None, None))[0])
+    most = Computed(Shows("most", ".6g"), lambda own: (own.of.limits or (None, None))[1])
+    faces = Computed(Shows("faces", "words", optional=True), lambda own: _faces(own.of.features))
+
+
+class RemarkRow(RowOf[Remark]):
+    """What was not read, or is incomplete."""
+
+    what = Computed(Shows("what", "words"), lambda own: shown(own.of.what))
+    why = Computed(Shows("why", "words"), lambda own: shown(own.of.why))
 
 
 def pmi_report(text: StepText) -> Page:
@@ -61,29 +84,26 @@ def pmi_report(text: StepText) -> Page:
     shapes = {
         each.id: shape_of(each.features[0], surfaces, text.structure).words for each in text.datums if each.features
     }
-    datum_rows = [_datum(each, shapes.get(each.id, "–")) for each in text.datums]
-    tolerance_rows = [_tolerance(each, meaning) for each, meaning in zip(text.tolerances, found, strict=True)]
+    datums = [(shown(each.letter), DatumRow(shapes.get(each.id, "–"), each)) for each in text.datums]
+    tolerances = [
+        ("  " * (each.above is not None) + shown(frame(each)), ToleranceRow(each, meaning))
+        for each, meaning in zip(text.tolerances, found, strict=True)
+    ]
+    dimensions = [(shown(each), DimensionRow(each)) for each in text.dimensions]
+    left_out = [(f"#{each.id}", RemarkRow(each)) for each in remarks]
     blocks = [
-        *_block("Datums", str(len(text.datums)), "letter", DATUM_HEADINGS, datum_rows),
-        *_block("Tolerances", _counted(found), "frame", TOLERANCE_HEADINGS, tolerance_rows),
-        *_block(
-            "Dimensions",
-            str(len(text.dimensions)),
-            "dimension",
-            DIMENSION_HEADINGS,
-            list(map(_dimension, text.dimensions)),
-        ),
-        *_block("Not read, or incomplete", str(len(remarks)), "at", REMARK_HEADINGS, list(map(_remark, remarks))),
+        *_block("Datums", str(len(text.datums)), declared_table("letter", datums)),
+        *_block("Tolerances", _counted(found), declared_table("frame", tolerances)),
+        *_block("Dimensions", str(len(text.dimensions)), declared_table("dimension", dimensions)),
+        *_block("Not read, or incomplete", str(len(remarks)), declared_table("at", left_out)),
     ]
     if not blocks:
         return page(line(f"{shown(text.name)} has no datums, tolerances or dimensions that can be read as such"))
     return page(*blocks[1:], BLANK, note(WORDS))
 
 
-def _block(title: str, counted: str, corner: str, headings: Sequence[Heading], rows: Sequence[Row]) -> list[PageItem]:
-    if not rows:
-        return []
-    return [BLANK, Line(((title, "bold"), (f" · {counted}", ""))), Table(corner, headings, rows)]
+def _block(title: str, counted: str, table: Table) -> list[PageItem]:
+    return [BLANK, Line(((title, "bold"), (f" · {counted}", ""))), table] if table.rows else []
 
 
 def _counted(found: Sequence[Meaning]) -> str:
@@ -93,41 +113,8 @@ def _counted(found: Sequence[Meaning]) -> str:
     return f"{len(found)}: {listed}"
 
 
-def _datum(datum: Datum, words: str) -> Row:
-    targets = ", ".join(f"{datum.letter}{each.number} {each.kind}".strip() for each in datum.targets)
-    return Row(shown(datum.letter), (words, _faces(datum.features), shown(targets) or "–"))
-
-
-def _tolerance(tolerance: Tolerance, meaning: Meaning) -> Row:
-    cells = (
-        _unit(tolerance.magnitude),
-        shown(tolerance.name) or "–",
-        f"#{tolerance.id}",
-        meaning.shape,
-        _faces((tolerance.feature,)),
-        meaning.how,
-        meaning.kind or "–",
-        meaning.why or "–",
-    )
-    below = "  " if tolerance.above is not None else ""
-    return Row(below + shown(frame(tolerance)), cells)
-
-
-def _dimension(dimension: Dimension) -> Row:
-    limits = dimension.limits or (None, None)
-    cells = (
-        _unit(dimension.nominal or dimension.least),
-        shown(dimension.name) or "–",
-        f"#{dimension.id}",
-        shown(dimension.kind),
-        *(Shown("–" if each is None else f"{each:.6g}", each) for each in limits),
-        _faces(dimension.features),
-    )
-    return Row(shown(dimension), cells)
-
-
-def _remark(remark: Remark) -> Row:
-    return Row(f"#{remark.id}", (shown(remark.what), shown(remark.why)))
+def _targets(datum: Datum) -> str:
+    return ", ".join(f"{datum.letter}{each.number} {each.kind}".strip() for each in datum.targets)
 
 
 def _unit(measure: Measure | None) -> str:

@@ -2,16 +2,20 @@
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
 from tol3d.distributions import DeviationLaw, Distribution, Empirical
 from tol3d.distributions.derived import Derived
+from tol3d.report.declared import declared_table
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, badness, largest
 from tol3d.report.number import NOTHING, UM_PER_MM, UNIT_SIGNS, limits_text, measured_text, unsigned_zero, value_text
-from tol3d.report.page import Further, Heading, Line, PageItem, Row, Shown, Table, note, some, titled, warning
+from tol3d.report.page import Further, Line, PageItem, Row, Shown, Table, note, some, titled, warning
 from tol3d.report.shown_unit import shown_unit
 from tol3d.report.worst_found import WORST_FOUND, worst_text
+from tol3d.runs.summary.shows import Computed, RowOf, Shows
 from tol3d.statistics.limits import normal_share
 from tol3d.study.acting import acting, nothing_acts
 from tol3d.study.first_order import FirstOrder, FirstOrderEffect, first_orders
@@ -33,7 +37,6 @@ MIDDLE = (
     "an end of the axis; a process draws both ends of an axis, so that the middle has 1/√2 of its sigma"
 )
 NO_SUM = "no sum of effects, so no RSS: slopes are means over ± one sigma; tol3d run simulates the measure"
-MEASURE_WORDS = ("kind", "limits")
 BESIDE = 1e-6  # um or arcmin; a value nearer to a limit lies on it
 
 
@@ -74,23 +77,22 @@ def system_blocks(simulation: Simulation, long_in_mm: Collection[str] = ()) -> l
             )
         ]
 
-    def rows(measures: Sequence[Measure]) -> list[Row]:
-        return [_measure_row(own, units[own.name], kinds[own.name], found[own.name], headings) for own in measures]
+    def listed(measures: Sequence[Measure]) -> Table:
+        rows = [_measure_row(own, units[own.name], kinds[own.name], found[own.name], headings) for own in measures]
+        return declared_table("", [(own.name, row) for own, row in zip(measures, rows, strict=True)])
 
     tables, further = coefficients(shown), None
     if left:
         words = f"\nand {len(left)} more measures; shown are the {len(shown)} worst, {WORST_FIRST} by first order"
         tables.append(Line(((words, ""),), stands_for=lambda: coefficients(left)))
-        blank = [""] * (len(MEASURE_WORDS) + 2 * len(headings) + 1)
-        further = Further(Row(f"and {len(left)} more", blank, "dim"), lambda: rows(left))
+        blank = [""] * len(listed(left).headings)
+        further = Further(Row(f"and {len(left)} more", blank, "dim"), lambda: listed(left).rows)
     sums = any(measure.adds_up and found[measure.name] for measure in system.measures)
     several = any(effect.each > 1 for own in found.values() for method in own.values() for effect in method.effects)
     searched = any(own is not None for by_method in worst.values() for own in by_method.values())
     texts = (SLOPES, *([EACH] if several else []), *([SHARES] if sums else []), *([WORST_FOUND] if searched else []))
     notes = [note(text) for text in texts] if tables else []
-    numbers = [Heading(f"{build}, {name}") for build in ("nominal", "mean build") for name in headings.values()]
-    columns = [*(Heading(word, words=True) for word in MEASURE_WORDS), *numbers, Heading("unit")]
-    measures = titled("measures", Table("", columns, rows(shown), further=further))
+    measures = titled("measures", replace(listed(shown), further=further))
     asked = system.measures if system.contributors else ()
     idle = [f"{own.name}: {words}" for own in asked if (words := nothing_acts(simulation, own))]
     outside = [text for own in system.measures for text in _outside(own, units[own.name], found[own.name])]
@@ -169,29 +171,54 @@ def sample_notes(laws: Iterable[tuple[str, DeviationLaw, float, str]]) -> list[L
     return notes
 
 
+class ContributorRow(RowOf[Contributor]):
+    """A contributor in its unit."""
+
+    kind = Computed(Shows("kind", "words"), lambda own: own.of.kind)
+    law = Computed(Shows("law", "words"), lambda own: law_words(own.of))
+    mean = Computed(Shows("mean", ".4g"), lambda own: own.of.distribution.mean / own.of.per_unit)
+    sigma = Computed(Shows("sigma", ".3g"), lambda own: told_sigma(own.of.draw) / own.of.per_unit)
+    unit_sign = Computed(Shows("unit"), lambda own: UNIT_SIGNS[own.of.unit])
+    least = Computed(Shows("least", "g"), lambda own: None if own.of.least is None else own.of.least / own.of.per_unit)
+
+
+@dataclass(frozen=True)
+class MeasureRow:
+    """A measure, and its value in the nominal build and in that at all means by each method."""
+
+    kind: Annotated[str, Shows("kind", "words")]
+    limits: Annotated[str, Shows("limits", "words")]
+    nominal: Annotated[Mapping[str, Shown], Shows("nominal, {key}")]
+    mean: Annotated[Mapping[str, Shown], Shows("mean build, {key}")]
+    unit_sign: Annotated[str, Shows("unit")]
+
+
+@dataclass(frozen=True)
+class SlopeRow:
+    """The effect of a deviation on a measure by each method, and its shares [%] where effects add up."""
+
+    unit_sign: Annotated[str, Shows("unit")]
+    slope: Annotated[Mapping[str, str], Shows("slope, {key}", meaning=SLOPES)]
+    rss: Annotated[Mapping[str, float], Shows("RSS [%], {key}", ".1f", meaning=SHARES)]
+    worst: Annotated[Mapping[str, float], Shows("worst [%], {key}", ".1f", meaning=SHARES)]
+
+
 def _contributors(contributors: Sequence[Contributor]) -> list[PageItem]:
-    rows = []
-    for own in contributors:
-        numbers = [f"{own.distribution.mean / own.per_unit:.4g}", f"{told_sigma(own.draw) / own.per_unit:.3g}"]
-        least = NOTHING if own.least is None else f"{own.least / own.per_unit:g}"
-        cells = (own.kind, law_words(own), *map(unsigned_zero, numbers), UNIT_SIGNS[own.unit], unsigned_zero(least))
-        rows.append(Row(own.name, cells))
-    words = [Heading("kind", words=True), Heading("law", words=True)]
-    table = Table("", [*words, *map(Heading, ("mean", "sigma", "unit", "least"))], rows)
+    table = declared_table("", [(own.name, ContributorRow(own)) for own in contributors])
     notes = [note(MIDDLE)] if any(isinstance(own.draw, MiddleDraw) for own in contributors) else []
     notes += sample_notes((own.name, own.draw.distribution, own.per_unit, own.unit) for own in contributors)
-    return [*titled("contributors", table), *notes] if rows else []
+    return [*titled("contributors", table), *notes] if contributors else []
 
 
 def _measure_row(
     measure: Measure, shown: str, kind: str, found: Mapping[str, FirstOrder], headings: Mapping[str, str]
-) -> Row:
+) -> MeasureRow:
     """Row of a measure: its description, and its nominal and mean builds by each method."""
-    values = [_value(measure, getattr(found.get(method), build, None), shown)
-              for build in ("nominal", "mean") for method in headings]  # fmt: skip
-    return Row(
-        measure.name, (kind, _limits(measure, shown), *values, "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown])
+    nominal, mean = (
+        {name: _value(measure, getattr(found.get(method), build, None), shown) for method, name in headings.items()}
+        for build in ("nominal", "mean")
     )
+    return MeasureRow(kind, _limits(measure, shown), nominal, mean, "′, ″" if shown == "arcmin" else UNIT_SIGNS[shown])
 
 
 def _outside(measure: Measure, unit: str, found: Mapping[str, FirstOrder]) -> Iterator[str]:
@@ -241,29 +268,30 @@ def _coefficients(
     every = list(zip(*by_method, strict=True))
     sizes = {k: effects[-1].variance for k, effects in enumerate(every) if not math.isnan(effects[-1].variance)}
 
-    def shares(parts: Sequence[tuple[float, float]]) -> list[str]:
-        """Shares of variances and reaches by method, in percent of the whole."""
-        kinds = range(2) if measure.adds_up else ()
-        return [
-            _number(_percent(part[k], whole[k]), ".1f")
-            for k in kinds
-            for part, whole in zip(parts, wholes, strict=True)
-        ]
+    def row(unit: str, slopes: Iterable[str], parts: Sequence[tuple[float, float]]) -> SlopeRow:
+        """Slopes, and shares of variances and reaches by method in percent of the whole."""
+        names = [*headings.values()]
+        rss, worst = (
+            {name: _percent(part[k], whole[k]) for name, part, whole in zip(names, parts, wholes, strict=True)}
+            if measure.adds_up
+            else {}
+            for k in range(2)
+        )
+        return SlopeRow(unit, dict(zip(names, slopes, strict=True)), rss, worst)
 
-    def row(k: int) -> Row:
-        unit = f"{UNIT_SIGNS[measure.unit]}/{UNIT_SIGNS[every[k][0].unit]}"
-        parts = [(own.variance, own.reach) for own in every[k]]
-        return Row(every[k][0].name, (unit, *map(_slope, every[k]), *shares(parts)))
+    def listed(which: Iterable[int]) -> Table:
+        signs = [f"{UNIT_SIGNS[measure.unit]}/{UNIT_SIGNS[own[0].unit]}" for own in every]
+        parts = [[(each.variance, each.reach) for each in own] for own in every]
+        return declared_table("", [(every[k][0].name, row(signs[k], map(_slope, every[k]), parts[k])) for k in which])
 
     shown = largest(range(len(every)), sizes)
     left, further = sorted({*range(len(every))} - {*shown}), None
     if left:
         parts = [(sum(method[k].variance for k in left), sum(method[k].reach for k in left)) for method in by_method]
-        cells = (*[""] * (1 + len(by_method)), *shares(parts))
-        further = Further(Row(f"and {len(left)} more", cells, "dim"), lambda: [*map(row, left)])
-    words = ("slope", "RSS [%]", "worst [%]") if measure.adds_up else ("slope",)
-    columns = [Heading(f"{word}, {name}") for word in words for name in headings.values()]
-    table = Table("", [Heading("unit"), *columns], [*map(row, shown)], further=further)
+        rest = Row(f"and {len(left)} more", (), "dim")
+        (together,) = declared_table("", [(rest, row("", [""] * len(headings), parts))]).rows
+        further = Further(together, lambda: listed(left).rows)
+    table = replace(listed(shown), further=further)
     below = [] if measure.adds_up else [NO_SUM]
     sums = (_sums(measure, unit, headings[method], own, worst[method]) for method, own in found.items())
     below += filter(None, sums)

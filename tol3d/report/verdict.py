@@ -2,7 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Final, get_args
+from dataclasses import dataclass, replace
+from typing import Annotated, Final, get_args
 
 from tol3d.report.column import (
     columns_of,
@@ -12,23 +13,17 @@ from tol3d.report.column import (
     shares_by_words,
     unexplained_words,
 )
+from tol3d.report.declared import declared_table
 from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
-from tol3d.report.number import (
-    NOTHING,
-    bounded_share_text,
-    counted,
-    limits_text,
-    share_text,
-    short_text,
-    unsigned_zero,
-)
-from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Shown, Table, line, note
+from tol3d.report.number import NOTHING, bounded_share_text, counted, limits_text, share_text
+from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Table, line, note
 from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, Verdict, demand_of
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
+from tol3d.runs.summary.shows import Shows
 from tol3d.statistics.limits import ppk_beyond
 
 PPK_BY: Final[Mapping[PpkBy, str]] = {
@@ -126,10 +121,9 @@ def _largest_contributors(run: RunSummary) -> list[PageItem]:
     names = shown_measures(run.measures)
     most = FEW_NAMED if len(names) <= FEW_MEASURES else 1
     told = {name: _largest(run.measures[name], most) for name in names}
-    rows = [Row(name, [text]) for name, text in told.items() if text != NOTHING]
-    head = Heading("share of the variance", words=True)
+    rows = [(name, LargestRow(text)) for name, text in told.items() if text != NOTHING]
     notes = map(note, shares_by_words(run.measures[name] for name in names))
-    return [BLANK, Table("largest contributors", [head], rows), *notes] if rows else []
+    return [BLANK, declared_table("largest contributors", rows), *notes] if rows else []
 
 
 def _left_out(run: RunSummary, accepted: Accepted | None) -> Iterator[PageItem]:
@@ -141,6 +135,30 @@ def _left_out(run: RunSummary, accepted: Accepted | None) -> Iterator[PageItem]:
         counts = ", ".join(f"{found[verdict]} {verdict}" for verdict in get_args(Verdict) if found[verdict])
         yield line(f" and {left} more, all in summary.json; the worst are shown, {WORST_FIRST}")
         yield line(f" all {len(run.measures)} measures: {counts}", "bold")
+
+
+@dataclass(frozen=True)
+class LargestRow:
+    """The contributors that most of a measure's variance comes from."""
+
+    shares: Annotated[str, Shows("share of the variance", "words")]
+
+
+@dataclass(frozen=True)
+class VerdictRow:
+    """A measure, in its unit, and its verdict."""
+
+    unit: str
+    verdict: Annotated[str, Shows("verdict", "words")]
+    mean: Annotated[float | None, Shows("mean", "short")]
+    low: Annotated[float | None, Shows("low", "short")]
+    high: Annotated[float | None, Shows("high", "short")]
+    limits: Annotated[Mapping[Heading, str], Shows("limits")]
+    out: Annotated[str, Shows("fraction out of limits", "words", below=True)]
+    ppk: Annotated[float | None, Shows("Ppk", ".2f", plain=True)]
+    ppk_95: Annotated[str | None, Shows("95 % of Ppk", "words", below=True, seldom=True)]
+    ppk_by: Annotated[str | None, Shows("Ppk by", "words", seldom=True)]
+    largest: Annotated[str | None, Shows("mostly from", "words", optional=True, seldom=True)]
 
 
 def verdict_table(
@@ -155,30 +173,30 @@ def verdict_table(
         brief: leave out what a Ppk was taken from.
     """
     shown = {name: run.measures[name] for name in shown_measures(run.measures)}
-    headings = [Heading("verdict", words=True), *(Heading(word) for word in ("mean", "low", "high"))]
-    wide = any(None not in measure.limits for measure in shown.values())
-    headings += [Heading("limits", words=wide), Heading("fraction out of limits", words=True, below=True)]
+    limits = Heading("limits", words=any(None not in measure.limits for measure in shown.values()))
     asked = demand_of(run.study.accept_ppk, accepted)
     bounds = isinstance(asked, AcceptedPpk)
-    headings += [Heading("Ppk", plain=True), *([Heading("95 % of Ppk", words=True, below=True)] if bounds else [])]
     by = not brief and any(measure.has_limits for measure in run.measures.values())
-    headings += [Heading("Ppk by", words=True)] if by else []
-    headings += [Heading("mostly from", words=True, optional=True)] if blame else []
-    rows = [_row(name, measure, asked, blame=blame, by=by, bounds=bounds) for name, measure in shown.items()]
-    return Table("measure", headings, rows, repeated=1)
-
-
-def _row(name: str, measure: MeasureSummary, accepted: Accepted, *, blame: bool, by: bool, bounds: bool) -> Row:
-    judged = JudgedMeasure.of(measure, accepted)
-    low, mean, high = ends_of(measure)
-    judges = judged.verdict != "no limits"
-    cells = [judged.verdict if judges else NOTHING, *(_short(value, measure.unit) for value in (mean, low, high))]
-    cells += [limits_text(*measure.limits, measure.unit)]
-    cells += [bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING]
-    cells += [_ppk(measure), *([ppk_bounds_text(measure)] if bounds else [])]
-    cells += [_ppk_by(measure)] if by else []
-    cells += [_largest(measure, 1)] if blame else []
-    return Row(f"{name} *" if _by_quantiles(measure) else name, cells, STYLES.get(judged.verdict, ""), measure.unit)
+    rows = []
+    for name, measure in shown.items():
+        judged, (low, mean, high) = JudgedMeasure.of(measure, asked), ends_of(measure)
+        judges, unit = judged.verdict != "no limits", measure.unit
+        row = VerdictRow(
+            unit,
+            judged.verdict if judges else NOTHING,
+            mean,
+            low,
+            high,
+            {limits: limits_text(*measure.limits, unit)},
+            bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING,
+            measure.shares.ppk,
+            ppk_bounds_text(measure) if bounds else None,
+            _ppk_by(measure) if by else None,
+            _largest(measure, 1) if blame else None,
+        )
+        label = f"{name} *" if _by_quantiles(measure) else name
+        rows.append((Row(label, (), STYLES.get(judged.verdict, ""), unit), row))
+    return replace(declared_table("measure", rows), repeated=1)
 
 
 def ends_of(measure: MeasureSummary) -> tuple[float | None, float | None, float | None]:
@@ -204,15 +222,6 @@ def _curve_ends(measure: MeasureSummary) -> tuple[float | None, float | None, fl
 
 def _by_quantiles(measure: MeasureSummary) -> bool:
     return measure.take != "curve" and is_bounded(measure)
-
-
-def _short(value: float | None, unit: str) -> Shown:
-    return Shown(NOTHING if value is None else short_text(value, unit), value)
-
-
-def _ppk(measure: MeasureSummary) -> Shown:
-    value = measure.shares.ppk
-    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.2f}"), value)
 
 
 def ppk_bounds_text(measure: MeasureSummary) -> str:

@@ -1,9 +1,13 @@
 """Worst cases that were found before any trial, as lines and as a table."""
 
-from typing import Final
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Final
 
+from tol3d.report.declared import declared_table
 from tol3d.report.number import NOTHING, UM_PER_MM, measured_text
-from tol3d.report.page import Heading, PageItem, Row, Table, note, titled
+from tol3d.report.page import PageItem, note, titled
+from tol3d.runs.summary.shows import Shows
 from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, method_of
 from tol3d.study.worst_case import WorstBuild, WorstCase
@@ -28,28 +32,30 @@ def worst_text(simulation: Simulation, measure: Measure, unit: str, found: Worst
     return f"worst found {' … '.join(ends)}{told}"
 
 
+@dataclass(frozen=True)
+class WorstRow:
+    """The worst builds of a measure by each method."""
+
+    lowest: Annotated[Mapping[str, str], Shows("lowest, {key}", "words")]
+    highest: Annotated[Mapping[str, str], Shows("highest, {key}", "words")]
+
+
 def worst_blocks(simulation: Simulation) -> list[PageItem]:
     """Worst cases of all measures of one number as a table, by each method; nothing where none was looked for."""
     method = method_of(simulation, materials_of(simulation))
     measures = [own for own in simulation.system.measures if own.take != "curve"]
     found = worst_cases(simulation, method, measures)
     headings = {"analytic": "analytic"} | ({"geometric": simulation.study.engine} if method else {})
-    rows = [
-        Row(
-            own.name,
-            [
-                NOTHING if worst is None else _end_text(simulation, own, own.unit, worst.low if low else worst.high)
-                for low in (True, False)
-                for worst in (found[own.name][shown] for shown in headings)
-            ],
-        )
-        for own in measures
-        if any(found[own.name].values())
-    ]
+    rows = []
+    for own in measures:
+        worst = {name: found[own.name][method] for method, name in headings.items()}
+        if any(found[own.name].values()):
+            ends = [{name: getattr(each, end, None) for name, each in worst.items()} for end in ("low", "high")]
+            low, high = ({name: _end_text(simulation, own, own.unit, each) for name, each in of.items()} for of in ends)
+            rows.append((own.name, WorstRow(low, high)))
     if not rows:
         return []
-    heads = [Heading(f"{end}, {name}", words=True) for end in ("lowest", "highest") for name in headings.values()]
-    return [*titled("worst found", Table("", heads, rows)), note(WORST_FOUND)]
+    return [*titled("worst found", declared_table("", rows)), note(WORST_FOUND)]
 
 
 def _end_text(simulation: Simulation, measure: Measure, unit: str, build: WorstBuild | None) -> str:
