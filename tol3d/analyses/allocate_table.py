@@ -4,9 +4,9 @@ from dataclasses import replace
 from typing import Final
 
 from tol3d.analyses.allocation_section import Allocation
-from tol3d.report.declared import declared_table
+from tol3d.report.declared import declared_table, formed
 from tol3d.report.number import ppm_text
-from tol3d.report.page import BLANK, Line, Page, PageItem, Row, Shown, Table, note, page, titled, warning
+from tol3d.report.page import BLANK, Line, Page, PageItem, Row, Table, note, page, titled, warning
 
 WORDS: Final = (
     "factors multiply the tolerances of the scene, cost is the sum of their costs; first order: from design points; by "
@@ -40,11 +40,13 @@ def allocation_report(name: str, found: Allocation) -> Page:
 
 def _tolerances(found: Allocation) -> Table:
     table = declared_table("", found.tolerances.items())
-    rows = [Row("least cost", ("", _text(found.cost), "", "", ""), "bold")]
+    totals: dict[str, tuple[float | str | None, float | None]] = {"least cost": ("", found.cost)}
     if found.equal_cost is not None:
-        rows.append(Row("equal factors", (_text(found.equal_factor), _text(found.equal_cost), "", "", "")))
-    rows.append(Row("as in the scene", (_text(1.0), _text(found.scene_cost), "", "", "")))
-    return replace(table, rows=[*table.rows, *rows])
+        totals["equal factors"] = (found.equal_factor, found.equal_cost)
+    totals["as in the scene"] = (1.0, found.scene_cost)
+    blank = [""] * (len(table.headings) - 2)
+    rows = [Row(name, [*(formed(own, ".4g") for own in both), *blank]) for name, both in totals.items()]
+    return replace(table, rows=[*table.rows, replace(rows[0], style="bold"), *rows[1:]])
 
 
 def _targets(found: Allocation) -> Table:
@@ -53,7 +55,3 @@ def _targets(found: Allocation) -> Table:
 
 def _trade_off(found: Allocation) -> Table:
     return declared_table("", ((f"{ppm_text(own.ppm)} ppm", own) for own in found.trade_off))
-
-
-def _text(value: float | None) -> Shown:
-    return Shown("–" if value is None else f"{value:.4g}", value)

@@ -8,7 +8,7 @@ from tol3d.analyses.tolerance_effects import ContributorEffects, Effects, Index,
 from tol3d.report.declared import declared_table
 from tol3d.report.number import measured_text, share_text
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title, titled
-from tol3d.runs.summary.shows import Computed, Shows
+from tol3d.runs.summary.shows import Computed, Shows, columns_of
 
 MOST_SHOWN: Final = 15
 """Contributors of a measure."""
@@ -79,9 +79,6 @@ def _plain(own: Index) -> str:
     return f"{own.share:.2f} ±{(own.high - own.low) / 2:.2f}"
 
 
-COLUMNS: Final = ("first", "total", "shapley", "failures", "failures_total")
-
-
 @dataclass(frozen=True)
 class EffectRow:
     """Effect of a contributor on a measure, with all digits."""
@@ -98,7 +95,8 @@ class EffectRow:
 def _numbers(own: ContributorEffects) -> Mapping[str, float | None]:
     """Each index, and the ends of its 95 %."""
     ends = {"": "share", "_low_95": "low", "_high_95": "high"}
-    return {f"{name}{end}": getattr(getattr(own, name), key, None) for name in COLUMNS for end, key in ends.items()}
+    names = [name for name, shows in columns_of(own).items() if shows.form == "index"]
+    return {f"{name}{end}": getattr(getattr(own, name), key, None) for name in names for end, key in ends.items()}
 
 
 def whole_table(found: Effects) -> Table:

@@ -8,10 +8,11 @@ from tol3d.analyses.variant_sweep import Sweep, Variant, VariantMeasure, measure
 from tol3d.report.declared import cells_of, declared_table, headings
 from tol3d.report.number import NOTHING
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Shown, Table, line, note, page, title
-from tol3d.runs.summary.shows import Shows
+from tol3d.runs.summary.shows import Shows, shown_by
 
 MOST_ROWS: Final = 60
 MOST_MEASURES: Final = 6
+COLUMNS: Final = (*shown_by(VariantMeasure).values(),)
 NUMBERS: Final = headings(VariantMeasure)
 SPAN: Final = "low, high: mean ∓ 3 sigma, or the 0.135 % and 99.865 % quantiles of trials that end before"
 
@@ -109,9 +110,8 @@ def whole_table(found: Sweep) -> Table:
     units = {name: own.unit for each in found.variants for name, own in each.measures.items()}
     heads = [f"{field} [{unit}]" if unit else field for field, unit in zip(found.fields, found.units, strict=True)]
     for name in names:
-        unit = units[name]
-        heads += [f"{name}: {word} [{unit}]" for word in ("mean", "sigma", "low", "high")]
-        heads += [f"{name}: {word}" for word in ("out of limits [ppm]", "Ppk", "could not be assembled")]
+        shown = ((own.heading, {"value": units[name], "share": "ppm"}.get(own.form)) for own in COLUMNS)
+        heads += [f"{name}: {head} [{unit}]" if unit else f"{name}: {head}" for head, unit in shown]
     heads.append("could not be assembled")
     rows = []
     for k, own in enumerate(found.variants):

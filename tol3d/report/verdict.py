@@ -1,7 +1,7 @@
 """One row a measure: where it lies, what is out of its limits, and whether that is within what is accepted."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Final, get_args
 
@@ -18,12 +18,12 @@ from tol3d.report.ends import Ends, is_bounded
 from tol3d.report.heading import MOST_MEASURES, WORST_FIRST, shown_measures
 from tol3d.report.joint import yield_lines
 from tol3d.report.number import NOTHING, bounded_share_text, counted, limits_text, share_text
-from tol3d.report.page import BLANK, TITLE, Heading, Line, PageItem, Row, Table, line, note
+from tol3d.report.page import BLANK, TITLE, Line, PageItem, Row, Table, line, note
 from tol3d.runs.summary.judged import Accepted, AcceptedPpk, JudgedMeasure, Verdict, demand_of
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import PpkBy
-from tol3d.runs.summary.shows import Shows
+from tol3d.runs.summary.shows import Computed, Shows
 from tol3d.statistics.limits import ppk_beyond
 
 PPK_BY: Final[Mapping[PpkBy, str]] = {
@@ -146,19 +146,57 @@ class LargestRow:
 
 @dataclass(frozen=True)
 class VerdictRow:
-    """A measure, in its unit, and its verdict."""
+    """A measure and its verdict.
 
-    unit: str
-    verdict: Annotated[str, Shows("verdict", "words")]
-    mean: Annotated[float | None, Shows("mean", "short")]
-    low: Annotated[float | None, Shows("low", "short")]
-    high: Annotated[float | None, Shows("high", "short")]
-    limits: Annotated[Mapping[Heading, str], Shows("limits")]
-    out: Annotated[str, Shows("fraction out of limits", "words", below=True)]
-    ppk: Annotated[float | None, Shows("Ppk", ".2f", plain=True)]
-    ppk_95: Annotated[str | None, Shows("95 % of Ppk", "words", below=True, seldom=True)]
-    ppk_by: Annotated[str | None, Shows("Ppk by", "words", seldom=True)]
-    largest: Annotated[str | None, Shows("mostly from", "words", optional=True, seldom=True)]
+    Args:
+        of: the measure.
+        judged: its verdict.
+        wide: True where limits have a column of words, because some measure has two.
+        asked: those that are shown of "ppk_95", "ppk_by", "largest".
+    """
+
+    of: MeasureSummary
+    judged: JudgedMeasure
+    wide: bool
+    asked: Collection[str]
+
+    verdict = Computed(Shows("verdict", "words"), lambda own: own.judged.verdict if own.judges else NOTHING)
+    mean = Computed(Shows("mean", "short"), lambda own: ends_of(own.of)[1])
+    low = Computed(Shows("low", "short"), lambda own: ends_of(own.of)[0])
+    high = Computed(Shows("high", "short"), lambda own: ends_of(own.of)[2])
+    one_limit = Computed(Shows("limits", seldom=True), lambda own: None if own.wide else own.limits)
+    two_limits = Computed(Shows("limits", "words", seldom=True), lambda own: own.limits if own.wide else None)
+    out = Computed(
+        Shows("fraction out of limits", "words", below=True),
+        lambda own: bounded_share_text(own.judged.out_ppm, own.judged.interval) if own.judges else NOTHING,
+    )
+    ppk = Computed(Shows("Ppk", ".2f", plain=True), lambda own: own.of.shares.ppk)
+    ppk_95 = Computed(
+        Shows("95 % of Ppk", "words", below=True, seldom=True),
+        lambda own: ppk_bounds_text(own.of) if "ppk_95" in own.asked else None,
+    )
+    ppk_by = Computed(
+        Shows("Ppk by", "words", seldom=True), lambda own: _ppk_by(own.of) if "ppk_by" in own.asked else None
+    )
+    largest = Computed(
+        Shows("mostly from", "words", optional=True, seldom=True),
+        lambda own: _largest(own.of, 1) if "largest" in own.asked else None,
+    )
+
+    @property
+    def unit(self) -> str:
+        """Unit of its numbers."""
+        return self.of.unit
+
+    @property
+    def judges(self) -> bool:
+        """True if it has a verdict."""
+        return self.judged.verdict != "no limits"
+
+    @property
+    def limits(self) -> str:
+        """Its limits."""
+        return limits_text(*self.of.limits, self.unit)
 
 
 def verdict_table(
@@ -173,29 +211,16 @@ def verdict_table(
         brief: leave out what a Ppk was taken from.
     """
     shown = {name: run.measures[name] for name in shown_measures(run.measures)}
-    limits = Heading("limits", words=any(None not in measure.limits for measure in shown.values()))
-    asked = demand_of(run.study.accept_ppk, accepted)
-    bounds = isinstance(asked, AcceptedPpk)
-    by = not brief and any(measure.has_limits for measure in run.measures.values())
+    wide = any(None not in measure.limits for measure in shown.values())
+    demand = demand_of(run.study.accept_ppk, accepted)
+    with_limits = any(measure.has_limits for measure in run.measures.values())
+    found = {"ppk_95": isinstance(demand, AcceptedPpk), "ppk_by": with_limits and not brief, "largest": blame}
+    asked = [name for name, is_asked in found.items() if is_asked]
     rows = []
     for name, measure in shown.items():
-        judged, (low, mean, high) = JudgedMeasure.of(measure, asked), ends_of(measure)
-        judges, unit = judged.verdict != "no limits", measure.unit
-        row = VerdictRow(
-            unit,
-            judged.verdict if judges else NOTHING,
-            mean,
-            low,
-            high,
-            {limits: limits_text(*measure.limits, unit)},
-            bounded_share_text(judged.out_ppm, judged.interval) if judges else NOTHING,
-            measure.shares.ppk,
-            ppk_bounds_text(measure) if bounds else None,
-            _ppk_by(measure) if by else None,
-            _largest(measure, 1) if blame else None,
-        )
+        row = VerdictRow(measure, JudgedMeasure.of(measure, demand), wide, asked)
         label = f"{name} *" if _by_quantiles(measure) else name
-        rows.append((Row(label, (), STYLES.get(judged.verdict, ""), unit), row))
+        rows.append((Row(label, (), STYLES.get(row.judged.verdict, ""), measure.unit), row))
     return replace(declared_table("measure", rows), repeated=1)
 
 
