@@ -27,7 +27,7 @@ MOST_STEPS: Final = 25
 
 
 @part
-def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: Any) -> bool:
+def gaps_at(shape: Any, given: Any, turns: Any, centres: Any, rows: Any, lower: Any, upper: Any) -> bool:
     """Write the rows of a trial at some turns, and their sides against those turns; False where base circles overlap.
 
     Args:
@@ -39,11 +39,16 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
             gear's axis (meshes, 2), which turns with nothing; clearance of each flank by thinning, the nominal one
             included, and movement of n by clocking (planets, meshes).
         turns: of central gears, carrier, planets; then displacements by springs [mm].
+        centres: of central gears there (meshes, 2), to write in.
     """
     meshes, places, planets, senses, distance = shape
     central, planet, pin, aside, room, middle = given
     count = meshes.shape[0]
     number = planets.shape[0]
+    for m in range(count):
+        cos_c, sin_c = np.cos(turns[m]), np.sin(turns[m])
+        centres[m, 0] = cos_c * central[m, 0] - sin_c * central[m, 1]
+        centres[m, 1] = sin_c * central[m, 0] + cos_c * central[m, 1]
     for k in range(number):
         turn = turns[count]
         for j in range(senses.shape[1]):
@@ -58,10 +63,7 @@ def gaps_at(shape: Any, given: Any, turns: Any, rows: Any, lower: Any, upper: An
             g = places[m]
             off_x = cos_p * planet[g, k, 0] - sin_p * planet[g, k, 1]
             off_y = sin_p * planet[g, k, 0] + cos_p * planet[g, k, 1]
-            theta = turns[m]
-            cos_c, sin_c = np.cos(theta), np.sin(theta)
-            own_x = cos_c * central[m, 0] - sin_c * central[m, 1]
-            own_y = sin_c * central[m, 0] + cos_c * central[m, 1]
+            theta, own_x, own_y = turns[m], centres[m, 0], centres[m, 1]
             x, y = pin_x + off_x - own_x + aside[m, 0], pin_y + off_y - own_y + aside[m, 1]
             apart = np.sqrt(x * x + y * y)
             if not apart > base:
@@ -98,15 +100,15 @@ def seated(
         spring_ends: least and largest displacement by each spring (2, springs) [mm].
         unknowns: places of the programme's unknowns among the turns.
         objective, basis: see programme.solve_lp.
-        rooms: those of programme.solve_lp; slopes, rows, lower, upper and x to write in.
+        rooms: those of programme.solve_lp; centres, slopes, rows, lower, upper and x to write in.
         turns: zeros; written.
     """
-    solving, slopes, rows, lower, upper, x = rooms
+    solving, centres, slopes, rows, lower, upper, x = rooms
     springs = spring_ends.shape[1]
     contacts = slopes.shape[0]
     found, row, lacking = STALLED, -1, 0.0
     for _ in range(MOST_STEPS):
-        if not gaps_at(shape, given, turns, slopes, lower, upper):
+        if not gaps_at(shape, given, turns, centres, slopes, lower, upper):
             return STALLED, -1, 0.0
         for r in range(contacts):
             for j in range(unknowns.shape[0]):
@@ -146,7 +148,8 @@ def seated_ranges(
     solving = new_rooms(count)
     basis, turns = np.empty(count, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
     slopes, rows = np.empty((contacts, turns.shape[0])), np.empty((contacts + springs, count))
-    rooms = (solving, slopes, rows, np.empty(contacts + springs), np.empty(contacts + springs), np.empty(count))
+    sides = np.empty(contacts + springs), np.empty(contacts + springs)
+    rooms = (solving, np.empty((meshes.shape[0], 2)), slopes, rows, sides[0], sides[1], np.empty(count))
     shape = (meshes, places, planets, senses, distance)
     for i in range(central.shape[0]):
         status[i], decided[i], amount[i] = OK, -1, 0.0
@@ -205,7 +208,8 @@ def placed_curve(
     solving = new_rooms(count)
     basis, turns = np.empty(count, np.int64), np.empty(meshes.shape[0] + 1 + planets.shape[0] + springs)
     slopes, rows = np.empty((contacts, turns.shape[0])), np.empty((contacts + springs, count))
-    rooms = (solving, slopes, rows, np.empty(contacts + springs), np.empty(contacts + springs), np.empty(count))
+    sides = np.empty(contacts + springs), np.empty(contacts + springs)
+    rooms = (solving, np.empty((meshes.shape[0], 2)), slopes, rows, sides[0], sides[1], np.empty(count))
     shape = (meshes, places, planets, senses, distance)
     now = (np.empty((meshes.shape[0], 2)), np.empty((planet.shape[1], planet.shape[2], 2)))
     for i in range(central.shape[0]):

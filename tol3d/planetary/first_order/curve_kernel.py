@@ -1,17 +1,20 @@
 """Rest positions of a shaft at successive positions, by first-order gaps: a compiled programme that goes on from each.
 
 Contacts are those of `stack_up.py`, worked out position by position. Contacts that are met at one position are those
-that the next one begins with, in the same trial; a trial still has the same bits alone and among thousands. What a sum
+that the next one begins with, in the same trial, with the inverse of their rows, which do not change; a trial still has
+the same bits alone and among thousands. What a sum
 over the positions changes with is known beside it: the multipliers of the contacts met, which the sides of contacts and
 offsets of gears get their share of.
 """
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from tol3d.numerics.compiled import kernel, part
-from tol3d.numerics.programme import OK, new_rooms, solve_lp
+from tol3d.numerics.programme import OK, exchanged, new_rooms, solve_lp
+
+INVERTED_ANEW: Final = 64  # positions after which it is, for each exchange of rows rounds it once
 
 
 @part
@@ -134,7 +137,11 @@ def first_order_curve(
                 if afresh or attempt == 1:
                     for j in range(count):
                         basis[j], rooms[2][j] = begun[j], 1.0
-                found, row, lacking = solve_lp(rows, low, high, wanted, basis, rooms, x)
+                if afresh or attempt == 1 or p % INVERTED_ANEW == 0:
+                    found, row, lacking = solve_lp(rows, low, high, wanted, basis, rooms, x)
+                else:
+                    _, inverse, sides, loads, shares = rooms
+                    found, row, lacking = exchanged(rows, low, high, basis, inverse, sides, loads, shares, x)
                 if found == OK or afresh:
                     break
             ends[i, p] = 0.0
