@@ -44,10 +44,11 @@ if TYPE_CHECKING:
         view_trial,
         write_report,
     )
-    from tol3d.runs.run import Run as Run
-    from tol3d.runs.run import open_run
+    from tol3d.report.displayed_run import DisplayedRun, open_run
     from tol3d.scene import Scene
     from tol3d.simulate import Overrides, run_scene
+
+    Run = DisplayedRun
 
 leave_settings_unread()
 
@@ -55,7 +56,7 @@ _HOMES = {
     "InputError": "tol3d.errors",
     "Overrides": "tol3d.simulate",
     "Replay": "tol3d.notebook",
-    "Run": "tol3d.runs.run",
+    "Run": "tol3d.report.displayed_run:DisplayedRun",
     "RunError": "tol3d.errors",
     "SceneError": "tol3d.errors",
     "SpurGear": "tol3d.gears",
@@ -66,7 +67,7 @@ _HOMES = {
     "export_trial": "tol3d.notebook",
     "find_shims": "tol3d.notebook",
     "load_scene": "tol3d.kinds",
-    "open_run": "tol3d.runs.run",
+    "open_run": "tol3d.report.displayed_run",
     "register": "tol3d.kinds",
     "replay": "tol3d.notebook",
     "response": "tol3d.notebook",
@@ -75,7 +76,8 @@ _HOMES = {
     "view_trial": "tol3d.notebook",
     "write_report": "tol3d.notebook",
 }
-"""Module of each public name; names that functions return or raise, and gears, serve annotations and `except`."""
+"""Module of each public name, and its name there if it has another. Names that functions return or raise, and gears,
+serve annotations and `except`."""
 
 __all__ = [
     "Overrides",
@@ -102,7 +104,8 @@ def __getattr__(name: str) -> Any:
     if name == "Scene":  # of every kind that is known by now
         return import_module("tol3d.kinds").all_kinds().scene
     if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
+        module, _, called = _HOMES[name].partition(":")
+        return getattr(import_module(module), called or name)
     raise AttributeError(f"module 'tol3d' has no attribute {name!r}")
 
 

@@ -87,17 +87,17 @@ from tol3d.execution.pools import ONE_WORKER, Execution, pool_of
 from tol3d.execution.timing import Clock
 from tol3d.execution.watch import UNWATCHED, Watch
 from tol3d.kinds import NEEDED_KINDS
+from tol3d.report.displayed_run import DisplayedRun
 from tol3d.runs.fingerprint import Fingerprint
 from tol3d.runs.occupant import Place, free_folder, refuse_changed
 from tol3d.runs.run import Run
 from tol3d.runs.writer import RunWriter, refusals_explained
 from tol3d.scene import Grammar, Scene, read_scene, scene_from_python
-from tol3d.study import replaying
 from tol3d.study.blocks import plan_of
 from tol3d.study.findings import findings, run_tables
 from tol3d.study.fingerprint import column_units, fingerprint_of, text_of
 from tol3d.study.overrides import AS_WRITTEN, Overrides, simulation_of
-from tol3d.study.replaying import Replay, replayed
+from tol3d.study.replaying import Replay, replay, replayed, simulation_again
 from tol3d.study.simulation import Simulation
 from tol3d.study.stopping import enough
 from tol3d.study.tally import Tally
@@ -123,7 +123,7 @@ def run_scene(
     force: bool = False,
     watch: Watch = UNWATCHED,
     kinds: Grammar | None = None,
-) -> Run:
+) -> DisplayedRun:
     """Run a scene's study and keep it on disk.
 
     Args:
@@ -148,7 +148,7 @@ def run_scene(
     scene = load(scene, trust_parts=trust_parts, run_builders=run_builders, kinds=kinds, resumed=resumed)
     simulation = simulation_of(scene, overrides)
     with faults_of(simulation.mechanism):
-        return _run(_order(scene, simulation, execution, out, clock), watch, force=force)
+        return DisplayedRun.of(_run(_order(scene, simulation, execution, out, clock), watch, force=force))
 
 
 def run_simulation(
@@ -308,24 +308,6 @@ def load(
     grammar = kinds or NEEDED_KINDS
     before_programs = examine if run_builders else None
     return read_scene(scene, grammar, trust_parts=trust_parts, run_builders=run_builders, examine=before_programs)
-
-
-def replay(run: Run | Path | str, trial: int, kinds: Grammar | None = None) -> Replay:
-    """Trial k of a run again: its deviations, build, contacts and values.
-
-    Raises:
-        RunError: the run has no such trial.
-    """
-    return replaying.replay(run, trial, kinds or NEEDED_KINDS)
-
-
-def simulation_again(run: Run, kinds: Grammar | None = None) -> Simulation:
-    """The simulation of a run, from the files that it kept, with the study it was run with.
-
-    Raises:
-        RunError: a kept file was changed since.
-    """
-    return replaying.simulation_again(run, kinds or NEEDED_KINDS)
 
 
 def folder_for(scene: Scene, simulation: Simulation, execution: Execution, runs: Path) -> tuple[Path, str]:

@@ -20,7 +20,7 @@ from scipy.stats import kstest
 from tol3d import load_scene
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model, model_from_scene
-from tol3d.gearing.model.shafts import Carried
+from tol3d.gearing.shafts import Carried
 from tol3d.system.stated import nominal_build
 
 LEFT, RIGHT = -1, 1

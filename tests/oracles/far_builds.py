@@ -7,6 +7,7 @@ import numpy as np
 
 from tol3d.distributions import Distribution, Uniform
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gearing.model import (
     AxesOffset,
     AxisOffset,
@@ -22,7 +23,6 @@ from tol3d.gearing.model import (
     ToothThickness,
     TurningOffset,
 )
-from tol3d.gearing.model.contributor import Unit
 from tol3d.gearing.model.model import Housing
 from tol3d.gears import BevelGear, BevelPair, SpurGear, SpurPair, pitch_angles
 from tol3d.gears.flank import Flank

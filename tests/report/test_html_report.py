@@ -28,6 +28,7 @@ from tol3d.report.bars import Bars
 from tol3d.report.compare import comparison_report
 from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.convergence import running
+from tol3d.report.displayed_run import DisplayedRun
 from tol3d.report.distribution import samples_of
 from tol3d.report.drawn_sample import DrawnSample
 from tol3d.report.html import view_3d
@@ -418,6 +419,7 @@ def test_several_runs_say_why_they_have_no_3d(spur: Run, tmp_path: Path) -> None
 
 
 def test_a_run_shows_itself_in_notebooks(spur: Run) -> None:
+    assert isinstance(spur, DisplayedRun)
     page = _Read(spur._repr_html_())
     told = " ".join(text for _, text in page.texts)
     assert "spur pair at the drive end" in told

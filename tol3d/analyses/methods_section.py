@@ -73,7 +73,7 @@ class MeasureMethods(Section):
     factor: NotNegative | None = Field(description="C_f of modified RSS; null of one contributor")
     modified_rss: NotNegative | None
     worst: WorstFound | None = Field(description="null where it would take too many builds, or nothing acts")
-    nothing_acts: Sentence = Field(description="where no contributor was seen to act; else empty")
+    nothing_acts: Sentence = Field(default="", description="where no contributor was seen to act; else empty")
     simulation: MethodsSample
     evaluations: Count
 

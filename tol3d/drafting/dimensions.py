@@ -1,9 +1,8 @@
 """Sizes and distances of a part's drawing in its file, as tolerances of a scene."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from tol3d.drafting.drawn import Drawn
 from tol3d.drafting.entry import Entry, Wording
 from tol3d.drafting.features import Group
 from tol3d.drafting.words import comment, length, scalar
@@ -12,11 +11,8 @@ from tol3d.step.dimension import Dimension
 from tol3d.step.found import FoundFeature
 from tol3d.step.refused import StepError
 
-if TYPE_CHECKING:
-    from tol3d.drafting.drawing import Drawing
 
-
-def sized(drawing: "Drawing", dimension: Dimension) -> list[FoundFeature]:
+def sized(drawing: Drawn, dimension: Dimension) -> list[FoundFeature]:
     """The round features whose size a dimension is; none for other dimensions."""
     if not dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
         return []
@@ -28,7 +24,7 @@ def sized(drawing: "Drawing", dimension: Dimension) -> list[FoundFeature]:
     return [own for own in found if own.kind in wanted] if "angle" not in dimension.kind else []
 
 
-def take_size(drawing: "Drawing", dimension: Dimension) -> None:
+def take_size(drawing: Drawn, dimension: Dimension) -> None:
     """A size with limits of a used feature."""
     if dimension.limits is None or dimension.role != "toleranced" or "angle" in dimension.kind:
         return
@@ -47,7 +43,7 @@ def take_size(drawing: "Drawing", dimension: Dimension) -> None:
         drawing.reasons[dimension.id] = "the size of what no tolerance of this scene is of"
 
 
-def slot_of(drawing: "Drawing", dimension: Dimension) -> Group | None:
+def slot_of(drawing: Drawn, dimension: Dimension) -> Group | None:
     """The slot or tab whose width a dimension is."""
     faces = {face for each in dimension.features for face in each.faces}
     for group in drawing.features.groups:
@@ -57,7 +53,7 @@ def slot_of(drawing: "Drawing", dimension: Dimension) -> Group | None:
     return None
 
 
-def size_entry(drawing: "Drawing", dimension: Dimension, group: Group, lower: float, upper: float) -> Entry:
+def size_entry(drawing: Drawn, dimension: Dimension, group: Group, lower: float, upper: float) -> Entry:
     """A size as an entry."""
     named = comment(dimension.name)
     remark = f"{comment(str(dimension))}{unit_of(dimension)}: {named + ', ' if named else ''}#{dimension.id}"
@@ -80,7 +76,7 @@ def enveloped(dimension: Dimension, group: Group) -> str:
     return ", envelope: true" if "envelope" in words else ", envelope: false" if "independen" in words else ""
 
 
-def take_distance(drawing: "Drawing", dimension: Dimension) -> None:
+def take_distance(drawing: Drawn, dimension: Dimension) -> None:
     """A distance of two parallel faces with limits, of the one that nothing else locates."""
     if dimension.is_size or dimension.limits is None or dimension.role != "toleranced":
         return
@@ -98,7 +94,7 @@ def take_distance(drawing: "Drawing", dimension: Dimension) -> None:
         drawing.reasons[dimension.id] = str(error)
 
 
-def distance_entry(drawing: "Drawing", dimension: Dimension, first: FoundFeature, second: FoundFeature) -> None:
+def distance_entry(drawing: Drawn, dimension: Dimension, first: FoundFeature, second: FoundFeature) -> None:
     """A distance as an entry: it starts at the face that is a datum.
 
     Raises:

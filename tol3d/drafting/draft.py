@@ -79,7 +79,7 @@ class Draft:
 
     def told(self, own: ReadText) -> Iterator[str]:
         """Outcome of each tolerance and dimension of a file, in comments."""
-        drawings = [each.drawing for each in self.parts if each.drawing and each.file is own.file]
+        drawings = [each.drawing for each in self.parts if not each.like and each.file is own.file]
         reasons = {key: why for each in drawings for key, why in each.reasons.items()}
         doubled = {key: why for each in drawings for key, why in each.doubled.items()}
         lost: list[str] = []
@@ -156,7 +156,7 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
     names = Names()
     parts = list(drafted_parts(files, names))
     for part in parts:
-        if part.drawing is not None:
+        if not part.like:
             part.drawing.read()
     for own in seats:
         part, face = found(parts, own.seat, "--seat")
@@ -164,7 +164,7 @@ def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
         if part is other:
             raise InputError(f"--on: expected a face of another part than {shown(own.seat)!r}, got {shown(own.on)!r}")
         seated(part, face, other, there)
-    said = [entry for part in parts if part.drawing is not None for entry in part.drawing.entries]
+    said = [entry for part in parts if not part.like for entry in part.drawing.entries]
     placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
     made = [*said, *placed, *something(parts, [*said, *placed], names)]
     made += () if said else guessed(parts, names)
@@ -222,8 +222,7 @@ def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[Drafte
             f"{option}: expected a part and a face of it, such as {known[0]}.A, got {shown(words)!r}"
             f"{hint(name, known)}; parts: {listed}"
         )
-    letters = part.features.owner.datums if part.features.owner is not None else {}
-    wanted = letters.get(feature, feature)
+    wanted = part.drawing.datums.get(feature, feature)
     members = {n: m for group in part.features.groups for n, m in zip(group.names, group.members, strict=True)}
     number = int(feature[1:]) if feature.startswith("#") and feature[1:].isdecimal() else None
     own = members.get(wanted)

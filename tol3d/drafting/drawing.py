@@ -1,24 +1,24 @@
 """The drawing of a part in its file as a scene's tolerances and measures, and its omissions."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from tol3d.drafting.dimensions import sized, take_distance, take_size
+from tol3d.drafting.drawn import Drawn
 from tol3d.drafting.entry import LAW, Entry, Wording
-from tol3d.drafting.features import USABLE, Features, Group
-from tol3d.drafting.words import Names, comment, direction, length, scalar
+from tol3d.drafting.features import USABLE, Group
+from tol3d.drafting.words import comment, direction, length, scalar
 from tol3d.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
 from tol3d.numerics.arrays import Array
 from tol3d.step.dimension import Dimension
 from tol3d.step.faces import extent
 from tol3d.step.found import FoundFeature, Triple
 from tol3d.step.frame import frame
-from tol3d.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning, Meanings
-from tol3d.step.outline import StepText
+from tol3d.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning
 from tol3d.step.refused import StepError
 from tol3d.step.shape import shape_of
 from tol3d.step.tolerance import Tolerance
@@ -34,38 +34,8 @@ MOST_OF_A_SET: Final = 64  # features that `inspected_set` takes
 
 
 @dataclass
-class Drawing:
-    """Drawing of one part in the file, as entries of a scene.
-
-    Args:
-        text: of the file.
-        meanings: of all its tolerances.
-        part: the name of the part in the scene.
-        features: of the part.
-        names: those of the scene.
-        spread: the kind of distribution of sizes and dimensions, as the law of zones.
-        reasons: why tolerances and dimensions are left out, beyond their meaning; grows.
-        entries: tolerances and measures; grows.
-        datums: the feature of each letter; grows.
-        located: the tolerance or dimension that locates each group of features; grows.
-        sizes: the entry of the size of each group; grows.
-        frames: the datums of that, as they are written, and how many there are; grows.
-        doubled: losses of tolerances of a feature that another one locates; grows.
-    """
-
-    text: StepText
-    meanings: Meanings
-    part: str
-    features: Features
-    names: Names
-    spread: str = "normal"
-    reasons: dict[int, str] = field(default_factory=dict)
-    entries: list[Entry] = field(default_factory=list)
-    datums: dict[str, str] = field(default_factory=dict)
-    located: dict[str, int] = field(default_factory=dict)
-    sizes: dict[str, Entry] = field(default_factory=dict)
-    doubled: dict[int, str] = field(default_factory=dict)
-    frames: dict[str, tuple[tuple[tuple[str, str], ...], int]] = field(default_factory=dict)
+class Drawing(Drawn):
+    """Reading of a drawing."""
 
     @property
     def product(self) -> int:
@@ -232,10 +202,6 @@ class Drawing:
             ways = [x * np.cos(angle) + y * np.sin(angle) for angle in np.arange(AROUND) * 2.0 * np.pi / AROUND]
             return middle, normal, max(extent(edges, way)[1] - float(way @ middle) for way in ways)
         return None
-
-    def of(self, feature: str) -> str:
-        """A feature with its part, as YAML."""
-        return scalar(f"{self.part}.{feature}")
 
     def say(self, tolerance: Tolerance, meaning: Meaning) -> None:
         """A tolerance as entries: one of each group of features, and measures that inspect it."""

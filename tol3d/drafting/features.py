@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -12,9 +12,6 @@ from tol3d.step.found import FoundFeature, Triple, by_place
 from tol3d.step.reading import StepPart
 from tol3d.step.refused import StepError, shown
 from tol3d.step.selecting import Selector, line_of, selected
-
-if TYPE_CHECKING:
-    from tol3d.drafting.drawing import Drawing
 
 USABLE: Final = frozenset(("plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"))
 SHORTEST_NAMES: Final = 40  # characters of a PMI name by which a feature is selected; longer ones are data
@@ -72,13 +69,11 @@ class Features:
         part: the part as it was read.
         names: those that are given.
         groups: selected features; grows.
-        owner: the drawing of the part, once there is one.
     """
 
     part: StepPart
     names: Names = field(default_factory=lambda: Names(UNNAMEABLE_FEATURE))
     groups: list[Group] = field(default_factory=list)
-    owner: "Drawing | None" = None
 
     def of_faces(self, faces: Sequence[int], skipped: frozenset[str] = frozenset()) -> list[FoundFeature]:
         """The features of the part that some faces are; of a plane that is known already that one, whole.

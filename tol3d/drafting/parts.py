@@ -33,7 +33,7 @@ class DraftedPart:
         pose: in the world (4, 4) [mm].
         by_file: True if the file states it, False if the scene does.
         features: of its product; parts that are alike share them.
-        drawing: of the first part of a product; None of those that are like it.
+        drawing: of its product; parts that are alike share it.
         like: the first part of its product.
         guess: reason for its pose; "" if the file states it.
     """
@@ -44,7 +44,7 @@ class DraftedPart:
     pose: Array
     by_file: bool
     features: Features
-    drawing: Drawing | None
+    drawing: Drawing
     like: str = ""
     guess: str = ""
 
@@ -136,9 +136,7 @@ def drafted_part(own: ReadText, use: Use, names: Names, like: DraftedPart | None
     selection = "" if single else f"use: {scalar(use.path)}"
     if single and len(own.file.parts) > 1:
         selection = f"product: {scalar(part.name)}"
-    drawing = None
-    if like is None:
-        drawing = features.owner = Drawing(own.text, own.meanings, name, features, names)
+    drawing = like.drawing if like is not None else Drawing(own.text, own.meanings, name, features, names)
     return DraftedPart(
         name, own.file, selection, pose, not single, features, drawing, "" if like is None else like.name
     )

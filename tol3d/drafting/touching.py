@@ -249,9 +249,7 @@ def playing(own: Coaxial) -> str | None:
 def largest_bolt(part: DraftedPart, hole: FoundFeature) -> float:
     """The bolt that always goes through a hole [mm]: at MMC less its position (ASME Y14.5-2018, B.3)."""
     diameter = 2 * hole.radius
-    drawing = part.features.owner
-    if drawing is None:
-        return diameter * (1.0 - BOLT_LESS)
+    drawing = part.drawing
     faces = {*hole.faces}
     zones = [
         each.magnitude.value
@@ -270,13 +268,13 @@ def unsized(own: Coaxial, names: Names) -> Iterator[Entry]:
     """Sizes of holes and pins of which the file states none, without deviations: play is by sizes."""
     for part, each in ((own.part, own.own), (own.other, own.there)):
         known = part.features.named(each)
-        if known is None or part.features.owner is None or known[0].name in part.features.owner.sizes:
+        if known is None or known[0].name in part.drawing.sizes:
             continue
         group = known[0]
         line = f"{{kind: size, of: {part.first_of(group.name)}, distribution: {{kind: constant, value: 0 mm}}}}"
         name = scalar(names.new(f"{group.name} size", "size", len(group.members)))
         entry = Entry("tolerances", name, [Wording((line,), "guess: the file states no limits")])
-        part.features.owner.sizes[group.name] = entry
+        part.drawing.sizes[group.name] = entry
         yield entry
 
 

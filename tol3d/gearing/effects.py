@@ -4,16 +4,14 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
+from tol3d.gearing.shafts import Mesh
 from tol3d.gears.flank import Flank
 from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.shafts import Mesh
 
 
 class Effect(ABC):
@@ -29,10 +27,10 @@ class Effect(ABC):
         return (self,)
 
     @abstractmethod
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """True if it changes the relative position of the gears of a mesh, or their flanks."""
 
-    def clocking(self, mesh: "Mesh") -> float:
+    def clocking(self, mesh: Mesh) -> float:
         """Turn of the shaft that a mesh drives, about the driven gear's z, with the teeth in contact [rad per unit]."""
         return 0.0
 
@@ -66,11 +64,11 @@ class CombinedEffect(Effect):
         """See Effect."""
         return self.effects
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """See Effect."""
         return any(effect.acts_in(mesh) for effect in self.effects)
 
-    def clocking(self, mesh: "Mesh") -> float:
+    def clocking(self, mesh: Mesh) -> float:
         """See Effect."""
         return sum(effect.clocking(mesh) for effect in self.effects)
 
@@ -140,7 +138,7 @@ class AxisOffset(Effect):
     mesh: str | None = None
     plane: Plane = AS_COUNTED
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In every mesh of the gear, or in the one that is named."""
         return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)
 
@@ -152,7 +150,7 @@ class AxesOffset(Effect):
     part: str
     mesh: str
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In that mesh."""
         return self.mesh == mesh.name
 
@@ -179,7 +177,7 @@ class AxisTilt(Effect):
         (xx, xy), (yx, yy) = self.plane.seen_from(azimuth).matrix
         return self.per_length * np.array([[-yx, -yy], [xx, xy], [0.0, 0.0]])
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In every mesh of the gear, or in the one that is named."""
         return self.mesh in (None, mesh.name) and self.part in (mesh.driver, mesh.driven)
 
@@ -190,11 +188,11 @@ class Clocking(Effect):
 
     part: str
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """A mesh finds its rest for any turn of its gears; the shafts turn, see `clocking`."""
         return False
 
-    def clocking(self, mesh: "Mesh") -> float:
+    def clocking(self, mesh: Mesh) -> float:
         """A driver that sits ahead takes the driven gear with it; a driven gear ahead leaves its shaft behind."""
         return float(mesh.rate) * (self.part == mesh.driver) - (self.part == mesh.driven)
 
@@ -250,7 +248,7 @@ class FlankDeviation(Effect):
                     if factor:
                         yield component, place, shape, factor * place.factor
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
 
@@ -271,7 +269,7 @@ class LinkDeviation(Effect):
     link: str
     turning: str | None = None
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """It moves no axis and no flank."""
         return False
 
@@ -291,7 +289,7 @@ class Temperature(Effect):
 
     parts: tuple[str, ...]
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """True if a gear of the mesh, or its housing, is one of the parts."""
         return not {mesh.driver, mesh.driven, mesh.housing}.isdisjoint(self.parts)
 
@@ -309,7 +307,7 @@ class ToothThickness(Effect):
     offset: float = 0.0
     over: ToothMeasure | None = None
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
 
@@ -321,7 +319,7 @@ class TurningOffset(Effect):
     part: str
     plane: Plane = AS_COUNTED
 
-    def acts_in(self, mesh: "Mesh") -> bool:
+    def acts_in(self, mesh: Mesh) -> bool:
         """In every mesh of the gear."""
         return self.part in (mesh.driver, mesh.driven)
 

@@ -12,7 +12,7 @@ from tol3d.gearing.grammar.moves import GearMeshSpec, MeshSpec
 from tol3d.gearing.model.brought import Brought, brought_into
 from tol3d.gearing.model.from_scene import meshes_of_scene
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.model.shafts import Mesh
+from tol3d.gearing.shafts import Mesh
 from tol3d.machine.grammar.shaft_in_bores import ShaftInBoresSpec
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene

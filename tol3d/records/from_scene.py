@@ -18,7 +18,7 @@ import numpy as np
 from tol3d.errors import InputError
 from tol3d.gearing.builds.build import build
 from tol3d.gearing.model import Model
-from tol3d.gearing.model.shafts import Mesh
+from tol3d.gearing.shafts import Mesh
 from tol3d.gearing.system import GearSystem
 from tol3d.numerics.arrays import Array
 from tol3d.records.pair import RigPair, Specimen

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tol3d.report.body import World
     from tol3d.runs.run import Run
     from tol3d.runs.summary.run import RunSummary
-    from tol3d.simulate import Replay
+    from tol3d.study.replaying import Replay
     from tol3d.study.simulation import Simulation
 
 SYSTEM_CHECK = "tol3d.report.system_check"  # loads distributions, and so scipy, which pictures do without

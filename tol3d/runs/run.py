@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,12 +30,8 @@ from tol3d.system.outcome import ANALYTIC, GEOMETRIC
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tol3d.report.figures import MeasureFigures
-
 Columns = dict[str, NDArray[Any]]
 
-FIGURES = "tol3d.report.figures"  # loads what draws, and so not before it is asked for
-SHOWN = "tol3d.report.html.run_block"  # so does this, tables
 SUMMARY = "summary.json"
 SCENE = "scene.yaml"
 PIECES = "pieces"
@@ -85,20 +80,6 @@ class Run:
             return RunError(f"{self.path / SUMMARY}: {place}: {words}; it is damaged, or of another tol3d")
 
         return typed(self.summary, fault, self.kinds)
-
-    def _repr_html_(self) -> str:
-        """Name of the run and its verdict, for notebooks."""
-        shown: str = import_module(SHOWN).run_html(self)
-        return shown
-
-    def measure(self, name: str) -> "MeasureFigures":
-        """One of its measures, to draw: `run.measure("play").histogram()`, and pareto, difference, convergence.
-
-        Raises:
-            InputError: no such measure.
-        """
-        figures: MeasureFigures = import_module(FIGURES).measure_figures(self, name)
-        return figures
 
     @property
     def trials(self) -> int:

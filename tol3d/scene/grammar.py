@@ -128,6 +128,16 @@ class Kinds(Protocol):
         """Grammar of the vocabularies that have some words; of all of them if that is not known."""
 
 
+REGISTRY: Final = "tol3d.kinds"
+"""Where mechanisms are registered: the one room above that those below load by its name, so that they import none."""
+
+
+def registered_kinds() -> Kinds:
+    """The kinds of every mechanism that is known: shipped, installed and registered."""
+    found: Kinds = import_module(REGISTRY).NEEDED_KINDS
+    return found
+
+
 @dataclass(frozen=True)
 class Grammar:
     """Grammar of scenes: the kinds of several vocabularies. Equal where these are; pickles.

@@ -3,18 +3,16 @@
 import difflib
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, Protocol
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from tol3d.scene.entry import Entry
 from tol3d.scene.nearest import LISTED_WORDS, LONGEST_WORD, hint, nearest
 from tol3d.scene.place import KeyPath, Origin, key_text
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import COMMA_SEPARATES, EXAMPLES, FACTORS, NUMBER_UNIT, Dimension, expectation, shown
-
-if TYPE_CHECKING:
-    from tol3d.scene.grammar import Grammar
 
 MOST_PROBLEMS = 8  # what a screen shows and a person mends in one go
 QUOTED_WORD = re.compile(r"'((?:[^'\\]|\\.)*)'")
@@ -44,7 +42,23 @@ SOME_WORDS: Final = 3  # that are named where none is near
 SOMEWHAT_LIKE: Final = 0.55  # ratio of difflib from which a word is worth naming
 
 
-def messages(error: ValidationError, data: Any, origin: Origin, grammar: "Grammar") -> list[str]:
+class Words(Protocol):
+    """Words of a grammar, and what stands for those that it has not."""
+
+    def kinds(self, section: str) -> Mapping[str, type[Entry]]:
+        """The kinds of a section by their words."""
+        ...
+
+    def instead_of_kind(self, word: object) -> str:
+        """Replacement for a kind that is not known; "" where no vocabulary gives one."""
+        ...
+
+    def instead_of_key(self, word: object) -> str:
+        """The same of a key or a choice."""
+        ...
+
+
+def messages(error: ValidationError, data: Any, origin: Origin, grammar: Words) -> list[str]:
     """One message for each problem, in the order of the file, at most MOST_PROBLEMS of them.
 
     Args:
@@ -95,7 +109,7 @@ def _path(loc: tuple[int | str, ...], data: Any) -> KeyPath:
     return tuple(path)
 
 
-def _dimensions(path: KeyPath, data: Any, grammar: "Grammar") -> tuple[Dimension, ...]:
+def _dimensions(path: KeyPath, data: Any, grammar: Words) -> tuple[Dimension, ...]:
     """Dimensions of the quantities of a distribution, by the kind of the tolerance that holds it."""
     if len(path) < 2 or path[0] != "tolerances":
         return ()
@@ -155,7 +169,7 @@ def _missing_kind(details: ErrorDetails) -> str:
     return 'expected the key "kind" here, found none'
 
 
-def _other_word(details: ErrorDetails, grammar: "Grammar") -> str:
+def _other_word(details: ErrorDetails, grammar: Words) -> str:
     """The sentence for a word that is written otherwise here, or not at all; "" for other findings."""
     match details["type"]:
         case "union_tag_invalid":

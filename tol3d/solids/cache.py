@@ -5,19 +5,27 @@ import io
 import json
 import warnings
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
+from typing import Final
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from tol3d.gears import Gear
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE, cache_folder, read_entry, write_entry
 from tol3d.numerics.sources import sources_of
 from tol3d.solids.built_shape import BuiltShape
-from tol3d.solids.lazy import CAD, Arrays
+from tol3d.solids.lazy import CAD, Arrays, cad
+from tol3d.solids.pick import Pick, PickedFace
 from tol3d.solids.posed_gear import Body
 
 PACKAGES = ("cadquery", "cadquery-ocp", "numpy", "scipy")
+
+
+FACES: Final = TypeAdapter(tuple[PickedFace, ...])
+"""Faces as they are kept."""
 
 
 class CacheWarning(UserWarning):
@@ -53,6 +61,22 @@ def cached(
         advice = f"set {FOLDER_VARIABLE} to a folder that can be written"
         warnings.warn(f"{cache_folder()}: cannot keep built geometry ({error.strerror}); {advice}", CacheWarning, 3)
     return arrays
+
+
+def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
+    """The faces that picks mean, in their order.
+
+    Raises:
+        PickError: a pick means no face, or several.
+        GeometryError: the solid cannot be built.
+    """
+    asked = json.dumps([asdict(pick) for pick in picks], sort_keys=True)
+    kind = f"faces-{hashlib.sha256(asked.encode()).hexdigest()[:16]}"
+
+    def build() -> Arrays:
+        return {"faces": np.frombuffer(FACES.dump_json(tuple(cad().pick_faces(shape, picks))), dtype=np.uint8)}
+
+    return FACES.validate_json(cached(kind, shape, {}, build)["faces"].tobytes())
 
 
 def _key(kind: str, shape: Gear | Body | BuiltShape, settings: Mapping[str, float]) -> str:

@@ -3,17 +3,15 @@
 import importlib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.gears import Gear
 from tol3d.solids.built_shape import BuiltShape
+from tol3d.solids.pick import Pick, PickedFace
 from tol3d.solids.posed_gear import Body, PosedPart
-
-if TYPE_CHECKING:
-    from tol3d.solids.pick import Pick, PickedFace
 
 CAD = "tol3d.solids.cad"
 
@@ -35,7 +33,7 @@ class Cad(Protocol):
         """Arrays of DisplayMesh."""
         ...
 
-    def pick_faces(self, shape: BuiltShape, picks: "Sequence[Pick]") -> "Sequence[PickedFace]":
+    def pick_faces(self, shape: BuiltShape, picks: Sequence[Pick]) -> Sequence[PickedFace]:
         """The faces that picks mean."""
         ...
 

@@ -1,18 +1,11 @@
 """Face of a solid that is selected, and its properties."""
 
-import hashlib
-import json
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from typing import Final, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from tol3d.errors import GeometryError
-from tol3d.solids.built_shape import BuiltShape
-from tol3d.solids.cache import cached
-from tol3d.solids.lazy import Arrays, cad
 
 Triple = tuple[float, float, float]
 FaceKind = Literal["plane", "cylinder", "cone", "sphere"]
@@ -88,23 +81,3 @@ class PickError(GeometryError):
     def __init__(self, sentence: str, number: int, by: Literal["name", "near"]) -> None:
         super().__init__(sentence)
         self.number, self.by = number, by
-
-
-FACES: Final = TypeAdapter(tuple[PickedFace, ...])
-"""Faces as they are kept."""
-
-
-def picked(shape: BuiltShape, picks: Sequence[Pick]) -> tuple[PickedFace, ...]:
-    """The faces that picks mean, in their order.
-
-    Raises:
-        PickError: a pick means no face, or several.
-        GeometryError: the solid cannot be built.
-    """
-    asked = json.dumps([asdict(pick) for pick in picks], sort_keys=True)
-    kind = f"faces-{hashlib.sha256(asked.encode()).hexdigest()[:16]}"
-
-    def build() -> Arrays:
-        return {"faces": np.frombuffer(FACES.dump_json(tuple(cad().pick_faces(shape, picks))), dtype=np.uint8)}
-
-    return FACES.validate_json(cached(kind, shape, {}, build)["faces"].tobytes())

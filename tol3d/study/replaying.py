@@ -10,6 +10,7 @@ from tol3d.errors import InputError
 from tol3d.runs.fingerprint import differences
 from tol3d.runs.run import Run, open_run
 from tol3d.scene import Kinds, read_scene
+from tol3d.scene.grammar import registered_kinds
 from tol3d.study.columns import columns_of
 from tol3d.study.draws import drawn
 from tol3d.study.overrides import simulation_of
@@ -47,20 +48,20 @@ class Replay:
     status: str
 
 
-def simulation_again(run: Run, kinds: Kinds) -> Simulation:
+def simulation_again(run: Run, kinds: Kinds | None = None) -> Simulation:
     """The simulation of a run, from the files that it kept, with the study it was run with.
 
     Raises:
         RunError: a kept file was changed since.
     """
-    again = simulation_of(read_scene(run.scene_path, kinds, files=run.files))
+    again = simulation_of(read_scene(run.scene_path, kinds or registered_kinds(), files=run.files))
     known = {field.name for field in fields(Study)}
     study = {name: value for name, value in run.summary["study"].items() if name in known}
     until = tuple(Until(*errors) for errors in study.pop("until", ()))
     return replace(again, study=Study(**study, until=until))
 
 
-def replay(run: Run | Path | str, trial: int, kinds: Kinds) -> Replay:
+def replay(run: Run | Path | str, trial: int, kinds: Kinds | None = None) -> Replay:
     """Trial k of a run again: its deviations, build, contacts and values.
 
     Bit for bit with the packages and on the kind of processor that made the run, elsewhere to rounding.

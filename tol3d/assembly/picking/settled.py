@@ -21,8 +21,9 @@ from tol3d.parts.details import DetailError
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.scene.references import Problem, refuse
+from tol3d.solids.cache import picked
 from tol3d.solids.kept_shape import KeptShape
-from tol3d.solids.pick import Pick, PickedFace, PickError, Triple, picked
+from tol3d.solids.pick import Pick, PickedFace, PickError, Triple
 from tol3d.units import Quantity
 
 AGREED: Final = 1e-4

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tol3d.report.page import PageItem
     from tol3d.report.presenter import Display, Draw, FurtherRow, Map, Which
     from tol3d.runs.run import Run
-    from tol3d.simulate import Replay
+    from tol3d.study.replaying import Replay
     from tol3d.study.simulation import Simulation
 
 

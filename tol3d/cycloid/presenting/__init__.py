@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from tol3d.report.presenter import Display, Which
     from tol3d.runs.run import Run
     from tol3d.runs.summary.run import RunSummary
-    from tol3d.simulate import Replay
+    from tol3d.study.replaying import Replay
     from tol3d.study.simulation import Simulation
     from tol3d.system.contributor import Contributor
 

@@ -24,8 +24,8 @@ from tol3d.report.body import Body, Surface, World, built_body
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.simulate import Replay
 from tol3d.solids import PosedGear, PosedPart, PosedShape
+from tol3d.study.replaying import Replay
 
 TURN, SWING = "turn", "swing"
 MOTIONS: Final = (TURN, SWING)

@@ -17,7 +17,7 @@ from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.measure import Backlash, Kind, LostMotion, Measure, Reading, TransmissionError
 from tol3d.gearing.model.model import GearPart, Model
-from tol3d.gearing.model.shafts import Arm, Mesh, Seat, Shaft, Train
+from tol3d.gearing.shafts import Arm, Mesh, Seat, Shaft, Train
 from tol3d.system.draw import Planar, Scalar
 from tol3d.system.positions import Positions
 

@@ -1,16 +1,14 @@
 """A contributor: one toleranced deviation, its draw, and its effect on the parts."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 from tol3d.distributions import DeviationLaw
 from tol3d.gearing.effects import Effect
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.system import contributor as system_contributor
 from tol3d.system.contributor import column_names
 from tol3d.system.draw import Draw
 from tol3d.units import RAD_PER_ARCMIN
-
-Unit = Literal["um", "mrad", "K", "arcmin"]
 
 INTERNAL_PER_UNIT: dict[Unit, float] = {"um": 1e-3, "mrad": 1e-3, "K": 1.0, "arcmin": RAD_PER_ARCMIN}
 

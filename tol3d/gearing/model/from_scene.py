@@ -21,7 +21,6 @@ from tol3d.gearing.model.model import GearPart, Housing, Model
 from tol3d.gearing.model.nominal import Nominal
 from tol3d.gearing.model.pairs import assembly_warning, internal, pair_of, undercut_warning
 from tol3d.gearing.model.shaft_trees import refuse_no_trees, refuse_revolving
-from tol3d.gearing.model.shafts import Arm, Mesh, Train
 from tol3d.gearing.model.trains import (
     arms_of,
     loaded_flank,
@@ -34,6 +33,7 @@ from tol3d.gearing.model.trains import (
     stated_links_of,
     trains_of,
 )
+from tol3d.gearing.shafts import Arm, Mesh, Train
 from tol3d.gears import LEFT, RIGHT, Gear, InternalGear, SpurGear
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned

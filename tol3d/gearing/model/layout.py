@@ -33,7 +33,7 @@ from tol3d.gearing.model.links import (
     upstream,
 )
 from tol3d.gearing.model.networks import network_path
-from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
+from tol3d.gearing.shafts import Carried, Mesh, Shaft
 from tol3d.numerics.arrays import Array
 
 

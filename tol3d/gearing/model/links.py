@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from tol3d.errors import GeometryError
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.model.shafts import Carried, Mesh, Shaft
+from tol3d.gearing.shafts import Carried, Mesh, Shaft
 
 
 @dataclass(frozen=True)

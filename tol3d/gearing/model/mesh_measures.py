@@ -17,7 +17,7 @@ from tol3d.gearing.grammar.measures import (
 from tol3d.gearing.model.links import Link, Parallel, least_common
 from tol3d.gearing.model.measure import Backlash, Kind, Measure, Reading, TransmissionError
 from tol3d.gearing.model.model import Model
-from tol3d.gearing.model.shafts import Mesh, Train
+from tol3d.gearing.shafts import Mesh, Train
 from tol3d.gears import one_tooth_acts, one_tooth_share
 from tol3d.scene import Scene
 from tol3d.scene.direction import At

@@ -13,7 +13,7 @@ from tol3d.gearing.model.contributor import Contributor, gear_contributor
 from tol3d.gearing.model.layout import Layout, Turning, layout_of
 from tol3d.gearing.model.links import Drive
 from tol3d.gearing.model.measure import Backlash, Measure, TransmissionError
-from tol3d.gearing.model.shafts import Arm, Mesh, Seat, Shaft, Train
+from tol3d.gearing.shafts import Arm, Mesh, Seat, Shaft, Train
 from tol3d.gears import Gear
 from tol3d.numerics.arrays import Array
 from tol3d.system import contributor as system_contributor

@@ -10,7 +10,7 @@ from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearingToleranceSpec, by_scale
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.layout import Layout
-from tol3d.gearing.model.shafts import Carried, Mesh
+from tol3d.gearing.shafts import Carried, Mesh
 from tol3d.gears import BevelPair, SpurGear, SpurPair
 from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
@@ -45,6 +45,10 @@ class Nominal:
     def carried_by(self, shaft: str) -> list[Carried]:
         """The gears on a shaft."""
         return [own for name, own in self.layout.carrying.values() if name == shaft]
+
+    def seat_azimuth(self, mesh: str) -> float:
+        """Turn of the driven gear of a mesh that closes a load path, 0 of others [rad]."""
+        return self.layout.seating(mesh).azimuth
 
     def contributor(self, name: str, spec: ToleranceEntry) -> Contributor:
         """A tolerance in the simulation.

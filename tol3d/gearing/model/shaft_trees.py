@@ -8,7 +8,7 @@ import numpy as np
 from tol3d.errors import SceneError
 from tol3d.gearing.model.layout import Layout
 from tol3d.gearing.model.links import Link, first_drivers, loop_of, turns_of, upstream
-from tol3d.gearing.model.shafts import Arm
+from tol3d.gearing.shafts import Arm
 from tol3d.scene import Scene
 
 ON_THE_AXIS = 1e-6  # mm, and rad

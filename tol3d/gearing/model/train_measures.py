@@ -21,8 +21,8 @@ from tol3d.gearing.model.measure import (
 from tol3d.gearing.model.mesh_measures import Reader, measured, reader_of
 from tol3d.gearing.model.model import Model
 from tol3d.gearing.model.networks import Network, Walk
-from tol3d.gearing.model.shafts import Arm, Train
 from tol3d.gearing.model.trains import gravity_torque, refuse_incomparable
+from tol3d.gearing.shafts import Arm, Train
 from tol3d.scene import Scene
 from tol3d.scene.direction import At, RandomOrFixed
 from tol3d.system.positions import Positions

@@ -13,7 +13,7 @@ from tol3d.gearing.grammar.tolerances.gearing_tolerance import ReducerBacklashSp
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.model.layout import Layout, misfit
 from tol3d.gearing.model.shaft_trees import ratio_text
-from tol3d.gearing.model.shafts import Arm, Carried, Mesh, Shaft, Train, Vector
+from tol3d.gearing.shafts import Arm, Carried, Mesh, Shaft, Train, Vector
 from tol3d.gears import LEFT, RIGHT, Flank
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath

@@ -19,7 +19,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.presenter import Which
 from tol3d.runs.run import Run
 from tol3d.runs.worst import worst_trial
-from tol3d.simulate import Replay, replay, replayed, simulation_again
+from tol3d.study.replaying import Replay, replay, replayed, simulation_again
 from tol3d.system.stated import magnified, mean_build, nominal_build
 
 Side = Literal["drive", "back"]

@@ -8,9 +8,9 @@ import numpy as np
 
 from tol3d.gearing.engines import Engine
 from tol3d.gearing.engines.exact import ExactEngine
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Contributor, Measure, Model, Planar, Positions
-from tol3d.gearing.model.contributor import Unit
 from tol3d.gearing.model.measure import at_one_position
 from tol3d.gearing.slopes.sensitivity import sensitivities
 from tol3d.gearing.stack_up import reference_form

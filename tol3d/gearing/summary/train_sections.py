@@ -10,9 +10,9 @@ from tol3d.gearing.grammar.published import PublishedEnds, PublishedTrain
 from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, TransmissionError
 from tol3d.gearing.model.measure import AnyStage, ParallelStage, Tip
 from tol3d.gearing.model.measure import Reading as ModelReading
-from tol3d.gearing.model.shafts import Mesh
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.gearing.play.play import staged_measures
+from tol3d.gearing.shafts import Mesh
 from tol3d.gearing.stack_up import per_normal_backlash
 from tol3d.gearing.summary.measure_words import Reading
 from tol3d.gearing.summary.types import (

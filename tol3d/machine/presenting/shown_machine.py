@@ -18,7 +18,7 @@ from tol3d.report.body import World
 from tol3d.report.motion import Motion
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.simulate import Replay
+from tol3d.study.replaying import Replay
 from tol3d.system.stated import magnified
 
 COLOURS: Final = ("#9AA7B4", "#BFA58E", "#9DB5A6", "#B4A5BE")

@@ -24,9 +24,9 @@ from tol3d.report.body import Body, World
 from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
-from tol3d.simulate import Replay
 from tol3d.solids import PosedBody
 from tol3d.solids.posed_gear import ArmBody
+from tol3d.study.replaying import Replay
 
 PIN: Final = 0.7  # of the smallest bore of a planet
 BELOW: Final = 0.75  # of a pin's diameter, from the lowest face to the axis of an arm

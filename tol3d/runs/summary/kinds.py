@@ -14,10 +14,9 @@ from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.published import in_summary
 from tol3d.runs.summary.run import RunSummary, StudySummary
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Section
+from tol3d.scene.grammar import REGISTRY
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.whole import PublishedWhole
-
-HOME = ("tol3d.kinds", "summary_kinds")  # of what summaries hold where nobody says otherwise
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,6 @@ def _of_kinds(measure: type[MeasureSummary], words: tuple[str, ...]) -> type[Mea
 
 
 def default_kinds(summary: Mapping[str, Any] | None = None) -> SummaryKinds:
-    """Additions of all mechanisms, or of those of a summary; loaded on demand, since runs/ imports no mechanism."""
-    module, name = HOME
-    found: SummaryKinds = getattr(import_module(module), name)(summary)
+    """Additions of all mechanisms, or of those of a summary."""
+    found: SummaryKinds = import_module(REGISTRY).summary_kinds(summary)
     return found

@@ -1,18 +1,15 @@
 """Tolerances of the relative position of a mesh's axes."""
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from tol3d.gearing.effects import AxesOffset, AxisOffset, AxisTilt
 from tol3d.gearing.grammar.moves import BevelMeshSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, MeshToleranceSpec, Nominal
 from tol3d.scene.entry import Entry
 from tol3d.units import Dimension
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.nominal import Nominal
 
 
 class CentreDistanceSpec(MeshToleranceSpec):
@@ -20,7 +17,7 @@ class CentreDistanceSpec(MeshToleranceSpec):
 
     kind: Literal["centre_distance"]
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis lies further from the driver's."""
         mesh = nominal.meshes[self.of]
         onwards = 1.0 if mesh.pair.wheel_origin[0] > 0.0 else -1.0
@@ -42,7 +39,7 @@ class AxisInPlaneSpec(MeshToleranceSpec):
         """See ToleranceSpec: axes are drawn parallel."""
         return ""
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis turns about y."""
         per_length = 1.0 if self.unit == "mrad" else 1.0 / nominal.smaller_face_width(self.of)
         return Meaning(AxisTilt(nominal.meshes[self.of].driven, (0.0, 1.0, 0.0), per_length=per_length, mesh=self.of))
@@ -63,7 +60,7 @@ class AxisOutOfPlaneSpec(MeshToleranceSpec):
         """See ToleranceSpec: axes are drawn parallel."""
         return ""
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis turns about x."""
         per_length = 1.0 if self.unit == "mrad" else 1.0 / nominal.smaller_face_width(self.of)
         return Meaning(AxisTilt(nominal.meshes[self.of].driven, (1.0, 0.0, 0.0), per_length=per_length, mesh=self.of))
@@ -76,7 +73,7 @@ class AxesOffsetSpec(MeshToleranceSpec):
 
     kind: Literal["axes_offset"]
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The driven axis lies at +y of the mesh."""
         return Meaning(AxesOffset(nominal.meshes[self.of].driven, self.of))
 
@@ -96,7 +93,7 @@ class ShaftAngleSpec(MeshToleranceSpec):
         default="apex", description="about the apex, or the point of the axis in the middle of the gear's face"
     )
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """Each gear sees the other one's axis on its +x side, so a turn about its -y opens the angle."""
         mesh, pair = nominal.meshes[self.of], nominal.bevel_pair(self.of)
         part, gear = (mesh.driver, pair.pinion) if self.tilts == "driver" else (mesh.driven, pair.wheel)

@@ -3,24 +3,27 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from tol3d.gearing.effects import NOTHING, AxisOffset, AxisTilt, Effect, Plane
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import BearingSpec, GearSpec, gears_on
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction, together
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import (
+    GearToleranceSpec,
+    Meaning,
+    Nominal,
+    in_direction,
+    together,
+)
+from tol3d.gearing.shafts import Carried, Mesh
 from tol3d.scene.direction import At, FixedAngle, known_word, shape
 from tol3d.scene.entry import Entry
 from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.part import PartSpec
 from tol3d.scene.reference import Contradiction, Reference
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.nominal import Nominal
-    from tol3d.gearing.model.shafts import Carried, Mesh
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Lever:
         rate: motion of the point per deviation; half for a clearance.
     """
 
-    own: "Carried"
+    own: Carried
     moved: float
     fixed: float | None
     rate: float = 0.5
@@ -139,7 +142,7 @@ class BearingClearanceSpec(GearToleranceSpec):
                 ("mesh",), f"the mesh that a bearing's direction: {self.direction} is of", "none", meshes
             )
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """Half the clearance, away from the mesh, at an azimuth of the frame at rest, or along the tooth force."""
         bearing = nominal.scene.parts[self.of]
         if isinstance(bearing, BearingSpec):
@@ -148,7 +151,7 @@ class BearingClearanceSpec(GearToleranceSpec):
             return in_direction([AxisOffset(self.of, factor=0.5)], self.direction)
         return Meaning(AxisOffset(self.of, unit_vector(self._azimuth(self.of, nominal)), factor=0.5), least=0.0)
 
-    def _meaning_of_bearing(self, bearing: BearingSpec, nominal: "Nominal") -> Meaning:
+    def _meaning_of_bearing(self, bearing: BearingSpec, nominal: Nominal) -> Meaning:
         """The shaft's axis moves at the bearing by half the clearance, at its other bearings not at all.
 
         With one other bearing it turns about that one; alone a bearing moves the whole shaft.
@@ -168,18 +171,18 @@ class BearingClearanceSpec(GearToleranceSpec):
         azimuth = -seen if gear.backward and not isinstance(self.direction, At) else seen
         return Meaning(together([effect for lever in levers for effect in lever.towards(azimuth)]), least=0.0)
 
-    def _azimuth(self, gear: str, nominal: "Nominal") -> float:
+    def _azimuth(self, gear: str, nominal: Nominal) -> float:
         """Azimuth in which the axis of a gear moves [rad], in its frame at rest on its shaft."""
         if isinstance(self.direction, At):
             return self.direction.at.internal
         mesh = nominal.mesh_of(gear, self.mesh)
         role = 0 if gear == mesh.driver else 1
         towards, opening = mesh.pair.mesh_azimuths[role], mesh.pair.opening_off_mesh[role]
-        towards += mesh.azimuth if gear == mesh.driver else nominal.layout.seating(mesh.name).azimuth
+        towards += mesh.azimuth if gear == mesh.driver else nominal.seat_azimuth(mesh.name)
         return towards + (opening if self.direction == "apart" else _force_azimuth(mesh, gear))
 
 
-def _force_azimuth(mesh: "Mesh", gear: str) -> float:
+def _force_azimuth(mesh: Mesh, gear: str) -> float:
     """Azimuth off the mesh [rad] of the radial part of the force on a gear by its mate's working flank.
 
     With the mesh at azimuth 0 the normal force is (-sin(alpha_w) cos(delta), sigma cos(alpha_w)) across the axis,

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Final, Literal, Self
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -16,7 +16,7 @@ from tol3d.gearing.effects import UNIFORM, FlankDeviation, Place
 from tol3d.gearing.grammar.parts import BevelGearSpec, GearSpec
 from tol3d.gearing.grammar.tolerances.flank_shape import NormalShapeSpec, UniformShapeSpec
 from tol3d.gearing.grammar.tolerances.flank_tolerance import FlankToleranceSpec, no_word
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Meaning, Nominal
 from tol3d.gearing.grammar.tolerances.gears import TeethOffAxisSpec
 from tol3d.gears import LEFT, RIGHT, Gear, SpurGear
 from tol3d.gears.pair import SAME_LENGTH
@@ -28,9 +28,6 @@ from tol3d.standards import iso_1328_2
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw, Each
 from tol3d.units import Quantity
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.nominal import Nominal
 
 GRADE: Final = "iso_1328_2"
 """The key of limits by a grade."""
@@ -68,7 +65,7 @@ class ToothRunOutSpec(TeethOffAxisSpec):
         """See GearToleranceSpec."""
         return ECCENTRICITY
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear's centre lies off its axis by half of the run-out."""
         own = super().meaning(nominal)
         return Meaning(own.effect, own.planar, own.azimuth, scale=ECCENTRICITY)

@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -12,6 +12,7 @@ from tol3d.gearing.draws.flank_record import FlankRecord
 from tol3d.gearing.effects import Effect
 from tol3d.gearing.grammar.moves import GearMeshSpec, meshes_of
 from tol3d.gearing.grammar.parts import InternalGearSpec, SpurGearSpec
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import Unit
 from tol3d.gears import SpurGear
 from tol3d.gears.flank import LEFT, RIGHT, Flank
 from tol3d.gears.iso1328 import CLASSES, FlankTolerances, flank_tolerances
@@ -25,9 +26,6 @@ from tol3d.scene.tolerance import ToleranceEntry
 from tol3d.strict import Strict, refused
 from tol3d.system.draw import Draw
 from tol3d.units import MICRO_SIGNS, UNITS, shown
-
-if TYPE_CHECKING:
-    from tol3d.gearing.model.contributor import Unit
 
 
 class RecordSpec(Strict):
@@ -100,7 +98,7 @@ class FlankToleranceSpec(ToleranceEntry):
                 yield Contradiction(("of",), "a gear that meshes with external gears only", words)
 
     @property
-    def unit(self) -> "Unit":
+    def unit(self) -> Unit:
         """Unit of its columns in results."""
         return "um"
 

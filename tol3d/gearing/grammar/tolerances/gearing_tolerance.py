@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Protocol
 
 from pydantic import Field
 
@@ -13,7 +13,9 @@ from tol3d.files import Files
 from tol3d.gearing.effects import CombinedEffect, Effect, LinkDeviation
 from tol3d.gearing.grammar.moves import LinkSpec, MeshSpec, ReducerSpec
 from tol3d.gearing.grammar.parts import GearSpec
-from tol3d.gears import Gear
+from tol3d.gearing.shafts import Carried, Mesh
+from tol3d.gears import BevelPair, Gear
+from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import Entry
 from tol3d.scene.move import MoveSpec
@@ -23,9 +25,42 @@ from tol3d.scene.reference import Contradiction, Reference
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.units import Dimension
 
-if TYPE_CHECKING:
-    from tol3d.gearing.model.contributor import Unit
-    from tol3d.gearing.model.nominal import Nominal
+Unit = Literal["um", "mrad", "K", "arcmin"]
+"""Unit of the columns of a contributor."""
+
+
+class Nominal(Protocol):
+    """Nominal data for the meaning of a tolerance; model/nominal.py makes it of a scene."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        ...
+
+    @property
+    def meshes(self) -> Mapping[str, Mesh]:
+        """The meshes of its gears, by name."""
+        ...
+
+    def mesh_of(self, gear: str, mesh: str | None = None) -> Mesh:
+        """The mesh of that name, or the first one of a gear."""
+        ...
+
+    def bevel_pair(self, mesh: str) -> BevelPair:
+        """The pair of a bevel mesh."""
+        ...
+
+    def smaller_face_width(self, mesh: str) -> float:
+        """Smaller face width of the gears of a mesh [mm]."""
+        ...
+
+    def carried_by(self, shaft: str) -> Sequence[Carried]:
+        """The gears on a shaft."""
+        ...
+
+    def seat_azimuth(self, mesh: str) -> float:
+        """Turn of the driven gear of a mesh that closes a load path, 0 of others [rad]."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -60,7 +95,7 @@ class GearingToleranceSpec(ToleranceSpec):
         """Meaning of a deviation in a scene with known Nominal geometry."""
 
     @property
-    def unit(self) -> "Unit":
+    def unit(self) -> Unit:
         """Unit of its columns in results, by the dimension of its distribution."""
         dimensions = {quantity.dimension for quantity in self.distribution.quantities().values()}
         if dimensions == {"angle"}:
@@ -122,7 +157,7 @@ class LinkToleranceSpec(GearingToleranceSpec):
         """The link."""
         return (Reference(("of",), self.of, (self.link_spec,)),)
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """A deviation of one component, of the link alone."""
         return Meaning(LinkDeviation(self.of))
 
@@ -148,11 +183,11 @@ class ReducerBacklashSpec(LinkToleranceSpec):
             got = f"{self.of!r}, which says backlash: {reducer.backlash}"
             yield Contradiction(("of",), "a reducer without a backlash of its own", got)
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The shaft that the reducer drives has this play."""
         return Meaning(LinkDeviation(self.of), least=0.0)
 
     @property
-    def unit(self) -> "Unit":
+    def unit(self) -> Unit:
         """Arc minutes, as data sheets state it."""
         return "arcmin"

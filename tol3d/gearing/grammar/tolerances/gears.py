@@ -1,13 +1,13 @@
 """Tolerances of a gear as a whole, and of its seat on the shaft."""
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from tol3d.distributions.derived import Scale
 from tol3d.gearing.effects import AxisOffset, Clocking, Plane, ToothThickness, TurningOffset
 from tol3d.gearing.grammar.parts import GearSpec, ShaftSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, in_direction
+from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec, Meaning, Nominal, Unit, in_direction
 from tol3d.gears import Gear, InternalGear
 from tol3d.gears.cylindrical_gear import CylindricalGear
 from tol3d.gears.tooth_measures import OverPins, PinScale, Span, ToothMeasure
@@ -18,17 +18,13 @@ from tol3d.scene.part import Length
 from tol3d.strict import Strict, refused
 from tol3d.units import Dimension
 
-if TYPE_CHECKING:
-    from tol3d.gearing.model.contributor import Unit
-    from tol3d.gearing.model.nominal import Nominal
-
 
 class AxialShiftSpec(GearToleranceSpec):
     """A length along the gear's own +z. It moves no flank of a spur pair with parallel axes; tilted ones feel it."""
 
     kind: Literal["axial_shift"]
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear moves along its axis."""
         return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
 
@@ -41,7 +37,7 @@ class MountingFaceSpec(GearToleranceSpec):
 
     kind: Literal["mounting_face"]
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear moves along its axis."""
         return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0)))
 
@@ -56,7 +52,7 @@ class ShimSpec(GearToleranceSpec):
         "in_front the other way",
     )
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear moves along its axis; no shim is thinner than nothing."""
         factor = -1.0 if self.side == "behind" else 1.0
         return Meaning(AxisOffset(self.of, (0.0, 0.0, 1.0), factor=factor), least=0.0)
@@ -73,12 +69,12 @@ class ClockingSpec(GearToleranceSpec):
 
     kind: Literal["clocking"]
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear turns on its shaft."""
         return Meaning(Clocking(self.of))
 
     @property
-    def unit(self) -> "Unit":
+    def unit(self) -> Unit:
         """Arc minutes, as backlash at shafts is read."""
         return "arcmin"
 
@@ -90,7 +86,7 @@ class TeethOffAxisSpec(GearToleranceSpec):
         default="random", description="phi, in the gear's frame (x through the middle of tooth 0)"
     )
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """The gear's centre lies off its axis."""
         return in_direction([TurningOffset(self.of)], self.direction)
 
@@ -112,7 +108,7 @@ class RunOutSpec(GearToleranceSpec):
         default="random", description="phi, in the gear's frame (x through the middle of tooth 0), or in the shaft's"
     )
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """Displacement of every gear on a shaft alike; the direction is counted on the shaft."""
         if not isinstance(nominal.scene.parts[self.of], ShaftSpec):
             return in_direction([TurningOffset(self.of)], self.direction)
@@ -178,7 +174,7 @@ class ToothThicknessSpec(GearToleranceSpec):
             raise refused("", "arc, normal, a span such as {span: 4}, or {pins: 3.5 mm}", value)
         return value
 
-    def meaning(self, nominal: "Nominal") -> Meaning:
+    def meaning(self, nominal: Nominal) -> Meaning:
         """Half the deviation on each flank: an arc s/2 is (s/2) cos(alpha) along the normal, or a turn of s/(2 r)."""
         gear = nominal.mesh_of(self.of).gear(self.of)
         half = 0.5 * self.sign_in(ring=isinstance(gear, InternalGear))
