@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tol3d.numerics import programme
 from tol3d.numerics.cache_folder import FOLDER_VARIABLE
-from tol3d.numerics.compiled import kernel, nested, part
+from tol3d.numerics.compiled import PLAINLY, Kernel, kernel, nested, part
 
 each_kind = pytest.mark.parametrize("kind", [part, nested])
 
@@ -58,3 +59,26 @@ def test_python_that_calls_a_part_runs_it_as_python(kind: Callable[..., Any]) ->
     assert mine((0.0, 2.0), 5.0) == -12.0
     assert not own.overloads
     assert not mine.overloads
+
+
+@each_kind
+def test_numba_alone_compiles_parts_too(
+    kind: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where numba's own methods, which compiling parts changes, are others one day."""
+    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "cache"))
+    monkeypatch.setenv(PLAINLY, "1")
+    own, _, made = weighed(kind)
+    found = np.array([0.0, 1.0, 7.0])
+    made(found)
+    assert found.tolist() == [-12.0, -9.0, 9.0]
+    (compiled,) = own.overloads.values()
+    assert compiled.fndesc.llvm_cpython_wrapper_name in [
+        function.name for function in compiled.library.get_defined_functions()
+    ]
+
+
+def test_kernels_of_numba_alone_are_kept_under_names_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual = Kernel(programme.ranges._function, (), "float64[::1]").name
+    monkeypatch.setenv(PLAINLY, "1")
+    assert usual != Kernel(programme.ranges._function, (), "float64[::1]").name

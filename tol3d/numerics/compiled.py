@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache, cached_property, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import llvmlite
 import numba
@@ -31,7 +31,9 @@ import numpy as np
 from llvmlite import ir
 from numba import types as numba_types
 from numba.core import sigutils as numba_signatures
+from numba.core.base import BaseContext
 from numba.core.caching import FunctionCache
+from numba.core.codegen import CPUCodeLibrary
 from numba.core.compiler import Compiler as NumbaCompiler
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime import nrt as numba_runtime
@@ -93,6 +95,20 @@ def _left_as_it_is() -> None:
     pass
 
 
+PLAINLY: Final = "TOL3D_PLAIN_NUMBA"
+"""Variable of the environment: where it is set, parts are compiled as numba by itself compiles functions."""
+
+
+def plainly() -> bool:
+    """True if parts are compiled by numba alone: asked for, or this numba lacks the methods that PartCompiler changes.
+
+    It takes about twice as long, and last bits differ where products are fused with other sums.
+    """
+    changed = ("_finalize_final_module", "_optimize_final_module", "enable_object_caching")
+    known = all(hasattr(CPUCodeLibrary, own) for own in changed) and hasattr(BaseContext, "insert_user_function")
+    return PLAINLY in os.environ or not known
+
+
 class Part(CPUDispatcher):
     """Function that kernels are made of; called from Python, it runs as Python."""
 
@@ -122,7 +138,8 @@ def nested(function: Function) -> Function:
 
 
 def _part(function: Function, compiler: type[PartCompiler]) -> Function:
-    made: Any = Part(function, targetoptions=PART_SETTINGS, pipeline_class=compiler)
+    pipeline = NumbaCompiler if plainly() else compiler
+    made: Any = Part(function, targetoptions=PART_SETTINGS, pipeline_class=pipeline)
     compiled: Function = made
     return compiled
 
@@ -145,7 +162,9 @@ def variant(of: Callable[..., Any], kind: type) -> Callable[[Function], Function
     def register(function: Function) -> Function:
         _VARIANTS_IN.setdefault(kind, set()).add(function.__module__)
 
-        @overload(of, strict=False, jit_options=SETTINGS | {"pipeline_class": PartCompiler})
+        pipeline = NumbaCompiler if plainly() else PartCompiler
+
+        @overload(of, strict=False, jit_options=SETTINGS | {"pipeline_class": pipeline})
         def chosen(*arguments: Any) -> Function | None:
             return function if getattr(arguments[0], "instance_class", None) is kind else None
 
@@ -217,7 +236,7 @@ class Kernel:
             made_of = _made_of(self._function, self._tuples)
         except OSError:
             return None
-        own = [self._arrays, self._settings, self._level]
+        own = [self._arrays, self._settings, self._level, *(["plain"] if plainly() else [])]
         made = json.dumps([made_of, own], sort_keys=True, default=sorted)  # sets have no order
         return f"kernel-{self._function.__name__}-{hashlib.sha256(made.encode()).hexdigest()[:32]}.zip"
 
