@@ -53,9 +53,18 @@ class LinearStage(CycloidStage):
         places = np.empty((trials, positions), dtype=np.int64)
         near = None if deflection is None else np.empty_like(places)
         placed = [PlacedDisc.of(self, deviated, disc) for disc in range(self.discs)]
+        shared = [self.nominal_pins(disc, phis[0]) for disc in range(self.discs)] if len(phis) == 1 else None
         for position in range(positions):
             at = phis[:, position]
-            found = [self._allowed(deviated, disc, own, at, sense, aside) for disc, own in enumerate(placed)]
+            nominal = (
+                [self.nominal_pins(disc, at) for disc in range(self.discs)]
+                if shared is None
+                else [own.row(position) for own in shared]
+            )
+            found = [
+                self._allowed(deviated, disc, placed[disc], at, nominal[disc], sense, aside)
+                for disc in range(self.discs)
+            ]
             firsts = np.stack([np.argmin(sense * own, axis=1) for own, _ in found])
             allowed = np.stack([own[rows, first] for (own, _), first in zip(found, firsts, strict=True)])
             pins = np.stack([own[first] for (_, own), first in zip(found, firsts, strict=True)])
@@ -106,7 +115,14 @@ class LinearStage(CycloidStage):
         return count
 
     def _allowed(
-        self, deviated: Deviated, disc: int, placed: "PlacedDisc", phis: Array, sense: Sense, aside: Array | None
+        self,
+        deviated: Deviated,
+        disc: int,
+        placed: "PlacedDisc",
+        phis: Array,
+        nominal: "NominalPins",
+        sense: Sense,
+        aside: Array | None,
     ) -> tuple[Array, Places]:
         """Turn of the carrier that each working pin of one disc allows, at phis (trials,), or (1,) of every trial.
 
@@ -114,14 +130,13 @@ class LinearStage(CycloidStage):
             Turns (trials, pins) [rad], infinite where a pin does not work in a trial, and which pins (pins,).
         """
         profile = self.profile
-        u = self._parameters(phis + self.throws[disc])
-        pins = np.flatnonzero((-sense * profile.lever(u) > self.window * profile.pitch_radius).any(axis=0))
+        pins = np.flatnonzero((sense * nominal.levers > self.window * profile.pitch_radius).any(axis=0))
         moved, turned = placed.at(phis, profile.lobes)
-        gap, lever, _ = self._gaps(deviated, disc, phis, aside, (moved, pins))
-        works = sense * lever > self.window * profile.pitch_radius
-        turn = gap / np.where(works, lever, 1.0) - turned[:, None]
-        lobes = self._lobes(u[:, pins])
-        turn -= profile.shortening / profile.pitch_radius * picked(deviated.lobe_pitch[:, disc], lobes)
+        own = nominal.some(pins)
+        gap = self._gaps(deviated, disc, phis, aside, (moved, pins, own))
+        works = sense * own.levers > self.window * profile.pitch_radius
+        turn = gap / np.where(works, own.levers, 1.0) - turned[:, None]
+        turn -= profile.shortening / profile.pitch_radius * picked(deviated.lobe_pitch[:, disc], own.lobes)
         return np.where(works, turn / self._giving, sense * np.inf), pins
 
     def nominal_gaps(
@@ -131,31 +146,43 @@ class LinearStage(CycloidStage):
 
         Args: see touches; phis (trials,).
         """
-        pins = np.arange(self.profile.pins)
-        gap, lever, normal = self._gaps(deviated, disc, phis, aside, (np.zeros(len(phis), dtype=np.complex128), pins))
-        own = picked(deviated.lobe_pitch[:, disc], self.lobes_at(disc, phis))
-        pitch = self.profile.shortening / self.profile.pitch_radius * own
-        return gap - lever * pitch, lever, normal
+        pins, own = np.arange(self.profile.pins), self.nominal_pins(disc, phis)
+        gap = self._gaps(deviated, disc, phis, aside, (np.zeros(len(phis), dtype=np.complex128), pins, own))
+        errors = picked(deviated.lobe_pitch[:, disc], own.lobes)
+        pitch = self.profile.shortening / self.profile.pitch_radius * errors
+        return gap - own.levers * pitch, own.levers, own.normals
 
     def lobes_at(self, disc: int, phis: Array) -> Places:
         """The lobe of a disc at each pin (trials, pins)."""
         return self._lobes(self._parameters(phis + self.throws[disc]))
 
+    def nominal_pins(self, disc: int, phis: Array) -> "NominalPins":
+        """Where the pins of a disc stand nominally, at phis (rows,)."""
+        profile, azimuths = self.profile, self._azimuths
+        u = self._parameters(phis + self.throws[disc])
+        normals = self._normals(u, azimuths)
+        return NominalPins(
+            self._lobes(u), -profile.lever(u), normals, normals * np.exp(-1j * azimuths), profile.clearance(u)
+        )
+
     def _gaps(
-        self, deviated: Deviated, disc: int, phis: Array, aside: Array | None, at: tuple[Complex, Places]
-    ) -> tuple[Array, Array, Complex]:
-        """The same for some pins at a disc that is displaced (trials,), without errors of pitch."""
-        profile, (moved, pins) = self.profile, at
-        u, azimuths = self._parameters(phis + self.throws[disc])[:, pins], self._azimuths[pins]
-        normal = self._normals(u, azimuths)
-        own = normal * np.exp(-1j * azimuths)
-        gap = profile.clearance(u) + own.real * deviated.pins[:, pins, 0] + own.imag * deviated.pins[:, pins, 1]
-        gap -= deviated.pin_radii[:, pins] + picked(deviated.lobe_profile[:, disc], self._lobes(u))
+        self,
+        deviated: Deviated,
+        disc: int,
+        phis: Array,
+        aside: Array | None,
+        at: "tuple[Complex, Places, NominalPins]",
+    ) -> Array:
+        """Gaps (trials, pins) of some pins at a disc that is displaced (trials,), without errors of pitch."""
+        moved, pins, own = at
+        normal, outwards = own.normals, own.outwards
+        gap = own.clearance + outwards.real * deviated.pins[:, pins, 0] + outwards.imag * deviated.pins[:, pins, 1]
+        gap -= deviated.pin_radii[:, pins] + picked(deviated.lobe_profile[:, disc], own.lobes)
         gap -= normal.real * moved.real[:, None] + normal.imag * moved.imag[:, None]
         if aside is not None:
-            faces = 1j * as_complex(aside[:, disc]) * np.exp(-1j * phis / profile.lobes)
+            faces = 1j * as_complex(aside[:, disc]) * np.exp(-1j * phis / self.profile.lobes)
             gap -= np.abs(normal.real * faces.real[:, None] + normal.imag * faces.imag[:, None])
-        return gap, -profile.lever(u), normal
+        return np.asarray(gap)
 
     def _of_linkage(self, found: Deviated, phis: Array, disc: Places, push: Complex) -> None:
         """Write the rates of a disc's placement: `push` is that of its displacement (rows,) in the world."""
@@ -200,6 +227,33 @@ class LinearStage(CycloidStage):
     def _lobes(self, u: Array) -> Places:
         """Lobe at each place of the profile."""
         return np.floor(u / self.profile.lobe_pitch).astype(np.int64) % self.profile.lobes
+
+
+@dataclass(frozen=True)
+class NominalPins:
+    """Pins where they stand nominally at a disc (rows, pins); rows are crank angles, of a trial each or shared by all.
+
+    Args:
+        lobes: that they stand at.
+        levers: by which a turn of the carrier closes their gaps [mm].
+        normals: out of the disc, in the world.
+        outwards: the same, seen from the pins: their real parts point off the ring's axis.
+        clearance: that the modification leaves [mm].
+    """
+
+    lobes: Places
+    levers: Array
+    normals: Complex
+    outwards: Complex
+    clearance: Array
+
+    def row(self, own: int) -> "NominalPins":
+        """One row, as one of one."""
+        return NominalPins(*(each[own : own + 1] for each in vars(self).values()))
+
+    def some(self, pins: Places) -> "NominalPins":
+        """Some of the pins."""
+        return NominalPins(*(each[:, pins] for each in vars(self).values()))
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from tol3d.cycloid.first_order.linear import LinearStage, PlacedDisc, Sense, picked
+from tol3d.cycloid.first_order.linear import LinearStage, NominalPins, PlacedDisc, Sense, picked
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.trials import RVMeasure, RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
@@ -30,9 +30,16 @@ class BentStage(LinearStage):
     """A cycloid stage whose first-order turns have the bend of the path of each pin besides."""
 
     def _allowed(
-        self, deviated: Deviated, disc: int, placed: PlacedDisc, phis: Array, sense: Sense, aside: Array | None
+        self,
+        deviated: Deviated,
+        disc: int,
+        placed: PlacedDisc,
+        phis: Array,
+        nominal: NominalPins,
+        sense: Sense,
+        aside: Array | None,
     ) -> tuple[Array, Places]:
-        turns, pins = super()._allowed(deviated, disc, placed, phis, sense, aside)
+        turns, pins = super()._allowed(deviated, disc, placed, phis, nominal, sense, aside)
         works = np.isfinite(turns)
         bends = self._bends(deviated, disc, placed, phis, pins, np.where(works, turns, 0.0))
         return np.where(works, turns + bends, turns), pins
