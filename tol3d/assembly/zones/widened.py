@@ -5,7 +5,7 @@ not know of it and only the inspection does.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Final, Self
 
@@ -24,6 +24,7 @@ from tol3d.system.draw import Draw
 from tol3d.system.normals import Group
 
 SIZES: Final = 512  # of equal probability, over which a covariance is averaged: 1e-5 of a normal's
+KEPT: Final = 512  # covariances; a zone with a bonus takes some 50 ms
 SIZE_XTOL: Final = 1e-9  # mm; a support is stationary there, so its error is of order 2
 
 
@@ -131,12 +132,7 @@ class Bonus:
             draw: of the zone without bonus.
             size: law of the deviation of size.
         """
-        sizes = size.ppf((np.arange(SIZES) + 0.5) / SIZES)
-        widened = np.stack([self.of(sizes), self.spared(sizes)])
-        _, firsts, counts = np.unique(widened, axis=1, return_index=True, return_counts=True)
-        zones = (self.zone_at(draw.zone, float(sizes[first])) for first in firsts)
-        total = sum(count * replace(draw, zone=zone).covariance for count, zone in zip(counts, zones, strict=True))
-        return np.asarray(total / SIZES)
+        return _covariance(self, draw, size)
 
     def support(self, draw: Confined, gradient: Array, size: Distribution, per_size: float = 0.0) -> float:
         """The largest value of gradient · components + per_size · size, over all sizes and the zones they leave.
@@ -206,6 +202,19 @@ class SizedBy:
     def of(self, given: Given) -> Array:
         """Deviations of size (trials,) [mm]."""
         return np.asarray(given[self.name][0])
+
+
+@lru_cache(maxsize=KEPT)
+def _covariance(bonus: Bonus, draw: Confined, size: Distribution) -> Array:
+    """See Bonus; kept, since a scene that is edited has most of its zones again."""
+    sizes = size.ppf((np.arange(SIZES) + 0.5) / SIZES)
+    widened = np.stack([bonus.of(sizes), bonus.spared(sizes)])
+    _, firsts, counts = np.unique(widened, axis=1, return_index=True, return_counts=True)
+    zones = (bonus.zone_at(draw.zone, float(sizes[first])) for first in firsts)
+    total = sum(count * replace(draw, zone=zone).covariance for count, zone in zip(counts, zones, strict=True))
+    found = np.asarray(total / SIZES)
+    found.flags.writeable = False  # shared
+    return found
 
 
 @dataclass(frozen=True)
