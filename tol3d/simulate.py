@@ -14,6 +14,8 @@
     witness      some trials again          study/witness.py            witness_summary
     explanation  why both methods differ      study/agreement/            explanations
     result       the run on disk            runs/run.py                 Run               (writer.py, occupant.py)
+    verdicts     what is accepted           runs/summary/judged.py      JudgedMeasure
+    shown        to programs and notebooks  report/displayed_run.py     DisplayedRun
 
 A study knows a system by `system/` alone: contributors, measures, statuses, methods. Gears are one such system. Theirs:
 
