@@ -42,7 +42,9 @@ class LimitLeft(Section):
     limit: Number
     unit: Label
     method: Method
-    ppm: Annotated[Ppm | None, Shows("ppm", "ppm")] = Field(description="null where the method does not know")
+    ppm: Annotated[Ppm | None, Shows("ppm", "ppm")] = Field(
+        description="of builds beyond the limit; null where the method does not know it"
+    )
     ppm_se: Known = Field(description="one standard error")
     ppm_interval: Annotated[PpmRange | None, Shows("95 %", "ppm range")] = Field(
         description="that holds it with 95 % confidence"

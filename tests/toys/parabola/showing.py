@@ -4,16 +4,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from tol3d.errors import InputError
 from tol3d.report.body import Body, World, built_body
-from tol3d.report.page import Heading, PageItem, Row, Table, line
+from tol3d.report.declared import declared_table
+from tol3d.report.page import PageItem, line
 from tol3d.report.presenter import Draw, FurtherRow, View, Which
 from tol3d.report.system_check import system_blocks
 from tol3d.runs.summary.measure import MeasureSummary
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.worst import worst_trial
 from tol3d.simulate import Replay, replay, replayed, simulation_again
 from tol3d.system.stated import mean_build, nominal_build
@@ -57,6 +59,13 @@ class LiftedDisplay:
         return View()
 
 
+@dataclass(frozen=True)
+class TermRow:
+    """Sigma of a term by each method [µm]."""
+
+    sigma: Annotated[Mapping[str, float | None], Shows("{key}", ".3f")]
+
+
 class SpringPresenter:
     """Implements Presenter."""
 
@@ -67,9 +76,11 @@ class SpringPresenter:
         if not isinstance(summary, TermsOfRun) or summary.terms is None:
             return ()
         methods = summary.terms["height"]
-        names = list(methods["analytic"])
-        rows = [Row(name, [f"{own[name].sigma:.3f}" for own in methods.values()]) for name in names]
-        return (Table("term: sigma [µm]", [Heading(method) for method in methods], rows),)
+        rows = [
+            (name, TermRow({method: own[name].sigma for method, own in methods.items()}))
+            for name in methods["analytic"]
+        ]
+        return (declared_table("term: sigma [µm]", rows),)
 
     def measure_rows(self, measure: MeasureSummary, summary: "RunSummary") -> Sequence[FurtherRow]:
         if not isinstance(summary, TermsOfRun) or summary.terms is None or measure.kind != "height":
