@@ -1,6 +1,6 @@
 """Recommended changes, as tables, and as a few lines below a verdict."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from typing import Annotated, Final
@@ -57,15 +57,24 @@ def changes_report(name: str, found: Changes) -> Page:
     return page(*blocks, note(f"{found.evaluations} builds"))
 
 
+@dataclass(frozen=True)
+class ProposalRow:
+    """A change, and the columns of the measure's spread after it."""
+
+    how_much: Annotated[str, Shows("by how much")]
+    after: Annotated[Mapping[Heading, str], Shows("{key}")]
+
+
 def _of_measure(name: str, own: MeasureChanges) -> Iterator[PageItem]:
     unit = own.unit
     yield title(name, f" · limits {_limits(own)} · {own.builds} builds each")
     yield BLANK
-    rows = [Row("as it is", ["", *cells_of(own.now, unit)])]
+    rows = [("as it is", ProposalRow("", dict(zip(AFTER, cells_of(own.now, unit), strict=True))))]
     for each in own.proposals:
-        rows.append(Row(proposal_text(each), [_how_much(each), *cells_of(each.after, unit)]))
-        rows += [Row(f"  {_beside(other)}", [""] * (1 + len(AFTER))) for other in each.beside]
-    yield Table("change", [Heading("by how much"), *AFTER], rows)
+        after = dict(zip(AFTER, cells_of(each.after, unit), strict=True))
+        rows.append((proposal_text(each), ProposalRow(_how_much(each), after)))
+        rows += [(f"  {_beside(other)}", ProposalRow("", dict.fromkeys(AFTER, ""))) for other in each.beside]
+    yield declared_table("change", rows)
     if table := _taken_table(own):
         yield BLANK
         yield table

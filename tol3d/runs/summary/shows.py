@@ -17,7 +17,7 @@ class Shows:
         form: of its numbers: a name of report/declared.py or a format such as ".4f". Texts stand as they are; those of
             the form "words" stand left and wrap.
         unit: in which a number of mm or rad is shown, and a fraction in %; it stands behind the heading, in brackets.
-        meaning: a sentence, for tooltips and the schema; default: the field's description, the property's docstring.
+        meaning: a sentence for tooltips and the schema; default: the description or docstring of the field.
         decides: True for the column by which a table is read; it stands bold.
         given: True for figures that somebody else gave; they stand green.
         optional: True for a column that narrow terminals leave out.
@@ -73,7 +73,7 @@ def shown_by(kind: type) -> Mapping[str, Shows]:
         hints = get_type_hints(kind, include_extras=True)
         told = {name: (getattr(hint, "__metadata__", ()), "") for name, hint in hints.items()}
     found = {
-        name: replace(own, meaning=own.meaning or description)
+        name: replace(own, meaning=description or own.meaning)
         for name, (metadata, description) in told.items()
         for own in metadata
         if isinstance(own, Shows)
@@ -83,7 +83,7 @@ def shown_by(kind: type) -> Mapping[str, Shows]:
             names, behind = [*found], own.shows.behind
             place = len(names) if behind is None else names.index(behind) + 1 if behind else 0
             here = replace(own.shows, meaning=own.shows.meaning or (own.__doc__ or "").partition("\n")[0])
-            found = {key: found.get(key, here) for key in (*names[:place], name, *names[place:])}
+            found = {key: found.get(key, here) for key in (*names[:place], name, *names[place:])} | {name: here}
     return found
 
 
