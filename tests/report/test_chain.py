@@ -25,12 +25,12 @@ from tol3d.gearing.presenting.shown_stage import shafts_along, stages_of, sums_o
 from tol3d.gearing.presenting.train_tables import train_report
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report import picture
-from tol3d.report.canvas import new_figure, plain_axes
+from tol3d.report.chart import Axis
 from tol3d.report.compare import Compared
-from tol3d.report.curve import draw_curve
-from tol3d.report.distribution import density_label, values_label
+from tol3d.report.drawn_chart import charts_figure
 from tol3d.report.heading import heading, limits_text
 from tol3d.report.label import wrapped
+from tol3d.report.measure_charts import curve
 from tol3d.report.measure_table import curve_table
 from tol3d.report.number import difference_text
 from tol3d.report.table import run_report
@@ -344,7 +344,7 @@ def test_limits_differences_and_labels_of_a_tip_are_in_mm() -> None:
     tip = typed_measure(MEASURES["tip displacement"])
     assert limits_text(tip) == "upper limit 2.21 mm"
     assert difference_text(0.00125, "mm") == "1.250 µm"
-    assert (values_label("tip", "mm"), density_label("mm")) == ("tip [mm]", "% of trials per mm")
+    assert Axis("tip", 0.0, 1.0, "mm").words(80) == "tip [mm]"
     assert heading(tip) == ("displacement of tip of arm by the lost motion, at a random position each trial")
     assert heading(typed_measure(MEASURES["lost motion"])).startswith(
         "lost motion of shoulder flange, motor held, without load, at a random"
@@ -377,12 +377,11 @@ def test_a_tip_s_error_is_told_over_the_output_s_angle_in_mm() -> None:
     assert "output at [°]" in text
     rows = {line.split()[0]: line.split()[1] for line in text.splitlines() if re.match(r" *-?\d+\.\d ", line)}
     assert (rows["-60.0"], rows["0.0"]) == ("0.0000", "1.8100")
-    axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "tip error", error)
+    (axes,) = charts_figure([[curve("tip error", error)]]).axes
     assert axes.get_xlabel() == "output position [deg]"
     assert axes.get_ylabel() == "tip error [mm]"
     assert axes.get_xlim() == (-60.0, 60.0)
-    assert axes.lines[0].get_marker() == "."
+    assert [line.get_marker() for line in axes.lines if line.get_label() == "3D simulation, mean"] == ["."]
     legend = [text.get_text() for text in known(axes.get_legend()).get_texts()]
     assert "USL 2.21 mm" in legend
     assert "anywhere above 2.21 mm, of all trials: analytic 12 ppm, 3D 12 ppm" in printed(

@@ -25,15 +25,15 @@ from tol3d.analyses.what_to_change import ChangesQuestion, changes_of
 from tol3d.import_path import is_named
 from tol3d.notebook import write_report
 from tol3d.report.bars import Bars
+from tol3d.report.chart import Filled
 from tol3d.report.compare import comparison_report
 from tol3d.report.comparison_picture import comparison_figure
 from tol3d.report.convergence import running
 from tol3d.report.displayed_run import DisplayedRun
-from tol3d.report.distribution import samples_of
-from tol3d.report.drawn_sample import DrawnSample
 from tol3d.report.html import view_3d
 from tol3d.report.html.document import report_html
 from tol3d.report.html.tags import escaped, tag
+from tol3d.report.measure_charts import histogram
 from tol3d.report.report_sections import report_sections
 from tol3d.runs.bare import MissingMechanismWarning
 from tol3d.runs.run import Run, open_run
@@ -300,19 +300,21 @@ def test_a_run_without_limits_has_no_verdict_and_no_line_for_one(tmp_path: Path)
 def test_a_bar_across_a_limit_that_no_trial_is_beyond_is_not_out(tmp_path: Path) -> None:
     run = run_scene("cover_on_base", overrides=Overrides(trials=100, witness=0), out=tmp_path / "run")
     own = run.found.measures["flush"]
-    (leading, *_) = samples_of(own)
+    bars = histogram("flush", own).panels[0].series[0]
+    assert isinstance(bars, Filled)
+    assert bars.beyond is not None
     assert own.geometric is not None
     assert own.geometric.sample_max is not None
-    assert own.geometric.sample_max < 150 < leading.bars.edges[-1], "um, the upper limit lies in the last bar"
-    assert not leading.pieces.outside.any()
+    assert own.geometric.sample_max < 150 < bars.edges[-1], "um, the upper limit lies in the last bar"
+    assert not bars.beyond.any()
 
 
 def test_a_bar_across_a_limit_is_out_from_the_limit_on() -> None:
     bars = Bars(np.array([0.0, 1.0, 2.0, 4.0]), np.array([3.0, 5.0, 2.0]), 10)
-    pieces = DrawnSample(None, "blue", bars, limits=(0.25, 2.0)).pieces
+    pieces = bars.cut((0.25, 2.0))
     assert pieces.edges.tolist() == [0.0, 0.25, 1.0, 2.0, 4.0]
     assert pieces.bars.tolist() == [0, 0, 1, 2]
-    assert pieces.outside.tolist() == [True, False, False, True]
+    assert pieces.beyond.tolist() == [True, False, False, True]
 
 
 def test_curves_stand_over_their_positions(tmp_path: Path) -> None:

@@ -41,15 +41,15 @@ from tol3d.report import (
     run_report,
     view_run,
 )
-from tol3d.report.bars import bars_of, draw_contributors
-from tol3d.report.canvas import VERMILLION, new_figure, plain_axes
-from tol3d.report.column import shares_of
+from tol3d.report.bars import bars_of
+from tol3d.report.canvas import VERMILLION, new_figure
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.curve import draw_curve
-from tol3d.report.distribution import column_colours, draw_distribution
+from tol3d.report.drawn_chart import charts_figure, draw_panel
 from tol3d.report.export import Exported, file_words
+from tol3d.report.measure_charts import curve, histogram
 from tol3d.report.page import Heading, Row, Table
+from tol3d.report.share_charts import pareto
 from tol3d.report.table import Detail
 from tol3d.runs.run import Run
 from tol3d.simulate import Overrides, run_scene, simulation_again, simulation_of
@@ -210,13 +210,9 @@ def test_no_zero_has_a_sign(run: Run) -> None:
     geometric = dict(measure["geometric"]) | {"ppk": -0.0001, "mean": -1e-5}
     measure = dict(measure) | {"contributors": shares, "geometric": geometric, "lower_limit": -0.0}
     text = printed(run_report(typed_run(dict(run.summary) | {"measures": {"free play": measure}})), 120)
-    axes = plain_axes(new_figure(4, 4).add_subplot())
-    measure = typed_measure(measure)
-    columns = shares_of(measure)
-    draw_contributors(axes, measure, column_colours(columns))
-    draw_distribution(plain_axes(new_figure(4, 4).add_subplot()), measure)
+    figure = charts_figure([[histogram("free play", typed_measure(measure)), pareto(typed_measure(measure))]])
     signed = re.compile(r"(?<![\d.])-0(\.0*)?(?![\d.])")
-    assert not signed.search("\n".join([text, *(label.get_text() for label in axes.texts)]))
+    assert not signed.search("\n".join([text, *(label.get_text() for axes in figure.axes for label in axes.texts)]))
     assert "0.000" in row_of(text, "Ppk")
 
 
@@ -478,9 +474,11 @@ def without_seats(run: Run, positions: set[int]) -> dict[str, Any]:
 
 def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {1, 3})
-    axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "shape", typed_measure(measure))
-    assert np.isnan(axes.lines[0].get_ydata()).tolist() == [False, True, False, True, False]
+    chart = curve("shape", typed_measure(measure))
+    axes = new_figure(6, 4).add_subplot()
+    draw_panel(axes, chart, chart.panels[0])
+    (mean,) = (line for line in axes.lines if line.get_label() == "3D simulation, mean")
+    assert np.isnan(mean.get_ydata()).tolist() == [False, True, False, True, False]
     draw_histogram(typed_run(dict(run.summary) | {"measures": {"shape": measure}}), tmp_path / "some.png")
     printed(run_report(typed_run(dict(run.summary) | {"measures": {"shape": measure}})), 80)
 
@@ -488,8 +486,7 @@ def test_a_curve_is_drawn_where_trials_seated_and_open_where_none_did(run: Run, 
 def test_a_curve_without_any_seated_trial_says_so(run: Run, tmp_path: Path) -> None:
     measure = without_seats(run, {0, 1, 2, 3, 4})
     measure["curve"]["analytic"] |= {key: [None] * 5 for key in ("mean", "sigma", "min", "max")}
-    axes = plain_axes(new_figure(6, 4).add_subplot())
-    draw_curve(axes, "shape", typed_measure(measure))
+    (axes,) = charts_figure([[curve("shape", typed_measure(measure))]]).axes
     assert "no trial gave a value" in [text.get_text() for text in axes.texts]
     draw_histogram(typed_run(dict(run.summary) | {"measures": {"shape": measure}}), tmp_path / "none.png")
 

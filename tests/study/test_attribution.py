@@ -16,13 +16,12 @@ from tol3d import Run, run_scene
 from tol3d.distributions.base import Distribution
 from tol3d.distributions.normal import Normal
 from tol3d.machine.either_side import EitherSide
-from tol3d.report.bars import shown_names
 from tol3d.report.column import unexplained_words
-from tol3d.report.heat_map import percents_of
-from tol3d.report.html.axis import NARROW
 from tol3d.report.html.document import report_html
-from tol3d.report.html.pareto_chart import pareto_chart
+from tol3d.report.html.frame import NARROW
+from tol3d.report.html.svg import svg
 from tol3d.report.measure_table import contributors_table
+from tol3d.report.share_charts import pareto, percents_of, shown_names
 from tol3d.report.table import Detail, run_report
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.study import attribution
@@ -316,8 +315,8 @@ def test_screen_page_chart_map_and_table_name_the_same_largest_contributor_first
     assert (first.label, second.label) == ("not attributed", "largest")
     assert shown_names(measure)[0][0] == "largest"
     assert percents_of(measure) == found
-    pareto = pareto_chart(measure, NARROW)
-    assert pareto.index("largest") < pareto.index("first") < pareto.index("third")
+    drawn = svg(pareto(measure), NARROW)
+    assert drawn.index(">largest<") < drawn.index(">first<") < drawn.index(">third<")
     with (run.path / "contributors.csv").open(newline="") as file:
         head, *rows = csv.reader(file)
     column = head.index("size")

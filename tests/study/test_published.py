@@ -11,7 +11,6 @@ from typing import Any
 import jsonschema
 import pytest
 from fixtures import Command
-from matplotlib.figure import Figure
 from matplotlib.patches import StepPatch
 from places import SCENES
 from printing import printed
@@ -22,7 +21,8 @@ from tol3d import Run, load_scene
 from tol3d.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.adjustment.compensation_table import highs_table
 from tol3d.report import published as shown
-from tol3d.report.distribution import draw_distribution
+from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.measure_charts import histogram
 from tol3d.report.measure_table import curve_table
 from tol3d.report.published import published_notes
 from tol3d.report.table import run_report
@@ -261,8 +261,7 @@ def test_a_correlation_is_that_of_its_method() -> None:
 
 def test_the_picture_has_the_published_histogram_at_its_density(whole: Run) -> None:
     """40 and 56 of 100 trials in bars of 30 um: 1.333 and 1.867 % a um."""
-    axes = Figure().add_subplot()
-    draw_distribution(axes, whole.found.measures["normal backlash"])
+    axes = charts_figure([[histogram("normal backlash", whole.found.measures["normal backlash"])]]).axes[0]
     outlines = [own.get_data() for own in axes.patches if isinstance(own, StepPatch)]
     values, edges, _ = next(each for each in outlines if len(each[0]) == 2)
     assert values == pytest.approx([40 / 30, 56 / 30])

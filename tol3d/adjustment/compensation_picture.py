@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tol3d.adjustment.compensated_swing import Swing
@@ -14,33 +13,15 @@ from tol3d.adjustment.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_
 from tol3d.adjustment.robots import STATES, State
 from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
-from tol3d.report.canvas import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    PURPLE,
-    VERMILLION,
-    label_angles,
-    new_figure,
-    plain_axes,
-    save_figure,
-    say_instead,
-)
-from tol3d.report.drawn_sample import DrawnSample, draw_samples
-from tol3d.report.ends import Ends
-from tol3d.report.label import legible
+from tol3d.report.canvas import save_figure
+from tol3d.report.chart import Axis, Band, Chart, Filled, Line, Mark, Panel, Points, Role, Series, Sign, Stroke
+from tol3d.report.drawn_chart import charts_figure
 from tol3d.report.number import given_text, short_text, tip_mm
 
-LINE_WIDTHS: Final[Mapping[State, float]] = {"before": 2.0, "batch": 4.5, "robot": 1.6}  # the last lies on the second
-MARKERS: Final[Mapping[str, str]] = {"mean": "D", "low_3sigma": "<", "high_3sigma": ">"}
-MARKS_HEIGHT: Final = 0.58  # of the axes; above them stands the legend
-STATE_COLOURS: Final[Mapping[State, str]] = {"before": VERMILLION, "batch": BLUE, "robot": GREEN}
+SIGNS: Final[Mapping[str, Sign]] = {"mean": "diamond", "low_3sigma": "left", "high_3sigma": "right"}
+ROLES: Final[Mapping[State, Role]] = {"before": "series-5", "batch": "series-0", "robot": "series-2"}
 BINS: Final = 90  # over what all scenes and states span together
 WIDTH: Final = 14.0  # inch
-ROW: Final = 4.2
-HEAD: Final = 0.7
-BAND: Final = 0.22
 MARGIN: Final = 0.04  # of the span, beside it
 
 
@@ -56,21 +37,19 @@ def draw_compensation(found: Sequence[Compensation], path: Path) -> None:
 def compensation_figure(found: Sequence[Compensation]) -> Figure:
     """The picture, not yet written; equal scales in all rows of one unit."""
     swings = any(own.swing for own in found)
-    figure = new_figure(WIDTH, ROW * len(found) + HEAD)
-    figure.suptitle("motor compensation when the load changes side", fontsize=12, color=BLACK, x=0.01, ha="left")
-    axes = figure.subplots(len(found), 2 if swings else 1, squeeze=False, width_ratios=[1.15, 1] if swings else [1])
-    for row, own in zip(axes, found, strict=True):
+    rows = []
+    for own in found:
         unit = own.units[0]
-        _draw_left(plain_axes(row[0]), own, unit, _edges([each for each in found if each.units[0] == unit], unit))
-        if swings:
-            _draw_swing(plain_axes(row[1]), own, _swing_span(found))
-    return figure
+        remaining = remaining_chart(own, unit, _edges([each for each in found if each.units[0] == unit], unit))
+        rows.append([remaining, *([swing_chart(own, _swing_span(found))] if swings else [])])
+    head = "motor compensation when the load changes side"
+    return charts_figure(rows, head, WIDTH, (1.15, 1.0) if swings else ())
 
 
 def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
     """Edges of bins that hold every value, zero and the sums of highs of the scenes."""
     values = [own.remaining[own.method].in_unit(unit)[state] for own in found for state in STATES]
-    marks = [value for own in found for _, value, _ in _highs(own, unit)]
+    marks = [mark.value for own in found for mark in _highs(own, unit)]
     every = np.concatenate([*values, np.array([0.0, *marks])])
     low, high = float(every.min()), float(every.max())
     margin = MARGIN * (high - low) or 1e-3
@@ -80,43 +59,29 @@ def _edges(found: Sequence[Compensation], unit: Unit) -> Array:
 # at a random position -----------------------------------------------------------------------------
 
 
-def _draw_left(axes: Axes, own: Compensation, unit: Unit, edges: Array) -> None:
-    _title(axes, own, f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.method]}")
-    samples = [*_samples(own, unit, edges)]
-    if not samples:
-        say_instead(axes, "no robot could be assembled", VERMILLION)
-        return
-    width = float(edges[1] - edges[0])
-    draw_samples(axes, samples, per=width)
-    for label, value, colour in _highs(own, unit):
-        text = f"{label}: {short_text(value, unit)}"
-        axes.axvline(value, ymax=MARKS_HEIGHT, color=colour, linewidth=1.6, linestyle="--", label=text)
-    for label, value, marker in _published(own, unit):
-        text = f"{label}: {given_text(value, unit)} mm"
-        mark = axes.plot(value, 0, marker=marker, markersize=9, color=PURPLE, linestyle="none", label=text)
-        mark[0].set(clip_on=False, zorder=5, markeredgecolor="white")
-    axes.axvline(0.0, color=GREY, linewidth=0.8)
-    axes.set_xlim(edges[0], edges[-1])
-    axes.set_xlabel(_label(own, unit), fontsize=10)
-    axes.set_ylabel(f"% of robots per {short_text(width, unit)}", fontsize=10)
-    label_angles(axes.xaxis, unit)
-    axes.legend(fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none", loc="upper right")
-    axes.set_ylim(0, 1.02 * axes.get_ylim()[1])
+def remaining_chart(own: Compensation, unit: Unit, edges: Array) -> Chart:
+    """Histograms of the remaining error in each state, the sums of highs, and published errors."""
+    words = f"{own.robots - own.failed} robots at a random position, {COLUMN_WORDS[own.method]}"
+    across = Axis(_label(own, unit), float(edges[0]), float(edges[-1]), unit)
+    alternative = f"remaining error of {own.name}"
+    bars = [*_samples(own, unit, edges)]
+    if not bars:
+        return Chart(alternative, across, (), own.name, words, instead="no robot could be assembled")
+    top = 1.05 * max(float(each.heights.max()) for each in bars)
+    y = Axis(f"% of robots per {short_text(float(edges[1] - edges[0]), unit)}", 0.0, top)
+    marks = [Mark(0.0, "guide", role="soft"), *_highs(own, unit)]
+    table = [(label, text) for each in bars for label, _, text in [each.label.partition(": ")]]
+    return Chart(alternative, across, [Panel(y, [*bars, *_published(own, unit)], marks)], own.name, words, table)
 
 
-def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[DrawnSample]:
+def _samples(own: Compensation, unit: Unit, edges: Array) -> Iterator[Filled]:
     """Remaining error in each state; nothing if no robot could be assembled."""
     values = own.remaining[own.method].in_unit(unit)
     for state in STATES:
         if len(values[state]):
-            spread = Spread(values[state])
-            yield DrawnSample(
-                label=f"{STATE_WORDS[state]}: {_ends_text(spread, unit)}",
-                colour=STATE_COLOURS[state],
-                bars=Bars.of(values[state], edges),
-                mean=spread.moments.mean,
-                ends=Ends(spread.low, spread.high),
-            )
+            heights = float(edges[1] - edges[0]) * Bars.of(values[state], edges).density
+            label = f"{STATE_WORDS[state]}: {_ends_text(Spread(values[state]), unit)}"
+            yield Filled(edges, heights, ROLES[state], label)
 
 
 def _ends_text(spread: Spread, unit: Unit) -> str:
@@ -125,36 +90,32 @@ def _ends_text(spread: Spread, unit: Unit) -> str:
     )
 
 
-def _highs(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
-    """The sums of the stages' highs by the leading method, with their colours."""
+def _highs(own: Compensation, unit: Unit) -> Iterator[Mark]:
+    """The sums of the stages' highs by the leading method."""
     correction = own.corrections[own.method]
-    cases = (
-        ("sum of highs", correction.before, STATE_COLOURS["before"]),
-        ("sum of highs, compensated", correction.left, STATE_COLOURS["batch"]),
+    cases: tuple[tuple[str, float | None, State], ...] = (
+        ("sum of highs", correction.before, "before"),
+        ("sum of highs, compensated", correction.left, "batch"),
     )
-    values = [(label, tip_mm(arcmin, own.lever) if unit == "mm" else arcmin, colour) for label, arcmin, colour in cases]
-    return [(label, value, colour) for label, value, colour in values if value is not None]
+    for label, arcmin, state in cases:
+        value = tip_mm(arcmin, own.lever) if unit == "mm" else arcmin
+        if value is not None:
+            yield Mark(value, "guide", label=f"{label}: {short_text(value, unit)}", role=ROLES[state])
 
 
-def _published(own: Compensation, unit: Unit) -> list[tuple[str, float, str]]:
-    """Published displacements of the tip without compensation, with their marks."""
-    return [
-        (f"{legible(column, 24)}, {word}", values[key], MARKERS[key])
-        for column, values in own.published_tips.items()
-        for key, word in TOLD_OF_TIPS.items()
-        if unit == "mm" and values.get(key) is not None
-    ]
+def _published(own: Compensation, unit: Unit) -> Iterator[Points]:
+    """Published displacements of the tip without compensation."""
+    for column, values in own.published_tips.items():
+        for key, word in TOLD_OF_TIPS.items():
+            if unit == "mm" and values.get(key) is not None:
+                label = f"{column}, {word}: {given_text(values[key], unit)} mm"
+                yield Points(np.array([values[key]]), np.zeros(1), "published-1", label, SIGNS[key])
 
 
 def _label(own: Compensation, unit: Unit) -> str:
     if own.tip and own.tip.tip and unit == "mm":
-        return f"error of {legible(f'{own.tip.tip.point} of {own.tip.tip.arm}', 50)} [mm]"
-    return f"error of {legible(own.shaft, 50)} [′, ″ of arc]"
-
-
-def _title(axes: Axes, own: Compensation, text: str) -> None:
-    axes.set_title(f"{legible(own.name, 60)}\n", loc="left", fontsize=12, fontweight="bold")
-    axes.text(0, 1.03, legible(text, 90), transform=axes.transAxes, fontsize=9, color=GREY)
+        return f"error of {own.tip.tip.point} of {own.tip.tip.arm}"
+    return f"error of {own.shaft}"
 
 
 # over the swing -----------------------------------------------------------------------------------
@@ -176,39 +137,29 @@ def _band(curve: Array) -> tuple[Array, Array, Array]:
     return mean, low, high
 
 
-def _draw_swing(axes: Axes, own: Compensation, span: tuple[float, float]) -> None:
+def swing_chart(own: Compensation, span: tuple[float, float]) -> Chart:
+    """Mean and ±3 sigma of the robots over the swing, in each state."""
+    label = "output position"
     if own.swing is None:
-        axes.set_axis_off()
-        say_instead(axes, "no tip error over a swing in which the load changes side", GREY)
-        return
-    _title(axes, own, f"{legible(own.swing.measure, 50)}: mean and ±3 sigma of the robots, {COLUMN_WORDS[own.method]}")
+        instead = "no tip error over a swing in which the load changes side"
+        return Chart(f"{own.name} over its swing", Axis(label, 0.0, 1.0, "deg"), (), own.name, instead=instead)
+    bands, lines = list[Series](), list[Series]()
     for state in STATES:
         mean, low, high = _band(own.swing.curves[own.method][state])
         for first, last in _stretches(own.swing):
             x = np.degrees(_reaching_the_jumps(own.swing, first, last))
-            label = STATE_WORDS[state] if first == 0 else None
-            colour = STATE_COLOURS[state]
             lower, middle, upper = (_held(own.swing, ends, first, last) for ends in (low, mean, high))
-            axes.fill_between(x, lower, upper, color=colour, alpha=BAND, linewidth=0)
-            axes.plot(x, middle, color=colour, linewidth=LINE_WIDTHS[state], solid_capstyle="butt", label=label)
-    for angle in np.degrees(own.swing.jumps):
-        axes.axvline(angle, color=BLACK, linewidth=1.0, linestyle=":", zorder=1)
-        axes.annotate(
-            f"the load changes side, {angle:.1f}°",
-            (angle, 0.97),
-            xycoords=("data", "axes fraction"),
-            xytext=(-5, 0),
-            textcoords="offset points",
-            ha="right",
-            va="top",
-            fontsize=9,
-            color=BLACK,
-        )
-    axes.set_xlim(np.degrees(own.swing.output[0]), np.degrees(own.swing.output[-1]))
-    axes.set_ylim(*span)
-    axes.set_xlabel("output position [deg]", fontsize=10)
-    axes.set_ylabel(_label(own, "mm"), fontsize=10)
-    axes.legend(fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none", loc="center left")
+            bands.append(Band(x, lower, upper, ROLES[state]))
+            stroke: Stroke = "dashed" if state == "robot" else "solid"  # it may lie on the batch's
+            lines.append(Line(x, middle, ROLES[state], STATE_WORDS[state] if first == 0 else "", stroke))
+    marks = [
+        Mark(angle, "guide", label=f"the load changes side, {angle:.1f}°") for angle in np.degrees(own.swing.jumps)
+    ]
+    words = f"{own.swing.measure}: mean and ±3 sigma of the robots, {COLUMN_WORDS[own.method]}"
+    ends = np.degrees(own.swing.output[[0, -1]])
+    y = Axis(_label(own, "mm"), *span, "mm")
+    across = Axis(label, float(ends[0]), float(ends[1]), "deg")
+    return Chart(f"{own.name} over its swing", across, [Panel(y, [*bands, *lines], marks)], own.name, words)
 
 
 def _stretches(swing: Swing) -> list[tuple[int, int]]:

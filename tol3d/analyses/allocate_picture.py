@@ -1,16 +1,17 @@
-"""The picture of allocated tolerances: their factors, and cost over ppm."""
+"""Charts of allocated tolerances: their factors, and cost over ppm."""
 
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from tol3d.analyses.allocation_section import Allocation
-from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, new_figure, plain_axes, save_figure
-from tol3d.report.label import legible
+from tol3d.report.canvas import save_figure
+from tol3d.report.chart import Axis, Chart, Lengths, Line, Mark, Names, Panel, Points, Role, Series
+from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.measure_charts import spanned
 
 WIDTH: Final = 12.0  # inch
-ROW: Final = 0.26
-HEAD: Final = 1.6
-LEAST_HEIGHT: Final = 4.0
 
 
 def draw_allocation(name: str, found: Allocation, path: Path) -> None:
@@ -19,31 +20,40 @@ def draw_allocation(name: str, found: Allocation, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    figure = new_figure(WIDTH, max(LEAST_HEIGHT, ROW * len(found.tolerances) + HEAD))
-    title = f"{name} · tolerances at least cost, {found.cost:.4g}"
-    figure.suptitle(legible(title, len(title)), fontsize=11, color=BLACK, x=0.01, ha="left")
-    left, right = figure.subplots(1, 2, width_ratios=[1.3, 1])
-    plain_axes(left)
-    rows = list(found.tolerances.items())[::-1]
-    colours = [GREY if own.held and "bound" not in own.held else BLUE for _, own in rows]
-    left.barh([legible(own) for own, _ in rows], [own.factor for _, own in rows], color=colours, height=0.7)
-    left.axvline(1.0, color=BLACK, linewidth=0.8)
+    head = f"{name} · tolerances at least cost, {found.cost:.4g}"
+    save_figure(charts_figure([[factors_chart(found), costs_chart(found)]], head, WIDTH, (1.3, 1.0)), path)
+
+
+def factors_chart(found: Allocation) -> Chart:
+    """A bar for the factor of each tolerance; grey: held by more than a bound."""
+    rows, factors = found.tolerances, [own.factor for own in found.tolerances.values()]
+    texts = [f"{own:.3g}" for own in factors]
+    roles: list[Role] = ["soft" if own.held and "bound" not in own.held else "series-0" for own in rows.values()]
+    marks = [Mark(1.0, "guide", role="plain")]
     if found.equal_factor is not None:
-        left.axvline(found.equal_factor, color=ORANGE, linestyle="--")
-    dashed = "" if found.equal_factor is None else f"; dashed: equal factors, {found.equal_factor:.3g}"
-    left.set_xlabel(f"factor of the scene's tolerance; grey: held by more than a bound{dashed}", fontsize=9)
-    plain_axes(right)
-    known = [(own.ppm, own.cost) for own in found.trade_off if own.cost is not None]
-    right.semilogx([ppm for ppm, _ in known], [cost for _, cost in known], "o-", color=BLUE, label="least cost")
-    if found.equal_cost is not None and found.targets:
-        right.plot(found.targets[0].wanted, found.equal_cost, "s", color=ORANGE, label="equal factors")
-    if found.targets:
-        own = found.targets[0]
-        low, high = own.ppm - own.interval[0], own.interval[1] - own.ppm
-        right.errorbar(
-            own.ppm, found.cost, xerr=[[low], [high]], color=VERMILLION, capsize=3, fmt="D", label="confirmed"
+        marks.append(
+            Mark(found.equal_factor, "guide", label=f"equal factors, {found.equal_factor:.3g}", role="series-1")
         )
-    right.set_xlabel("ppm out of limits", fontsize=9)
-    right.set_ylabel("cost", fontsize=9)
-    right.legend(fontsize=8.5, frameon=False)
-    save_figure(figure, path)
+    across = Axis("factor of the scene's tolerance", 0.0, 1.02 * max([*factors, *(mark.value for mark in marks)]))
+    panel = Panel(Names([*rows]), [Lengths(factors, texts, "series-0", roles=roles)], marks)
+    words = "grey: held by more than a bound"
+    return Chart("factors of tolerances", across, [panel], "factors", words, [*zip(rows, texts, strict=True)])
+
+
+def costs_chart(found: Allocation) -> Chart:
+    """Least cost over the fraction out of limits, the confirmed point and that of equal factors."""
+    known = [(own.ppm, own.cost) for own in found.trade_off if own.cost is not None]
+    ppm, cost = np.array(known, dtype=float).reshape(-1, 2).T
+    series: list[Series] = [Line(ppm, cost, "series-0", "least cost", dots=True)]
+    if found.equal_cost is not None and found.targets:
+        wanted = np.array([found.targets[0].wanted])
+        series.append(Points(wanted, np.array([found.equal_cost]), "series-1", "equal factors", "square"))
+    for own in found.targets[:1]:
+        series.append(Line(np.array(own.interval), np.array([found.cost] * 2), "series-5"))
+        series.append(Points(np.array([own.ppm]), np.array([found.cost]), "series-5", "confirmed", "diamond"))
+    drawn = [own for own in series if isinstance(own, Line | Points)]
+    x = np.concatenate([own.x for own in drawn])
+    least = float(x[x > 0.0].min(initial=1e6))
+    across = Axis("ppm out of limits", least / 1.3, max(1.3 * float(x.max(initial=0.0)), 2 * least), log=True)
+    y = spanned("cost", np.concatenate([own.y for own in drawn]))
+    return Chart("cost over the fraction out of limits", across, [Panel(y, series)], "cost")

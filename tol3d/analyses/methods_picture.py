@@ -1,25 +1,31 @@
-"""Methods side by side as a picture: bars of the intervals by method over each measure's limits."""
+"""Methods side by side as charts: the intervals by method over each measure's limits."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
+import numpy as np
+
 from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.methods_table import intervals_of
-from tol3d.report.canvas import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY
-from tol3d.report.interval_bars import Interval, Intervals, draw_intervals
-from tol3d.report.number import limit_text
+from tol3d.report.canvas import save_figure
+from tol3d.report.chart import Chart, Mark, Names, Panel, Range, Role
+from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.measure_charts import spanned
+from tol3d.report.number import limit_text, short_text
 
 MOST: Final = 12
 """Measures in one picture."""
-COLOURS: Final[Mapping[str, str]] = {
-    "worst found": BLACK,
-    "worst by slopes": GREY,
-    "modified RSS": ORANGE,
-    "RSS": SKY,
-    "simulation, ±3 sigma": BLUE,
-    "simulation, 0.135 % and 99.865 %": GREEN,
-    "least and largest trial": GREY,
+COLUMNS: Final = 2
+WIDTH: Final = 7.2  # inch, of a chart
+ROLES: Final[Mapping[str, Role]] = {
+    "worst found": "plain",
+    "worst by slopes": "soft",
+    "modified RSS": "series-1",
+    "RSS": "series-4",
+    "simulation, ±3 sigma": "series-0",
+    "simulation, 0.135 % and 99.865 %": "series-2",
+    "least and largest trial": "soft",
 }
 
 
@@ -30,20 +36,31 @@ def draw_methods(found: Methods, path: Path) -> None:
         InputError: the picture cannot be written there.
     """
     most = sorted(found.measures, key=lambda name: -_used(found.measures[name]))[:MOST]
-    draw_intervals([_intervals(name, own, found.scene) for name, own in found.measures.items() if name in most], path)
+    charts = [methods_chart(name, own) for name, own in found.measures.items() if name in most]
+    rows = [charts[k : k + COLUMNS] for k in range(0, len(charts), COLUMNS)]
+    save_figure(charts_figure(rows, found.scene, WIDTH * len(rows[0])), path)
 
 
-def _intervals(name: str, own: MeasureMethods, scene: str) -> Intervals:
-    limits = [limit for limit in (own.lower_limit, own.upper_limit) if limit is not None]
-    told = f"limits {' and '.join(limit_text(limit, own.unit) for limit in limits)}" if limits else "no limits"
-    return Intervals(
-        name=name,
-        words=f"{scene}; {told}; dotted: the mean build",
-        unit=own.unit,
-        bars=[Interval(words, low, high, COLOURS.get(words, PURPLE)) for words, low, high in intervals_of(own)],
-        limits=limits,
-        middle=own.mean,
-    )
+def methods_chart(name: str, own: MeasureMethods) -> Chart:
+    """A row for each method with its interval; dotted the mean build."""
+    intervals = [*intervals_of(own)]
+    rows = [
+        Range(row, low, high, None, ROLES.get(words, "series-3"), words)
+        for row, (words, low, high) in enumerate(intervals)
+    ]
+    limits = [(word, end) for word, end in (("LSL", own.lower_limit), ("USL", own.upper_limit)) if end is not None]
+    marks = [Mark(limit, "limit", label=f"{word} {limit_text(limit, own.unit)}") for word, limit in limits]
+    marks += [Mark(own.mean, "guide", label="mean build")] if own.mean is not None else []
+    ends = [end for _, low, high in intervals for end in (low, high) if end is not None]
+    across = spanned(name, np.array([*ends, *(mark.value for mark in marks)]), own.unit)
+    table = [
+        (words, f"{short_text(low, own.unit)} to {short_text(high, own.unit)}")
+        for words, low, high in intervals
+        if low is not None and high is not None
+    ]
+    panel = Panel(Names([words for words, _, _ in intervals]), rows, marks)
+    said = "" if limits else "no limits"
+    return Chart(f"{name} by methods", across, [panel], name, said, table)
 
 
 def _used(own: MeasureMethods) -> float:

@@ -12,7 +12,10 @@ from matplotlib.figure import Figure
 from tol3d.analyses.sweep_table import short_names
 from tol3d.analyses.variant_sweep import Sweep, measures_of
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import BLACK, BLUE, GREY, VERMILLION, new_figure, plain_axes, save_figure, say_instead
+from tol3d.report.canvas import BLACK, new_figure, plain_axes, save_figure
+from tol3d.report.chart import Axis, Band, Chart, Line, Mark, Panel, Points, Series
+from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.measure_charts import spanned
 from tol3d.report.number import UNIT_SIGNS
 
 MOST_MEASURES: Final = 4
@@ -33,24 +36,46 @@ def draw_sweep(found: Sweep, path: Path) -> None:
 
 def sweep_figure(found: Sweep) -> Figure:
     """The picture, not yet written."""
-    names = list(measures_of(found))[:MOST_MEASURES]
-    fields = len(found.fields)
-    columns = min(fields, MOST_FIELDS) if fields > 2 else max(len(names), 1)
-    rows = max(len(names), 1) if fields > 2 else 1
-    figure = new_figure(WIDTH * columns, HEIGHT * rows + HEAD)
+    names, fields = list(measures_of(found))[:MOST_MEASURES], len(found.fields)
     words = f"{found.scene}   ·   {len(found.variants)} variants of {found.trials} trials"
-    figure.suptitle(words, fontsize=11, color=BLACK, x=0.01, ha="left")
-    axes = figure.subplots(rows, columns, squeeze=False)
+    if names and fields == 2:
+        return _maps(found, names, words)
+    rows = [[over_field(found, name, field) for field in range(min(fields, MOST_FIELDS))] for name in names]
+    if fields == 1:
+        rows = [[chart for row in rows for chart in row]]
     if not names:
-        say_instead(plain_axes(axes[0, 0]), "no variant could be built", VERMILLION)
-    for k, name in enumerate(names):
-        if fields == 1:
-            _curve(plain_axes(axes[0, k]), found, name)
-        elif fields == 2:
-            _map(figure, plain_axes(axes[0, k]), found, name)
-        else:
-            for field in range(columns):
-                _scatter(plain_axes(axes[k, field]), found, name, field)
+        nothing = "no variant could be built"
+        rows = [[Chart(nothing, Axis("", 0.0, 1.0), (), instead=nothing)]]
+    return charts_figure(rows, words, WIDTH * max(len(rows[0]), 1))
+
+
+def over_field(found: Sweep, name: str, field: int) -> Chart:
+    """A measure over the numbers of a field: mean and ends of each variant, of one field alone as a curve."""
+    numbers, mean, low, high, _ = _numbers(found, name)
+    order = np.argsort(numbers[:, field])
+    at, mean, low, high = numbers[order, field], mean[order], low[order], high[order]
+    if len(found.fields) == 1:
+        series: list[Series] = [Band(at, low, high, "series-0"), Line(at, mean, "series-0", dots=True)]
+    else:
+        gaps = np.full(len(at), np.nan)
+        upright = Line(np.repeat(at, 3), np.stack([low, high, gaps], axis=-1).ravel(), "soft", stroke="thin")
+        series = [upright, Points(at, mean, "series-0")]
+    first = next(own.measures[name] for own in found.variants if name in own.measures)
+    limits = [limit for limit in (first.lower_limit, first.upper_limit) if limit is not None]
+    marks = [Mark(limit, "limit", upright=False) for limit in limits]
+    lost = [own.numbers[field] for own in found.variants if name not in own.measures]
+    marks += [Mark(place, "guide", label="could not be built") for place in lost if len(found.fields) == 1]
+    across = spanned(short_names(found.fields)[field], np.array([*at, *lost]), found.units[field])
+    y = spanned(name, np.concatenate([mean, low, high, limits]), first.unit)
+    alternative = f"{name} over {across.label}"
+    return Chart(alternative, across, [Panel(y, series, marks, 0.8)])
+
+
+def _maps(found: Sweep, names: Sequence[str], words: str) -> Figure:
+    figure = new_figure(WIDTH * len(names), HEIGHT + HEAD)
+    figure.suptitle(words, fontsize=11, color=BLACK, x=0.01, ha="left")
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+        _map(figure, plain_axes(axes), found, name)
     return figure
 
 
@@ -71,34 +96,6 @@ def _label(found: Sweep, name: str) -> str:
 def _field_label(found: Sweep, field: int) -> str:
     unit = found.units[field]
     return short_names(found.fields)[field] + (f" [{UNIT_SIGNS.get(unit, unit)}]" if unit else "")
-
-
-def _limits(axes: Axes, found: Sweep, name: str) -> None:
-    for own in found.variants:
-        if name in own.measures:
-            for limit in (own.measures[name].lower_limit, own.measures[name].upper_limit):
-                if limit is not None:
-                    axes.axhline(limit, color=VERMILLION, linewidth=1.0, linestyle="--")
-            return
-
-
-def _curve(axes: Axes, found: Sweep, name: str) -> None:
-    numbers, mean, low, high, _ = _numbers(found, name)
-    order = np.argsort(numbers[:, 0])
-    at = numbers[order, 0]
-    axes.fill_between(at, low[order], high[order], color=BLUE, alpha=0.2, linewidth=0.0)
-    axes.plot(at, mean[order], color=BLUE, marker="o", markersize=3.5, linewidth=1.4)
-    _limits(axes, found, name)
-    _marks(axes, found, name)
-    axes.set_xlabel(_field_label(found, 0), fontsize=9)
-    axes.set_ylabel(_label(found, name), fontsize=9)
-
-
-def _marks(axes: Axes, found: Sweep, name: str) -> None:
-    """Mark variants that could not be built."""
-    for own in found.variants:
-        if name not in own.measures:
-            axes.axvline(own.numbers[0], color=GREY, linewidth=1.0, linestyle=":")
 
 
 def _map(figure: Figure, axes: Axes, found: Sweep, name: str) -> None:
@@ -139,17 +136,3 @@ def _write(axes: Axes, across: Array, up: Array, grid: Array) -> None:
 def _edges(values: Array) -> Array:
     middles = (values[1:] + values[:-1]) / 2
     return np.concatenate([[1.5 * values[0] - 0.5 * values[1]], middles, [1.5 * values[-1] - 0.5 * values[-2]]])
-
-
-def _scatter(axes: Axes, found: Sweep, name: str, field: int) -> None:
-    numbers, mean, low, high, _ = _numbers(found, name)
-    bars: Sequence[Array] = (np.maximum(mean - low, 0.0), np.maximum(high - mean, 0.0))
-    if np.isfinite(mean).all():
-        axes.errorbar(
-            numbers[:, field], mean, yerr=bars, fmt="o", color=BLUE, ecolor=GREY, markersize=3.5, linewidth=0.8
-        )
-    else:
-        axes.vlines(numbers[:, field], low, high, color=BLUE, linewidth=1.0)
-    _limits(axes, found, name)
-    axes.set_xlabel(_field_label(found, field), fontsize=9)
-    axes.set_ylabel(_label(found, name), fontsize=9)

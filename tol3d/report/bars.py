@@ -1,21 +1,32 @@
 """Histograms ready to be drawn: fewer bars for few trials, densities in % per unit."""
 
-from collections.abc import Mapping
+import math
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
-from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
-from tol3d.report.canvas import BLACK, legend_below, plain_axes
-from tol3d.report.column import Column, ranked_contributors, shares_of, unexplained_words
-from tol3d.report.label import wrapped
-from tol3d.report.number import percent_text
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.values import Method
 
 FEWEST_BARS = 8
+Limits = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Bars cut at limits.
+
+    Args:
+        edges: (pieces + 1,) rising.
+        bars: (pieces,) index of the bar that each is of.
+        beyond: (pieces,) True for those that lie beyond a limit.
+    """
+
+    edges: Array
+    bars: NDArray[np.intp]
+    beyond: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +57,16 @@ class Bars:
     def middles(self) -> Array:
         """Middle of each bar."""
         return (self.edges[:-1] + self.edges[1:]) / 2
+
+    def cut(self, limits: Limits) -> Pieces:
+        """Its bars, those that a limit runs through in two pieces."""
+        within = [limit for limit in limits if limit is not None and self.edges[0] < limit < self.edges[-1]]
+        edges = np.unique(np.concatenate([self.edges, within]))
+        middles = (edges[:-1] + edges[1:]) / 2
+        lower, upper = limits
+        below, above = -math.inf if lower is None else lower, math.inf if upper is None else upper
+        bars = np.clip(np.searchsorted(self.edges, middles) - 1, 0, len(self.counts) - 1)
+        return Pieces(edges, bars, np.asarray((middles < below) | (middles > above)))
 
     def times(self, factor: float) -> "Bars":
         """The same values in another unit, so many to one of this one."""
@@ -87,81 +108,3 @@ def _joined(counts: Array, merged: int) -> Array:
     """Counts of bars that are so many neighbours each."""
     padded = np.pad(counts, (0, -len(counts) % merged))
     return np.asarray(padded.reshape(-1, merged).sum(axis=1))
-
-
-MOST_CONTRIBUTORS: Final = 9  # bars; the rest is shown as one
-NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest possible names fit
-LINE: Final = 0.155  # inch, of a name
-BAR: Final = 0.115  # inch; least thickness of a bar that bears its number
-BETWEEN: Final = 0.06  # inch, between two contributors
-HEAD_AND_FOOT: Final = 1.0  # inch; title, axis and its label
-LEGEND_LINE, LEGEND_WIDTH = 0.2, 3.0  # inch
-FEWEST_ROWS: Final = 4  # fewer bars are no thicker than these
-METHOD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation"}
-
-
-def shown_names(measure: MeasureSummary) -> tuple[list[str], list[str]]:
-    """The contributors with a bar of their own, and those that share one."""
-    names = ranked_contributors(measure)
-    return names[:MOST_CONTRIBUTORS], names[MOST_CONTRIBUTORS:]
-
-
-def labels_of(measure: MeasureSummary) -> list[str]:
-    """Labels beside the bars, unshortened."""
-    shown, rest = shown_names(measure)
-    others = [f"{len(rest)} other{'s' if len(rest) > 1 else ''}"] if rest else []
-    return [wrapped(name, NAME_WIDTH, NAME_SIZE, NAME_LINES) for name in shown] + others
-
-
-def height_of_contributors(measure: MeasureSummary) -> float:
-    """Height that the bars of a measure need with their names and legend [inch]; 0 without shares."""
-    columns = shares_of(measure)
-    if not columns:
-        return 0.0
-    labels = labels_of(measure)
-    most_lines = max((label.count("\n") + 1 for label in labels), default=1)
-    each = max(LINE * most_lines, BAR * len(columns)) + BETWEEN
-    legend = sum(legend_text(column).count("\n") + 1 for column in columns)
-    return HEAD_AND_FOOT + LEGEND_LINE * legend + each * len(labels)
-
-
-def legend_text(column: Column) -> str:
-    """Name of a column in the legend."""
-    return METHOD_WORDS.get(column.method) or wrapped(column.heading, LEGEND_WIDTH, 8.5, NAME_LINES)
-
-
-def draw_contributors(axes: Axes, measure: MeasureSummary, colours: Mapping[str, str]) -> None:
-    """Shares of the variance, the largest first."""
-    plain_axes(axes).grid(axis="y", visible=False)
-    columns, labels = shares_of(measure), labels_of(measure)
-    shown, rest = shown_names(measure)
-    height = 0.8 / len(columns)
-    for k, column in enumerate(columns):
-        percents = _percents(column, shown, rest)
-        values = [max(percent or 0.0, 0.0) for percent in percents]
-        places = np.arange(len(values)) - 0.4 + (k + 0.5) * height
-        drawn = axes.barh(
-            places,
-            values,
-            height=0.9 * height,
-            color=colours[column.heading],
-            alpha=0.8,
-            label=legend_text(column),
-        )
-        texts = ["" if percent is None else percent_text(percent) for percent in percents]
-        axes.bar_label(drawn, labels=texts, fontsize=7, padding=2, color=BLACK)
-    axes.set_yticks(range(len(labels)), labels, fontsize=NAME_SIZE)
-    axes.tick_params(axis="y", length=0)
-    axes.set_ylim(max(len(labels), FEWEST_ROWS) - 0.5, -0.5)
-    axes.margins(x=0.12)
-    axes.set_xlim(left=0)
-    axes.set_xlabel("share of the variance [%]", fontsize=10)
-    axes.set_title("contributors", loc="left", fontsize=11, fontweight="bold")
-    axes.set_title(unexplained_words(measure), loc="right", fontsize=NAME_SIZE)
-    legend_below(axes)
-
-
-def _percents(column: Column, shown: list[str], rest: list[str]) -> list[float | None]:
-    """A column's share of each bar [%]; None where it has none."""
-    others = [share for name in rest if (share := column.percents.get(name)) is not None]
-    return [column.percents.get(name) for name in shown] + ([sum(others) if others else None] if rest else [])

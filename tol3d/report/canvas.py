@@ -1,9 +1,11 @@
 """Figures without a window: colours that colour-blind readers can distinguish, and how a picture is saved."""
 
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,6 +16,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from tol3d.errors import InputError, unwritable
 from tol3d.report.label import wrapped
+from tol3d.report.ticks import angle_step, minutes_seconds
 
 # Okabe and Ito 2008, "Color Universal Design": eight colours for all kinds of colour vision
 ORANGE: Final = "#E69F00"
@@ -38,9 +41,6 @@ TITLE_LIFT: Final = 4.0  # points, from the axes to the words above them
 MOST_LINES: Final = 5  # of names and words; enough for the longest possible names
 LEGEND_BELOW: Final = 0.5  # inch, from the axis to the first line of the legend below it
 DOTS_PER_INCH: Final = 150
-MINUTES = 60  # of a degree
-ANGLE_STEPS: Final = (0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 60, 120, 300, 600, 900, 1800, 3600)  # arc seconds
-MOST_TICKS: Final = 9
 PNG: Final = ".png"
 FORMATS: Final = (PNG, ".svg", ".pdf")
 QUICK: Final = {"compress_level": 1}  # of a PNG: an eighth larger, written in a third of the time
@@ -70,9 +70,11 @@ def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
     """A name above axes and below it what they show, both whole, in lines of at most `width` [inch]."""
     below = wrapped(words, width, WORDS_SIZE, MOST_LINES)
     above = wrapped(name, width, NAME_SIZE, MOST_LINES, "bold")
-    lines = below.count("\n") + 1
-    lift = 2.5 * TITLE_LIFT + lines * LINE_SPACING * WORDS_SIZE
+    lines = below.count("\n") + bool(below)
+    lift = (2.5 if below else 1.0) * TITLE_LIFT + lines * LINE_SPACING * WORDS_SIZE
     axes.set_title(above, loc="left", fontsize=NAME_SIZE, fontweight="bold", pad=lift)
+    if not below:
+        return
     words_below = axes.annotate(
         below,
         (0, 1),
@@ -87,12 +89,15 @@ def title_axes(axes: Axes, name: str, words: str, width: float) -> None:
     words_below.set_in_layout(False)  # lines are broken already, and the name above them keeps their room
 
 
-def legend_below(axes: Axes) -> None:
-    """A legend below the axis and its label, where it hides nothing."""
+def legend_below(axes: Axes, named: Mapping[str, Artist] | None = None) -> None:
+    """A legend below the axis and its label, where it hides nothing; default: of what on the axes has a label."""
     figure = axes.get_figure(root=True)
-    if figure is None or not axes.get_legend_handles_labels()[1]:
+    handles, labels = axes.get_legend_handles_labels() if named is None else ([*named.values()], [*named])
+    if figure is None or not labels:
         return
     axes.legend(
+        handles,
+        labels,
         loc="upper left",
         bbox_to_anchor=(0.0, 0.0),
         bbox_transform=axes.transAxes + ScaledTranslation(0.0, -LEGEND_BELOW, figure.dpi_scale_trans),
@@ -115,27 +120,6 @@ def label_angles(axis: Axis, unit: str) -> None:
     if step is not None:
         axis.set_major_locator(MultipleLocator(step / 60))
     axis.set_major_formatter(FuncFormatter(lambda value, position: minutes_seconds(value)))
-
-
-def angle_step(low: float, high: float, most: int = MOST_TICKS) -> float | None:
-    """The step [arc seconds] between `most` ticks of an axis in arc minutes; None where it is too long for one."""
-    return next((step for step in ANGLE_STEPS if (high - low) * 60 <= most * step), None)
-
-
-def minutes_seconds(arcmin: float) -> str:
-    """The words of a tick in minutes and seconds, to a tenth of a second.
-
-    >>> minutes_seconds(-1.5), minutes_seconds(61.0)
-    ('−1′30″', '1°01′')
-    """
-    tenths = round(abs(arcmin) * 600)
-    minutes, rest = divmod(tenths, 600)
-    seconds = f"{rest / 10:.1f}″" if rest % 10 else f"{rest // 10}″"
-    sign = "−" if arcmin < 0 and tenths else ""
-    if minutes >= MINUTES:
-        degrees = f"{sign}{minutes // MINUTES}°{minutes % MINUTES:02}′"
-        return degrees + f"{'0' * (rest < 100)}{seconds}" if rest else degrees
-    return f"{sign}{minutes}′{'0' * (rest < 100)}{seconds}" if minutes else f"{sign}{seconds}"
 
 
 def save_figure(figure: Figure, path: Path) -> None:

@@ -10,7 +10,7 @@ from vtkmodules.vtkFiltersGeneral import vtkContourTriangulator
 
 from tol3d.numerics.arrays import Array
 from tol3d.report.body import Body
-from tol3d.report.label import legible
+from tol3d.report.heading import legible
 
 EDGE_COLOUR: Final = "#30373F"
 CONTACT_COLOUR, GAP_COLOUR = "#00714F", "#C03A00"  # green and vermillion: Okabe and Ito, darkened

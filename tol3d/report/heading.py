@@ -75,3 +75,13 @@ def largest(items: Iterable[T], sizes: Mapping[T, float], most: int = MOST_CONTR
     """Items that are shown: all in their order, or of more than `most` the largest, the largest first."""
     every = list(items)
     return every if len(every) <= most else sorted(every, key=lambda item: -sizes.get(item, 0.0))[:most]
+
+
+def cut(text: str, longest: int) -> str:
+    """A text not longer than fits; a longer one ends in an ellipsis."""
+    return text if len(text) <= longest else text[: max(longest - 1, 0)] + "…"
+
+
+def legible(text: str, longest: int = 34) -> str:
+    """A user's name as a label of matplotlib or VTK: no mathematics in its dollar signs, not longer than fits."""
+    return cut(text, longest).replace("$", r"\$")

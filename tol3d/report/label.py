@@ -9,13 +9,9 @@ from typing import Final
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
+from tol3d.report.heading import legible
+
 POINTS_PER_INCH: Final = 72.0
-
-
-def legible(text: str, longest: int = 34) -> str:
-    """A user's name as a label: no mathematics in its dollar signs, not longer than fits."""
-    short = text if len(text) <= longest else text[: longest - 1] + "…"
-    return short.replace("$", r"\$")
 
 
 def wrapped(text: str, width: float, size: float, lines: int, weight: str = "normal") -> str:

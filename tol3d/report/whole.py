@@ -29,7 +29,7 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
-from tol3d.report.label import legible
+from tol3d.report.heading import legible
 
 ISOMETRIC: Final = math.asin(1 / math.sqrt(3))  # rad above the horizon: three edges of a cube look alike
 PARTS_WIDE, PARTS_HIGH = 0.56, 0.84  # of the picture; the labels stand on either side

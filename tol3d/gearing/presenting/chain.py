@@ -38,7 +38,8 @@ from tol3d.gearing.presenting.shown_stage import ShownStage, stages_of, trains_o
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.report.canvas import BLACK, GREY, OUTSIDE, new_figure, save_figure, say_instead
 from tol3d.report.column import seated_text
-from tol3d.report.label import legible, wrapped
+from tol3d.report.heading import legible
+from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, given_text, value_text
 from tol3d.runs.summary.run import RunSummary
 

@@ -26,7 +26,8 @@ from tol3d.gearing.presenting.shown_stage import Range, ShownStage, distribution
 from tol3d.gearing.summary.types import TrainSummary
 from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, METHOD_COLOURS, OUTSIDE, label_angles, plain_axes
-from tol3d.report.label import legible, wrapped
+from tol3d.report.heading import legible
+from tol3d.report.label import wrapped
 from tol3d.report.number import NOTHING, short_text, tip_mm, value_text
 from tol3d.runs.summary.run import RunSummary
 

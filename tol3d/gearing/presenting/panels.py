@@ -29,7 +29,7 @@ from tol3d.report.drawn_solids import (
     poly_data,
     set_background,
 )
-from tol3d.report.label import legible
+from tol3d.report.heading import legible
 from tol3d.report.presenter import Panel
 from tol3d.report.whole import draw_whole
 

@@ -4,8 +4,8 @@ import base64
 import hashlib
 import json
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from functools import cache, partial
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from importlib import import_module, resources
 from pathlib import Path
 from typing import Final
@@ -13,22 +13,16 @@ from typing import Final
 import numpy as np
 
 from tol3d.errors import InputError, RunError, SceneError
-from tol3d.report.bars import Bars
+from tol3d.report.bars import Bars, bars_of
 from tol3d.report.column import shares_of, unexplained_words
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.convergence import convergence_of
-from tol3d.report.distribution import samples_of
 from tol3d.report.heading import WORST_FIRST, shown_measures
-from tol3d.report.html.axis import Frame, of_both_widths
 from tol3d.report.html.blocks import CARDS, page_blocks
-from tol3d.report.html.convergence_chart import POINTS, convergence_chart
-from tol3d.report.html.curve_chart import curve_chart
-from tol3d.report.html.difference_chart import difference_chart
-from tol3d.report.html.histogram_chart import histogram_chart
-from tol3d.report.html.matrix_chart import FEWEST, Shares, matrix_chart, shares_in
-from tol3d.report.html.pareto_chart import pareto_chart
+from tol3d.report.html.svg import figure
 from tol3d.report.html.tags import Inside, Markup, tag, together
 from tol3d.report.joint import correlation_blocks
+from tol3d.report.measure_charts import chart_of
 from tol3d.report.page import Page, Table, note, warning
 from tol3d.report.presenter import Presenter, presenter_of
 from tol3d.report.report_sections import (
@@ -45,8 +39,10 @@ from tol3d.report.report_sections import (
     runs_blocks,
     trials_blocks,
 )
+from tol3d.report.share_charts import FEWEST, Shares, matrix, pareto, shares_in
 from tol3d.report.shown_unit import shown_run
 from tol3d.report.table import meanings, measure_blocks
+from tol3d.report.trial_charts import convergence, differences, shown_runs
 from tol3d.report.verdict import accepted_text, verdict_report
 from tol3d.runs.run import Run
 from tol3d.runs.summary.judged import Accepted, JudgedMeasure, demand_of
@@ -67,12 +63,9 @@ POLICY: Final = (
 NOT_TOGETHER: Final = (
     "no 3D view of several runs, whose parts would stand in each other: tol3d report RUN shows those of one"
 )
-LEGEND: Final = {
-    "geometric": "3D simulation",
-    "analytic": "analytic",
-    "closed": "closed form",
-    "limit": "out of limits",
-}
+POINTS: Final = 48
+"""Numbers of trials at which a convergence is drawn."""
+MATRIX: Final = "share of the variance [%]"
 VERDICTS: Final = {"ok": "OK", "not-ok": "NOT OK", "open": "too few trials to say", "none": "no limits to judge"}
 
 
@@ -148,7 +141,7 @@ def _single(
     sections[MEASURES] = together(*_measures(run, shown, presenter))
     if own := page_blocks(more_blocks(found, presenter)):
         sections[MORE] = own
-    if shares := shares_in(shown):
+    if len(shares := shares_in(shown)) >= FEWEST:
         sections["which tolerance matters where"] = _matrix(shares)
     if pairs := page_blocks(correlation_blocks(found)):
         sections[CORRELATIONS] = pairs
@@ -170,7 +163,7 @@ def _kept(analyses: Mapping[str, Page], shares: Mapping[str, Shares]) -> Mapping
 
 
 def _matrix(shares: Shares) -> Markup:
-    return tag("figure", of_both_widths(partial(matrix_chart, shares)), tag("figcaption", "share of the variance [%]"))
+    return figure(matrix(shares, MATRIX), note=MATRIX)
 
 
 def _presenter(run: RunSummary) -> Presenter:
@@ -201,21 +194,13 @@ def _measures(run: Run, shown: RunSummary, presenter: Presenter) -> Iterator[Mar
         blocks = measure_blocks(name, measure, shown, presenter)
         first = next((k for k, own in enumerate(blocks) if isinstance(own, Table)), len(blocks))
         yield page_blocks(blocks[:first])
-        if measure.take == "curve":
-            yield _figure(partial(curve_chart, name, measure), measure)
-        else:
-            yield _figure(partial(histogram_chart, name, measure), measure, *_bar_trials(run, name, measure, number))
+        trials = [*_bar_trials(run, name, measure, number)]
+        yield figure(chart_of(name, measure), *trials, data_trials=f"trials-{number}" if trials else None)
         yield page_blocks(blocks[first:], 4)
         if measure.take != "curve" and any(own.method != "published" for own in shares_of(measure)):
-            pareto = of_both_widths(partial(pareto_chart, measure))
-            words = [tag("span", text)] if (text := unexplained_words(measure)) else []
-            yield tag("figure", pareto, tag("figcaption", *words, *_legend(_methods(measure))))
-        if (
-            run.keeps_trials
-            and (difference := difference_of(run, name))
-            and measure.unit == run.found.measures[name].unit
-        ):
-            yield _figure(partial(difference_chart, measure, difference), None)
+            yield figure(pareto(measure), note=unexplained_words(measure))
+        if run.keeps_trials and (found := difference_of(run, name)) and measure.unit == run.found.measures[name].unit:
+            yield figure(differences(name, measure.unit, [(shown_runs([run])[0], found)]))
         yield from _convergence(run, name, measure)
     yield page_blocks(map(note, meanings(shown)))
 
@@ -226,7 +211,7 @@ def _convergence(run: Run, name: str, measure: MeasureSummary) -> Iterator[Marku
         found = convergence_of(run, name, POINTS)
     except (InputError, RunError):
         return
-    yield _figure(partial(convergence_chart, measure, found, factor=_factor(run, name, measure)), None)
+    yield figure(convergence(name, measure, found, _factor(run, name, measure)))
 
 
 def _factor(run: Run, name: str, measure: MeasureSummary) -> float:
@@ -234,39 +219,12 @@ def _factor(run: Run, name: str, measure: MeasureSummary) -> float:
     return 1.0 if run.found.measures[name].unit == measure.unit else 1e-3
 
 
-def _figure(drawn: Callable[[Frame], Markup], measure: MeasureSummary | None, *behind: Markup, **data: str) -> Markup:
-    marks = _marks(measure) if measure is not None else ()
-    trials = "trials" if behind else None
-    caption = [tag("figcaption", *marks)] if marks else []
-    attributes = {"data_trials": _id_of(behind[0])} if trials else {}
-    return tag("figure", of_both_widths(drawn), *caption, *behind, **attributes)
-
-
-def _id_of(data: Markup) -> str:
-    return data.partition('id="')[2].partition('"')[0]
-
-
-def _methods(measure: MeasureSummary) -> frozenset[str]:
-    return frozenset(("analytic", measure.best_method))
-
-
-def _marks(measure: MeasureSummary) -> Sequence[Markup]:
-    """The legend of a histogram or a curve."""
-    closed = {"closed"} if measure.analytic_closed_form and measure.take != "curve" else set()
-    return _legend(_methods(measure) | closed | ({"limit"} if measure.has_limits else set()))
-
-
-def _legend(keys: Set[str]) -> Sequence[Markup]:
-    return [tag("span", tag("i", class_=key), words) for key, words in LEGEND.items() if key in keys]
-
-
 def _bar_trials(run: Run, name: str, measure: MeasureSummary, number: int) -> Iterator[Markup]:
     """The first kept trials of each bar as data, and the place where they are listed."""
-    samples = samples_of(measure)
-    if not run.keeps_trials or not samples:
+    if measure.take == "curve" or not run.keeps_trials or not bars_of(measure):
         return
     column = value_column(measure.best_method, name)
-    bars = _first_trials(run, column, samples[0].bars, _factor(run, name, measure))
+    bars = _first_trials(run, column, bars_of(measure)[measure.best_method], _factor(run, name, measure))
     data = {"run": _as_argument(run.path), "bars": bars}
     text = json.dumps(data, sort_keys=True).replace("<", "\\u003c")
     yield tag("script", Markup(text), type="application/json", id=f"trials-{number}")
@@ -319,9 +277,8 @@ def _compared(runs: Sequence[Run]) -> Iterator[Markup]:
     for measure in measures_of(runs):
         for label, run in measure.found_in(runs):
             own = shown_run(run.found).measures[measure.name]
-            drawn = curve_chart if own.take == "curve" else histogram_chart
             yield tag("h3", f"{measure.name} · {label}")
-            yield _figure(partial(drawn, measure.name, own), own)
+            yield figure(chart_of(measure.name, own))
     yield tag("section", tag("h2", "in 3D"), tag("p", NOT_TOGETHER, class_="note"), id="section-2")
 
 

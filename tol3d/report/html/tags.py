@@ -1,5 +1,6 @@
 """Elements of HTML and SVG as text, with names of a scene escaped."""
 
+import re
 import unicodedata
 from collections.abc import Iterator, Mapping
 from typing import Final
@@ -8,6 +9,8 @@ UNSAFE: Final = frozenset(("Cc", "Cf", "Cs", "Zl", "Zp"))
 """Unicode categories that hide or turn text: shown by their code points."""
 VOID: Final = frozenset(("br", "meta", "img", "input"))
 ENTITIES: Final[Mapping[str, str]] = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;"}
+PLAIN: Final = re.compile(r"[\n !#-%(-;=?-~]*")
+"""Text of ASCII that stays as it is: most of it, the paths of charts above all."""
 
 
 class Markup(str):
@@ -25,7 +28,8 @@ def escaped(text: object) -> Markup:
     """
     if isinstance(text, Markup):
         return text
-    return Markup("".join(ENTITIES.get(sign) or _told(sign) for sign in str(text)))
+    own = str(text)
+    return Markup(own if PLAIN.fullmatch(own) else "".join(ENTITIES.get(sign) or _told(sign) for sign in own))
 
 
 def _told(sign: str) -> str:

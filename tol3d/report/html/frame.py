@@ -1,0 +1,91 @@
+"""Frames and scales of charts as SVG: the width that a chart is drawn for, and places of values on it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from tol3d.report.chart import Axis
+from tol3d.report.html.tags import Markup, tag
+from tol3d.report.ticks import Ticks, decades, ticks_of
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Width that a chart is drawn for, in its own unit: letters of 11 are readable from there on.
+
+    Args:
+        name: CSS class of charts of this width.
+        width: of the chart.
+        left, right: margins of its values.
+        names: width of the names at its left, where it has names; `letters` of them find room.
+    """
+
+    name: str
+    width: float
+    left: float
+    right: float
+    names: float
+    letters: int
+
+
+TICK: Final = 90.0
+"""Length of an axis between two ticks, at least, so that their words stand apart."""
+LETTER: Final = 6.6
+"""Width of a letter, about."""
+WIDE: Final = Frame("wide-chart", 720.0, 64.0, 16.0, 230.0, 38)
+NARROW: Final = Frame("narrow-chart", 324.0, 46.0, 8.0, 128.0, 21)
+"""A page of 390 pixels shows it in its own size, beside a bar that scrolls."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Values of an axis on places from `start` to `end` of a chart, with `most` ticks, about."""
+
+    axis: Axis
+    start: float
+    end: float
+    most: int
+
+    def __call__(self, value: float) -> float:
+        low, high = self.axis.low, self.axis.high
+        if self.axis.log:
+            low, high, value = math.log10(low), math.log10(high), math.log10(max(value, low))
+        return self.start + (value - low) / (high - low) * (self.end - self.start)
+
+    def within(self, value: float) -> float:
+        """Place of a value, of one beyond the axis the end of it."""
+        return self(min(max(value, self.axis.low), self.axis.high))
+
+    @property
+    def ticks(self) -> Ticks:
+        """Values within the span with their words."""
+        axis = self.axis
+        if not axis.ticks:
+            return []
+        return decades(axis.low, axis.high) if axis.log else ticks_of(axis.low, axis.high, axis.unit, self.most)
+
+    def grid_below(self, top: float, bottom: float) -> Iterator[Markup]:
+        """Upright lines at its ticks over a panel, and the panel's lower edge."""
+        for value, _ in self.ticks:
+            yield tag("path", d=f"M{self(value):.1f} {top:.1f}V{bottom:.1f}", class_="grid")
+
+    def words_below(self, bottom: float) -> Iterator[Markup]:
+        """Its line, the words of its ticks and its label below the last panel."""
+        for value, words in self.ticks:
+            yield tag("text", words, x=self(value), y=bottom + 15, text_anchor="middle", class_="tick")
+        yield tag("path", d=f"M{self.start:.1f} {bottom:.1f}H{self.end:.1f}", class_="frame")
+        middle, room = (self.start + self.end) / 2, int(2 * (self.end - self.start) / LETTER / 2)
+        yield tag("text", self.axis.words(room), x=middle, y=bottom + 33, text_anchor="middle", class_="label")
+
+    def beside(self, left: float, right: float) -> Iterator[Markup]:
+        """A vertical axis at the left of a panel."""
+        for value, words in self.ticks:
+            y = self(value)
+            yield tag("path", d=f"M{left:.1f} {y:.1f}H{right:.1f}", class_="grid")
+            yield tag("text", words, x=left - 6, y=y + 4, text_anchor="end", class_="tick")
+        middle, room = (self.start + self.end) / 2, int((self.start - self.end) / LETTER)
+        turned = f"rotate(-90 11 {middle:.0f})"
+        yield tag(
+            "text", self.axis.words(room), x=11.0, y=middle, text_anchor="middle", class_="label", transform=turned
+        )
