@@ -28,7 +28,7 @@ KEPT: Final = HERE / "pictures.json"
 COLOURS: Final = 256
 VIEW: Final = ("report/view.py", "report/whole.py", "report/drawn_solids.py")
 CLOSE_UP: Final = (*VIEW, "gearing/presenting/panels.py", "gearing/presenting/gear_display.py")
-CHART: Final = ("report/chart.py", "report/drawn_chart.py", "report/measure_charts.py")
+CHART: Final = ("report/chart.py", "report/chart_figure.py", "report/drawn_chart.py", "report/measure_charts.py")
 HISTOGRAM: Final = ("report/histogram.py", "report/picture.py", "report/share_charts.py", "report/bars.py", *CHART)
 CURVE_ALONE: Final = """
 from pathlib import Path
@@ -83,7 +83,7 @@ PICTURES: Final[Mapping[str, Picture]] = {
     "compensation.png": Picture(
         ("tol3d compensate robot_shoulder robot_shoulder_shimmed --out compensation.png",),
         "compensation.png",
-        ("adjustment/compensation_picture.py", "report/chart.py", "report/drawn_chart.py"),
+        ("adjustment/compensation_picture.py", *CHART),
         ("robot_shoulder", "robot_shoulder_shimmed"),
     ),
     "contact.png": viewed("spur_pair", "--trial 175 --magnify 10", CLOSE_UP),

@@ -13,7 +13,8 @@ from matplotlib.collections import PolyCollection
 
 from tol3d.report.canvas import new_figure
 from tol3d.report.chart import Axis, Cells, Chart, Filled, Lengths, Line, Mark, Names, Panel, Range
-from tol3d.report.drawn_chart import charts_figure, draw_panel
+from tol3d.report.chart_figure import charts_figure
+from tol3d.report.drawn_chart import draw_panel
 from tol3d.report.html.frame import NARROW, WIDE
 from tol3d.report.html.svg import figure, svg
 from tol3d.report.ticks import ticks_of

@@ -24,9 +24,10 @@ from tol3d.report import picture
 from tol3d.report.bars import bars_of
 from tol3d.report.canvas import OUTSIDE, new_figure, save_figure
 from tol3d.report.chart import Chart
+from tol3d.report.chart_figure import matrix_figure
 from tol3d.report.column import columns_of
 from tol3d.report.comparison_picture import comparison_figure
-from tol3d.report.drawn_chart import draw_panel, matrix_figure
+from tol3d.report.drawn_chart import draw_panel
 from tol3d.report.ends import is_bounded
 from tol3d.report.heading import heading, legible
 from tol3d.report.histogram import histogram_figure, overview_figure

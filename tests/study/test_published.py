@@ -21,7 +21,7 @@ from tol3d import Run, load_scene
 from tol3d.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.adjustment.compensation_table import highs_table
 from tol3d.report import published as shown
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import histogram
 from tol3d.report.measure_table import curve_table
 from tol3d.report.published import published_notes

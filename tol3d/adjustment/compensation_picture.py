@@ -15,7 +15,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.report.bars import Bars
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Band, Chart, Filled, Line, Mark, Panel, Points, Role, Series, Sign, Stroke
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.number import given_text, short_text, tip_mm
 
 SIGNS: Final[Mapping[str, Sign]] = {"mean": "diamond", "low_3sigma": "left", "high_3sigma": "right"}

@@ -8,7 +8,7 @@ import numpy as np
 from tol3d.analyses.allocation_section import Allocation
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Chart, Lengths, Line, Mark, Names, Panel, Points, Role, Series
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import spanned
 
 WIDTH: Final = 12.0  # inch

@@ -5,7 +5,7 @@ from pathlib import Path
 from tol3d.analyses.tolerance_effects import Effects
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Chart
-from tol3d.report.drawn_chart import matrix_figure
+from tol3d.report.chart_figure import matrix_figure
 from tol3d.report.share_charts import matrix
 
 

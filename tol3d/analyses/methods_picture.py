@@ -10,7 +10,7 @@ from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.methods_table import intervals_of
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Chart, Mark, Names, Panel, Range, Role
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text, short_text
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from tol3d.analyses.rare_section import LimitLeft, RareEvents
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Chart, Lengths, Names, Panel, Points, Range, Role, Series, Sign
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.number import ppm_text
 
 WIDTH: Final = 12.0  # inch

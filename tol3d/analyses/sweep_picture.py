@@ -14,7 +14,7 @@ from tol3d.analyses.variant_sweep import Sweep, measures_of
 from tol3d.numerics.arrays import Array
 from tol3d.report.canvas import BLACK, new_figure, plain_axes, save_figure
 from tol3d.report.chart import Axis, Band, Chart, Line, Mark, Panel, Points, Series
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import UNIT_SIGNS
 

@@ -10,7 +10,7 @@ from tol3d.analyses.before_after import MeasureWhatIf, WhatIf
 from tol3d.analyses.what_if_table import bounded_text
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Chart, Mark, Outline, Panel, Role
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text
 

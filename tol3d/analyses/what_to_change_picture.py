@@ -9,7 +9,7 @@ from tol3d.analyses.what_to_change import Changes, MeasureChanges, Spread
 from tol3d.analyses.what_to_change_table import proposal_text
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Chart, Mark, Names, Panel, Range, Role
-from tol3d.report.drawn_chart import charts_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text, share_text
 

@@ -7,8 +7,8 @@ from typing import Final
 from matplotlib.figure import Figure
 
 from tol3d.report.canvas import save_figure
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.compare import difference_of, labelled, measures_of, require_shared_measures
-from tol3d.report.drawn_chart import charts_figure
 from tol3d.report.trial_charts import NO_SIMULATION, NO_TRIALS, by_position, compared_runs, differences, shown_runs
 from tol3d.runs.run import Run
 

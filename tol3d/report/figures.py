@@ -6,10 +6,10 @@ from typing import Final
 from matplotlib.figure import Figure
 
 from tol3d.errors import InputError, RunError
+from tol3d.report.chart_figure import charts_figure
 from tol3d.report.column import shares_of
 from tol3d.report.compare import difference_of
 from tol3d.report.convergence import convergence_of
-from tol3d.report.drawn_chart import charts_figure
 from tol3d.report.histogram import histogram_figure, of_measures
 from tol3d.report.share_charts import pareto
 from tol3d.report.shown_unit import shown_run

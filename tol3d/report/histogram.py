@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Chart, Panel
+from tol3d.report.chart_figure import charts_figure, matrix_figure
 from tol3d.report.column import columns_of, shares_of
-from tol3d.report.drawn_chart import charts_figure, matrix_figure
 from tol3d.report.heading import shown_measures
 from tol3d.report.measure_charts import SEATED, chart_of, column_roles
 from tol3d.report.picture import MOST_TOGETHER, Pictures
