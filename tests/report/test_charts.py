@@ -4,6 +4,7 @@ import math
 import re
 import subprocess
 import sys
+from importlib import resources
 
 import numpy as np
 import pytest
@@ -77,7 +78,10 @@ def test_rows_and_cells_bear_their_numbers() -> None:
     cells = Cells(np.array([[60.0, np.nan], [0.4, 33.0]]), 2)
     matrix = svg(Chart("cells", Names(["one", "two"]), [Panel(Names(["a", "b"]), [cells])]), WIDE)
     assert re.findall(r'class="tick[^"]*">(\d+)</text>', matrix) == ["60", "33"], "what is below 1 % has no number"
-    assert matrix.count("<rect") == 3
+    strengths = [float(own) for own in re.findall(r'class="cell" fill-opacity="([\d.]+)"', matrix)]
+    assert strengths == pytest.approx([1.0, 0.06 + 0.94 * 0.4 / 60, 0.06 + 0.94 * 33 / 60], rel=1e-4)
+    style = resources.files("tol3d.report.html").joinpath("style.css").read_text("utf-8")
+    assert not re.search(r"\.chart rect(\.cell)? \{[^}]*fill-opacity", style), "a rule would outdo the attributes"
 
 
 @given(st.floats(-1e4, 1e4), st.floats(1e-2, 1e4), st.integers(3, 9))

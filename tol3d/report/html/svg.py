@@ -361,7 +361,7 @@ def _matrix(chart: Chart, frame: Frame) -> tuple[list[Markup], float]:
                 inside += _cell(share, strength, words, frame.names + wide * k, y, wide)
     bottom = heads + CELL * len(panel.y.names) + 8
     if len(names) < len(chart.x.names):
-        words = f"the first {len(names)} of {len(chart.x.names)} measures"
+        words = f"{len(names)} of {len(chart.x.names)} measures"
         words += "; a wider window shows more" if frame is NARROW else ""
         bottom += 14
         inside.append(tag("text", words, x=4.0, y=bottom - 6, class_="label"))
