@@ -34,7 +34,7 @@ TICK: Final = 90.0
 LETTER: Final = 6.6
 """Width of a letter, about."""
 WIDE: Final = Frame("wide-chart", 720.0, 64.0, 16.0, 230.0, 38)
-NARROW: Final = Frame("narrow-chart", 324.0, 60.0, 8.0, 142.0, 21)
+NARROW: Final = Frame("narrow-chart", 324.0, 54.0, 6.0, 142.0, 21)
 """A page of 390 pixels shows it in its own size, beside a bar that scrolls."""
 
 
