@@ -372,6 +372,11 @@ def test_constant_features_have_no_share() -> None:
     result = shares(sums, {"x": slice(0, 1), "constant": slice(1, 2), "rounding": slice(2, 3)})
     assert result.share["x"] == pytest.approx(1, abs=1e-12)
     assert (result.share["constant"], result.share["rounding"]) == (0.0, 0.0)
+    about_zero = 1e-16 * random.normal(size=(40, 12))  # parts that are none by theory: they explain 12 of 40 by chance
+    y = x[:40] + random.normal(size=40)
+    both = shares(RegressorSums.of(np.column_stack([x[:40], about_zero]), y), {"x": slice(0, 1), "0": slice(1, 13)})
+    alone = shares(RegressorSums.of(x[:40, None], y), {"x": slice(0, 1)})
+    assert (both.share["x"], both.share["0"]) == (alone.share["x"], 0.0)
     nothing = shares(sums, {"constant": slice(1, 2)})
     assert (nothing.share["constant"], nothing.unexplained) == (0.0, 1.0)
 

@@ -128,7 +128,8 @@ class IndependentSums:
     def fits(self) -> Iterator["ClusterFit"]:
         """The least-squares fit of the target on each cluster alone, those of a pattern together."""
         sigma = np.sqrt(np.maximum(self._squares, 0.0) / self.count)
-        scale = np.where(sigma > CONSTANT_RTOL * np.abs(self.means[:-1]), sigma, 0.0)
+        least = CONSTANT_RTOL * np.maximum(np.abs(self.means[:-1]), max(sigma, default=0.0))
+        scale = np.where(sigma > least, sigma, 0.0)
         for pattern in self.clusters.patterns:
             yield self._fit(pattern, scale[pattern.columns])
 

@@ -15,7 +15,7 @@ from tol3d.statistics.shapley import grouped_shapley
 
 Places = NDArray[np.intp]
 
-CONSTANT_RTOL = 1e-12  # of the mean; a column whose sigma is less holds rounding errors only
+CONSTANT_RTOL = 1e-12  # of the mean, and of the largest feature; a column of a smaller sigma holds rounding errors only
 RANK_RTOL = 1e-10  # of the largest eigenvalue of the correlations; columns closer than that say the same
 MOST_SHARE = 1.0005  # a share of more prints as over 100 %
 BY_CHANCE = 5.0  # over the number of trials; -z²/4n is the least share of an independent group that is z sigma off
@@ -204,9 +204,14 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
 
 
 def column_sigmas(sums: RegressorSums) -> Array:
-    """Standard deviation of each column, exactly 0 for one that holds rounding errors only."""
+    """Standard deviation of each column, exactly 0 for one that holds rounding errors only.
+
+    Of features that is one that is constant, or far smaller than the others: a part that is none by theory.
+    """
     sigma: Array = np.sqrt(np.diagonal(sums.comoments) / max(sums.count, 1))
-    return np.where(sigma > CONSTANT_RTOL * np.abs(sums.means), sigma, 0.0)
+    least = CONSTANT_RTOL * np.abs(sums.means)
+    least[:-1] = np.maximum(least[:-1], CONSTANT_RTOL * max(sigma[:-1], default=0.0))
+    return np.where(sigma > least, sigma, 0.0)
 
 
 def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:
