@@ -22,7 +22,7 @@ from tol3d.adjustment.shim_choice import Minimum
 from tol3d.adjustment.shim_table import shim_report
 from tol3d.analyses.answers import Variants as Variants
 from tol3d.analyses.answers import sweep as sweep
-from tol3d.analyses.kept_pages import kept_advice, kept_pages, kept_shares
+from tol3d.analyses.kept_pages import kept_advice, kept_charts, kept_pages, kept_shares
 from tol3d.analyses.response import Response, response_of
 from tol3d.errors import InputError, RunError, unwritable
 from tol3d.gearing.model import Model
@@ -241,6 +241,7 @@ def write_report(
     text = report.report_html(
         opened,
         analyses=analyses,
+        charts=kept_charts(opened[0]) if analyses else {},
         shares=kept_shares(opened[0]) if analyses else {},
         best=kept_advice(opened[0]) if analyses else "",
         accepted=accepted,

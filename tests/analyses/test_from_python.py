@@ -82,6 +82,7 @@ def test_frames_have_a_row_for_each_thing_asked_of() -> None:
         own.after.sigma_by_rates,
     ]
     assert [*halved.frames] == ["tolerances", "normal backlash [µm]", "lost motion [′]"]
+    assert len(halved.figure().axes) == 2
     assert halved.frames["tolerances"]["after"].tolist() == ["normal -10 … 10 µm"]
     effects = analyses.effects("spur_pair", base=8).frame()
     assert len(effects) == 2 * 7

@@ -25,9 +25,10 @@ from tol3d.analyses.stated_changes import changed as changed_response
 from tol3d.analyses.stated_changes import factor_of
 from tol3d.analyses.subject import keep, sections_of
 from tol3d.analyses.what_to_change import Changes, ChangesQuestion, changes_of, contributions_of
-from tol3d.analyses.what_to_change_picture import changes_of_one, draw_changes
+from tol3d.analyses.what_to_change_charts import changes_charts, changes_of_one
 from tol3d.analyses.what_to_change_table import changes_lines, changes_report, contributions_table
 from tol3d.distributions.normal import Normal
+from tol3d.report.chart_figure import save_charts
 from tol3d.report.page import page
 from tol3d.report.sheet import as_text
 from tol3d.scene import Scene
@@ -513,7 +514,7 @@ def test_a_picture_shows_every_change(changes: Changes, tmp_path: Path) -> None:
     words = [each for each, _, _ in changes_of_one(own)]
     assert words[0] == "as it is"
     assert len(words) == 1 + len(own.proposals)
-    draw_changes("pair", changes, tmp_path / "changes.png")
+    save_charts(changes_charts("pair", changes), tmp_path / "changes.png")
     assert (tmp_path / "changes.png").stat().st_size > 10_000
 
 

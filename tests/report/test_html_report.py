@@ -202,7 +202,7 @@ def test_a_scene_of_hostile_names_is_shown_with_them(tmp_path: Path) -> None:
 
 
 def test_what_a_run_keeps_is_read_and_shown_by_code_that_is_there() -> None:
-    assert all(is_named(path) for own in KEPT.values() for path in (own.section, own.report))
+    assert all(is_named(path) for own in KEPT.values() for path in (own.section, own.report, own.charts))
     assert len({own.title for own in KEPT.values()}) == len(KEPT)
 
 
@@ -213,6 +213,7 @@ def test_what_a_run_keeps_of_analyses_is_shown(spur: Run, tmp_path: Path) -> Non
     subject.keep("effects", found)
     page = _Read(write_report(spur, tmp_path / "report.html", in_3d=False).read_text())
     assert {"methods side by side", "effects"} <= set(page.inside("h2"))
+    assert "lost motion by methods" in page.inside("title")
     own = found.measures["lost motion"].contributors["centre distance"]
     assert own.total is not None
     assert f"centre distance, lost motion: {100 * own.total.share:.1f} %" in page.inside("title")

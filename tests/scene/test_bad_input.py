@@ -360,7 +360,7 @@ CHANGES = {
     ),
     "half a surrogate pair": (
         ("scene: spur pair at the drive end", 'scene: "\\ud800"'),
-        "scene: expected Unicode text, got half of a surrogate pair",
+        "not YAML: found invalid Unicode character escape code",
     ),
     "escape beyond Unicode": (
         ("scene: spur pair at the drive end", 'scene: "\\UFFFFFFFF"'),

@@ -6,7 +6,7 @@ A function asks its question of a scene or a run, and keeps the answer in the ru
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Generic, Literal, TypeVar
@@ -20,7 +20,7 @@ from tol3d.analyses.before_after import what_if as found_before_after
 from tol3d.analyses.changes_of_run import not_ok
 from tol3d.analyses.costs import Costs, costs_from
 from tol3d.analyses.effects_table import whole_table as effects_table
-from tol3d.analyses.kept_pages import page_of
+from tol3d.analyses.kept_pages import charts_of, page_of
 from tol3d.analyses.methods_section import Methods
 from tol3d.analyses.methods_table import intervals_table
 from tol3d.analyses.rare_events import Method, RareEvent, limits_left
@@ -41,6 +41,7 @@ from tol3d.analyses.what_to_change import AIM, Changes, ChangesQuestion, changes
 from tol3d.analyses.what_to_change_table import contributions_table
 from tol3d.errors import InputError
 from tol3d.import_path import named
+from tol3d.report.chart import Charts
 from tol3d.report.page import Page, Table
 from tol3d.report.printed import Picture, Report, stacked
 from tol3d.runs.run import Run
@@ -52,6 +53,8 @@ from tol3d.study.overrides import AS_WRITTEN, Overrides
 from tol3d.system.faults import faults_of
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from tol3d.runs.frame import DataFrame
 
 Found = TypeVar("Found", bound=Section)
@@ -72,6 +75,7 @@ class Answer(Report, Generic[Found]):
     Args:
         found: its numbers as an object, in the units of the measures.
         numbers: makes the tables of its frame, by measure, or "" for one table of all.
+        charts: makes its charts.
         kept: file in the run; None of a scene.
         warnings: remarks for the user.
         whole: True if the tables of the frame are not printed, and written by --csv in place of what is.
@@ -79,6 +83,7 @@ class Answer(Report, Generic[Found]):
 
     found: Found
     numbers: Callable[[], Mapping[str, Table]]
+    charts: Callable[[], Charts]
     kept: Path | None = None
     warnings: tuple[str, ...] = ()
     whole: bool = False
@@ -94,6 +99,11 @@ class Answer(Report, Generic[Found]):
             MissingPackageError: pandas is not installed.
         """
         return stacked(self.numbers())
+
+    def figure(self) -> "Figure":
+        """Its charts as a figure of matplotlib, as its command draws them by --picture."""
+        figure: Figure = named("tol3d.report.chart_figure:figure_of")(self.charts())
+        return figure
 
 
 @dataclass(frozen=True, repr=False)
@@ -161,10 +171,10 @@ def _of(asked: Asked | Subject, *, trust_parts: bool, run_builders: bool) -> Ite
 
 def _kept(
     own: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
-) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Path | None]:
-    """What all answers have: page, findings, what makes the tables of the frame, the run's file."""
+) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
+    """What all answers have: page, findings, what makes the tables of the frame and the charts, the run's file."""
     page = page_of(name, found, own.name, lambda: own.simulation.system.contributors)
-    return page, found, lambda: numbers(page), own.keep(name, found)
+    return page, found, lambda: numbers(page), partial(charts_of, name, found, own.name), own.keep(name, found)
 
 
 def _first_table(page: Page) -> Mapping[str, Table]:

@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from tol3d.analyses.subject import KEPT, sections_of
 from tol3d.import_path import named
+from tol3d.report.chart import Charts
 from tol3d.report.page import Page
 from tol3d.runs.run import Run
 from tol3d.runs.summary.values import Section
@@ -26,6 +27,15 @@ def kept_pages(run: Run) -> Mapping[str, Page]:
         for name, own in KEPT.items()
         if name in found
     }
+
+
+def kept_charts(run: Run) -> Mapping[str, Charts]:
+    """Charts of the sections that a run keeps, by their titles.
+
+    Raises:
+        RunError: one was changed since it was made.
+    """
+    return {KEPT[name].title: charts_of(name, own, run.found.scene) for name, own in sections_of(run).items()}
 
 
 def kept_advice(run: Run) -> str:
@@ -66,10 +76,16 @@ def page_of(name: str, found: Section, scene: str, contributors: Callable[[], Se
         contributors: of the scene, made where a page asks for them.
     """
     report: Any = named(KEPT[name].report)
-    page: Page = report(found, contributors()) if name == "methods" else report(*with_scene(scene, found))
+    page: Page = report(found, contributors()) if name == "methods" else report(*_with_scene(scene, found))
     return page
 
 
-def with_scene(scene: str, found: Section) -> tuple[Any, ...]:
+def charts_of(name: str, found: Section, scene: str) -> Charts:
+    """The charts of an analysis; see `page_of`."""
+    charts: Charts = named(KEPT[name].charts)(*_with_scene(scene, found))
+    return charts
+
+
+def _with_scene(scene: str, found: Section) -> tuple[Any, ...]:
     """A result, behind the name of its scene where it has none."""
     return (found,) if "scene" in type(found).model_fields else (scene, found)

@@ -29,19 +29,19 @@ FOLDER: Final = "analyses"
 
 @dataclass(frozen=True)
 class Kept:
-    """An analysis whose result a run keeps; what makes, shows and draws it as import paths.
+    """An analysis whose result a run keeps; what makes and shows it as import paths.
 
     Args:
         title: of it in reports.
         section: class of the result.
         report: makes its page. Where a result has no name of its scene, that is the first argument.
-        picture: draws it to a path, the last argument.
+        charts: makes its charts.
     """
 
     title: str
     section: str
     report: str
-    picture: str
+    charts: str
 
 
 KEPT: Final[Mapping[str, Kept]] = {
@@ -49,37 +49,37 @@ KEPT: Final[Mapping[str, Kept]] = {
         "what to change",
         "tol3d.analyses.what_to_change:Changes",
         "tol3d.analyses.what_to_change_table:changes_report",
-        "tol3d.analyses.what_to_change_picture:draw_changes",
+        "tol3d.analyses.what_to_change_charts:changes_charts",
     ),
     "methods": Kept(
         "methods side by side",
         "tol3d.analyses.methods_section:Methods",
         "tol3d.analyses.methods_table:methods_report",
-        "tol3d.analyses.methods_picture:draw_methods",
+        "tol3d.analyses.methods_charts:methods_charts",
     ),
     "effects": Kept(
         "effects",
         "tol3d.analyses.tolerance_effects:Effects",
         "tol3d.analyses.effects_table:effects_report",
-        "tol3d.analyses.effects_picture:draw_effects",
+        "tol3d.analyses.effects_charts:effects_charts",
     ),
     "rare": Kept(
         "rare events",
         "tol3d.analyses.rare_section:RareEvents",
         "tol3d.analyses.rare_table:rare_report",
-        "tol3d.analyses.rare_picture:draw_rare",
+        "tol3d.analyses.rare_charts:rare_charts",
     ),
     "what-if": Kept(
         "what if",
         "tol3d.analyses.before_after:WhatIf",
         "tol3d.analyses.what_if_table:what_if_report",
-        "tol3d.analyses.what_if_picture:draw_what_if",
+        "tol3d.analyses.what_if_charts:what_if_charts",
     ),
     "allocation": Kept(
         "allocation",
         "tol3d.analyses.allocation_section:Allocation",
         "tol3d.analyses.allocate_table:allocation_report",
-        "tol3d.analyses.allocate_picture:draw_allocation",
+        "tol3d.analyses.allocate_charts:allocation_charts",
     ),
 }
 """Analyses by the names of their files, in the order of reports. Each is loaded where a run keeps it."""

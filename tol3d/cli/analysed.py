@@ -60,9 +60,6 @@ def answer(
         ask: the function of tol3d.analyses, with a progress callback.
         csv, picture: the files that are asked for.
     """
-    from tol3d.analyses.kept_pages import with_scene
-    from tol3d.analyses.subject import KEPT
-
     with asked_of(asked, activity) as status:
         found = ask(status.update)
         numbers = "" if csv is None else found.csv()
@@ -71,7 +68,8 @@ def answer(
         tell(f"kept in the run: {found.kept}")
     if csv is not None:
         write_numbers(csv, numbers)
-    draw_picture(picture, KEPT[name].picture, *with_scene(asked.name, found.found))
+    if picture is not None:
+        draw_picture(picture, "tol3d.report.chart_figure:save_charts", found.charts())
     return found
 
 

@@ -273,3 +273,20 @@ class Chart:
                 if label and label not in seen:
                     seen.add(label)
                     yield label, own
+
+
+@dataclass(frozen=True)
+class Charts:
+    """Several charts of one thing.
+
+    Args:
+        rows: below and beside each other, where there is room.
+        head: words above all.
+        width: of a figure of them [inch].
+        ratios: of the charts' widths in a full row of it.
+    """
+
+    rows: Sequence[Sequence[Chart]]
+    head: str = ""
+    width: float = 9.0
+    ratios: Sequence[float] = ()

@@ -1,6 +1,7 @@
 """Figures of charts by matplotlib: below and beside each other with titles, words and legends; and the matrix."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final
 
 from matplotlib.artist import Artist
@@ -16,6 +17,7 @@ from tol3d.report.canvas import (
     legend_below,
     new_figure,
     plain_axes,
+    save_figure,
     say_instead,
     title_axes,
 )
@@ -23,6 +25,7 @@ from tol3d.report.chart import (
     Axis,
     Cells,
     Chart,
+    Charts,
     Names,
 )
 from tol3d.report.drawn_chart import (
@@ -177,6 +180,23 @@ def charts_figure(
             frameon=False,
         )
     return figure
+
+
+def figure_of(charts: Charts) -> Figure:
+    """Several charts as a figure, not yet written; a matrix stands alone."""
+    first = charts.rows[0][0]
+    if isinstance(first.x, Names):
+        return matrix_figure(first)
+    return charts_figure(charts.rows, charts.head, charts.width, charts.ratios)
+
+
+def save_charts(charts: Charts, path: Path) -> None:
+    """Draw several charts: `path` ends in .png, .svg or .pdf.
+
+    Raises:
+        InputError: the picture cannot be written there.
+    """
+    save_figure(figure_of(charts), path)
 
 
 # the matrix ----------------------------------------------------------------------------------------

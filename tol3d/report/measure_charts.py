@@ -37,6 +37,7 @@ SIGMAS_SHOWN: Final = 3.6  # of the mean; a little more than the +-3 sigma that 
 LIMIT_REACH: Final = 0.6  # of the shown span; a limit further off is named at the edge, not drawn to scale
 NORMAL_POINTS: Final = 121
 ROOM: Final = 1.05  # height of an axis over that of its highest bar
+MOST_ROOM: Final = 1.5  # the same where a closed form is higher; one of a far smaller sigma is cut
 NO_VALUES: Final = "no trial gave a value"
 METHOD_WORDS: Final = {"analytic": "analytic", "geometric": "3D simulation", "closed form": "closed form"}
 TURN: Final = 360.0  # deg; from two turns on the axis counts turns
@@ -80,6 +81,7 @@ def histogram(name: str, measure: MeasureSummary, roles: Mapping[str, Role] | No
         series.append(Line(x, normal, "closed-form", METHOD_WORDS["closed form"], "dashed"))
     series += [Outline(own.edges, own.density, roles[heading]) for heading, own in published.items()]
     peak = max(float(own.density.max()) for own in (*bars.values(), *published.values()))
+    peak = max([peak, *(min(float(own.y.max()), MOST_ROOM * peak) for own in series if isinstance(own, Line))])
     ends, limits = [*_ends(measure)], [*limit_marks(measure)]
     values = Panel(Axis(f"% of trials per {UNIT_SIGNS[unit]}", 0.0, ROOM * peak or 1.0), series, [*ends, *limits])
     columns = ranged(measure)

@@ -14,6 +14,7 @@ import numpy as np
 
 from tol3d.errors import InputError, RunError, SceneError
 from tol3d.report.bars import Bars, bars_of
+from tol3d.report.chart import Charts
 from tol3d.report.column import shares_of, unexplained_words
 from tol3d.report.compare import difference_of, measures_of
 from tol3d.report.convergence import convergence_of
@@ -74,6 +75,7 @@ def report_html(
     *,
     accepted: Accepted | None = None,
     analyses: Mapping[str, Page] | None = None,
+    charts: Mapping[str, Charts] | None = None,
     shares: Mapping[str, Shares] | None = None,
     best: str = "",
     trials: Sequence[int] = (),
@@ -87,7 +89,8 @@ def report_html(
         runs: finished ones.
         accepted: what is asked of a measure; default: what the study asks.
         analyses: sections of the first run by their titles.
-        shares: of contributors [%] by measure, of sections that have them.
+        charts: of sections that have them.
+        shares: of contributors [%] by measure, of sections that show these instead.
         best: change to the first run's scene, in a line; "" for none.
         trials: of the first run, that the 3D view has besides its nominal and its worst build.
         in_3d: True to show the first run's parts in 3D.
@@ -102,10 +105,9 @@ def report_html(
     if first is None:
         raise InputError("nothing to report: give the folder of at least one run")
     body = [tag("h1", first.scene), *_head(runs[0]), *(tag("p", own, class_="warning") for own in missing)]
+    kept = _kept(analyses or {}, charts or {}, shares or {})
     body += (
-        [*_compared(runs)]
-        if len(runs) > 1
-        else [*_single(runs[0], accepted, best, _kept(analyses or {}, shares or {}), trials if in_3d else None)]
+        [*_compared(runs)] if len(runs) > 1 else [*_single(runs[0], accepted, best, kept, trials if in_3d else None)]
     )
     body.append(tag("footer", tag("p", made, class_="note", id="made")))
     return _document(first.scene, body)
@@ -156,10 +158,13 @@ def _single(
         yield tag("section", tag("h2", name), inside, id=anchors[name])
 
 
-def _kept(analyses: Mapping[str, Page], shares: Mapping[str, Shares]) -> Mapping[str, Markup]:
-    """Sections of analyses, with the matrix of contributors and measures where they have one."""
-    matrices = {title: [_matrix(own)] for title, own in shares.items() if len(own) >= FEWEST}
-    return {title: together(page_blocks(page.blocks), *matrices.get(title, [])) for title, page in analyses.items()}
+def _kept(
+    analyses: Mapping[str, Page], charts: Mapping[str, Charts], shares: Mapping[str, Shares]
+) -> Mapping[str, Markup]:
+    """Sections of analyses, with their charts, or the matrix of contributors and measures where they have one."""
+    drawn = {title: [figure(own) for row in each.rows for own in row] for title, each in charts.items()}
+    drawn |= {title: [_matrix(own)] if len(own) >= FEWEST else [] for title, own in shares.items()}
+    return {title: together(page_blocks(page.blocks), *drawn.get(title, [])) for title, page in analyses.items()}
 
 
 def _matrix(shares: Shares) -> Markup:

@@ -1,16 +1,13 @@
 """Methods side by side as charts: the intervals by method over each measure's limits."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from tol3d.analyses.methods_section import MeasureMethods, Methods
 from tol3d.analyses.methods_table import intervals_of
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Chart, Mark, Names, Panel, Range, Role
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Chart, Charts, Mark, Names, Panel, Range, Role
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text, short_text
 
@@ -29,16 +26,12 @@ ROLES: Final[Mapping[str, Role]] = {
 }
 
 
-def draw_methods(found: Methods, path: Path) -> None:
-    """Draw the measures that use most of their limits, MOST at most.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
+def methods_charts(found: Methods) -> Charts:
+    """The measures that use most of their limits, MOST at most."""
     most = sorted(found.measures, key=lambda name: -_used(found.measures[name]))[:MOST]
     charts = [methods_chart(name, own) for name, own in found.measures.items() if name in most]
     rows = [charts[k : k + COLUMNS] for k in range(0, len(charts), COLUMNS)]
-    save_figure(charts_figure(rows, found.scene, WIDTH * len(rows[0])), path)
+    return Charts(rows, found.scene, WIDTH * len(rows[0]))
 
 
 def methods_chart(name: str, own: MeasureMethods) -> Chart:

@@ -1,16 +1,12 @@
 """Charts of rare events: probability beyond each limit by each method, and contributors to the design points."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Final
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from tol3d.analyses.rare_section import LimitLeft, RareEvents
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Axis, Chart, Lengths, Names, Panel, Points, Range, Role, Series, Sign
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Axis, Chart, Charts, Lengths, Names, Panel, Points, Range, Role, Series, Sign
 from tol3d.report.number import ppm_text
 
 WIDTH: Final = 12.0  # inch
@@ -25,21 +21,12 @@ MARKS: Final[Sequence[tuple[str, str, Sign, Role]]] = (
 )
 
 
-def draw_rare(found: RareEvents, path: Path) -> None:
-    """Draw it: `path` ends in .png, .svg or .pdf.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
-    save_figure(rare_figure(found), path)
-
-
-def rare_figure(found: RareEvents) -> Figure:
-    """The picture, not yet written: the limits that are left most, and the design points of the first of them."""
+def rare_charts(found: RareEvents) -> Charts:
+    """The limits that are left most, and the design points of the first of them."""
     ranked = sorted(found.limits, key=lambda own: -(own.ppm or 0.0))[:MOST_LIMITS]
     points = [design_point_chart(own) for own in ranked if own.design_point is not None][:MOST_POINTS]
     rows = [[limits_chart(ranked)], *([*points[k : k + 2]] for k in range(0, len(points), 2))]
-    return charts_figure(rows, f"{found.scene} · fraction out of limits", WIDTH)
+    return Charts(rows, f"{found.scene} · fraction out of limits", WIDTH)
 
 
 def limits_chart(limits: Sequence[LimitLeft]) -> Chart:

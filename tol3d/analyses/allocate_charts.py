@@ -1,27 +1,20 @@
 """Charts of allocated tolerances: their factors, and cost over ppm."""
 
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from tol3d.analyses.allocation_section import Allocation
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Axis, Chart, Lengths, Line, Mark, Names, Panel, Points, Role, Series
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Axis, Chart, Charts, Lengths, Line, Mark, Names, Panel, Points, Role, Series
 from tol3d.report.measure_charts import spanned
 
 WIDTH: Final = 12.0  # inch
 
 
-def draw_allocation(name: str, found: Allocation, path: Path) -> None:
-    """Draw it: `path` ends in .png, .svg or .pdf.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
+def allocation_charts(name: str, found: Allocation) -> Charts:
+    """Factors, and what they cost."""
     head = f"{name} · tolerances at least cost, {found.cost:.4g}"
-    save_figure(charts_figure([[factors_chart(found), costs_chart(found)]], head, WIDTH, (1.3, 1.0)), path)
+    return Charts([[factors_chart(found), costs_chart(found)]], head, WIDTH, (1.3, 1.0))
 
 
 def factors_chart(found: Allocation) -> Chart:

@@ -1,16 +1,13 @@
 """Charts of what other tolerances do: each measure before and after, with its limits."""
 
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from tol3d.analyses.before_after import MeasureWhatIf, WhatIf
 from tol3d.analyses.what_if_table import bounded_text
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Axis, Chart, Mark, Outline, Panel, Role
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Axis, Chart, Charts, Mark, Outline, Panel, Role
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text
 
@@ -18,16 +15,12 @@ MOST: Final = 8
 """Measures that are drawn."""
 
 
-def draw_what_if(name: str, found: WhatIf, path: Path) -> None:
-    """Draw the distributions before and after: `path` ends in .png, .svg or .pdf.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
+def what_if_charts(name: str, found: WhatIf) -> Charts:
+    """The distributions before and after."""
     words = "; ".join(f"{own.contributor}: {own.before} → {own.after}" for own in found.changes)
     shown = list(found.measures.items())[:MOST]
     rows = [[what_if_chart(measure, own, found.trials)] for measure, own in shown]
-    save_figure(charts_figure(rows, f"{name} · what if {words}"), path)
+    return Charts(rows, f"{name} · what if {words}")
 
 
 def what_if_chart(name: str, own: MeasureWhatIf, trials: int) -> Chart:

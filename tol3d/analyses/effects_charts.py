@@ -1,11 +1,7 @@
 """The matrix of contributors and measures as a chart: shares of a measure's total change."""
 
-from pathlib import Path
-
 from tol3d.analyses.tolerance_effects import Effects
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Chart
-from tol3d.report.chart_figure import matrix_figure
+from tol3d.report.chart import Chart, Charts
 from tol3d.report.share_charts import matrix
 
 
@@ -23,10 +19,6 @@ def effects_chart(found: Effects) -> Chart:
     return matrix(percents, title, "in % of the sum of the changes by all contributors")
 
 
-def draw_effects(found: Effects, path: Path) -> None:
-    """Draw changes over the whole tolerance, as shares of their sum for each measure.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
-    save_figure(matrix_figure(effects_chart(found)), path)
+def effects_charts(found: Effects) -> Charts:
+    """The matrix alone."""
+    return Charts([[effects_chart(found)]])

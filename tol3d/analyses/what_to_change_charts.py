@@ -1,15 +1,12 @@
 """Charts of what to change: each measure in its limits as it is, and after each change."""
 
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from tol3d.analyses.what_to_change import Changes, MeasureChanges, Spread
 from tol3d.analyses.what_to_change_table import proposal_text
-from tol3d.report.canvas import save_figure
-from tol3d.report.chart import Axis, Chart, Mark, Names, Panel, Range, Role
-from tol3d.report.chart_figure import charts_figure
+from tol3d.report.chart import Axis, Chart, Charts, Mark, Names, Panel, Range, Role
 from tol3d.report.measure_charts import spanned
 from tol3d.report.number import limit_text, share_text
 
@@ -19,15 +16,11 @@ MOST: Final = 6
 NOTHING: Final = "no limit is left more often than is accepted"
 
 
-def draw_changes(name: str, found: Changes, path: Path) -> None:
-    """Draw mean ± 3 sigma of each change: `path` ends in .png, .svg or .pdf.
-
-    Raises:
-        InputError: the picture cannot be written there.
-    """
+def changes_charts(name: str, found: Changes) -> Charts:
+    """Mean ± 3 sigma of each change."""
     charts = [changes_chart(measure, own) for measure, own in list(found.measures.items())[:MOST]]
     rows = [[own] for own in charts] or [[Chart(NOTHING, Axis("", 0.0, 1.0), (), instead=NOTHING)]]
-    save_figure(charts_figure(rows, f"{name} · what to change", WIDTH), path)
+    return Charts(rows, f"{name} · what to change", WIDTH)
 
 
 def changes_chart(name: str, own: MeasureChanges) -> Chart:
