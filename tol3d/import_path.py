@@ -11,6 +11,10 @@ from typing import Any, Final
 DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILINE)
 
 
+REGISTRY: Final = "tol3d.kinds"
+"""Where mechanisms are registered: the one room above that those below load by its name, so that they import none."""
+
+
 def named(path: str) -> Any:
     """Object that an import path names.
 

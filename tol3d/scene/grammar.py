@@ -13,6 +13,7 @@ from pydantic import Field, ValidationError, create_model
 from tol3d.distributions import DistributionSpec
 from tol3d.distributions.stated import SHIPPED, Laws, word_of
 from tol3d.errors import InputError
+from tol3d.import_path import REGISTRY
 from tol3d.scene.entry import Entry, kind_of
 from tol3d.scene.implausible import warned
 from tol3d.scene.measure import MeasureEntry
@@ -126,10 +127,6 @@ class Kinds(Protocol):
 
     def saying(self, words: Set[str]) -> "Grammar":
         """Grammar of the vocabularies that have some words; of all of them if that is not known."""
-
-
-REGISTRY: Final = "tol3d.kinds"
-"""Where mechanisms are registered: the one room above that those below load by its name, so that they import none."""
 
 
 def registered_kinds() -> Kinds:

@@ -9,12 +9,12 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field, create_model
 
+from tol3d.import_path import REGISTRY
 from tol3d.runs.summary.agreement import WitnessSummary
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.published import in_summary
 from tol3d.runs.summary.run import RunSummary, StudySummary
 from tol3d.runs.summary.values import LEFT_OUT, MOST_ENTRIES, Label, Section
-from tol3d.scene.grammar import REGISTRY
 from tol3d.scene.published import PublishedFigures
 from tol3d.scene.published.whole import PublishedWhole
 
