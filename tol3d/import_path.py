@@ -12,7 +12,7 @@ DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILIN
 
 
 REGISTRY: Final = "tol3d.kinds"
-"""Where mechanisms are registered: the one room above that those below load by its name, so that they import none."""
+"""The registry of mechanisms: the one room above that those below load by its name, so that they import none."""
 
 
 def named(path: str) -> Any:

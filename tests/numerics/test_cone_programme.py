@@ -29,7 +29,7 @@ def programmes(trials: int, spread: float) -> ConeProgramme:
 
 
 def unbalanced(given: ConeProgramme, found: Solved, sense: float) -> Array:
-    """What forces leave of the objective (trials, unknowns): in the last one they and the widening add up to PRICE."""
+    """Objective less forces (trials, unknowns); in the last unknown these add up to PRICE with the widening."""
     y = found.y
     moved = given.off + np.einsum("tckn,tn->tck", given.planes, y)
     reach = given.radii + y[:, -1:]

@@ -65,7 +65,7 @@ def test_python_that_calls_a_part_runs_it_as_python(kind: Callable[..., Any]) ->
 def test_numba_alone_compiles_parts_too(
     kind: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Where numba's own methods, which compiling parts changes, are others one day."""
+    """For the day on which numba's own methods, which compiling parts changes, are others."""
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "cache"))
     monkeypatch.setenv(PLAINLY, "1")
     own, _, made = weighed(kind)

@@ -39,6 +39,15 @@ def gathered(features: Array, targets: Array, cuts: list[int]) -> tuple[Independ
     return tuple(reduce(IndependentSums.merge, own) for own in zip(*blocks, strict=True))
 
 
+def test_a_part_of_rounding_errors_has_no_effect() -> None:
+    random = np.random.default_rng(9)
+    features, targets = seen(random, 40)
+    features[10] = 1e-16 * random.normal(size=40)
+    fit = LinearFit.of(gathered(features, targets, [])[0], COLUMNS)
+    assert fit is not None
+    assert fit.effects[5] == 0.0
+
+
 def test_each_cluster_has_the_least_squares_fit_of_its_features_alone() -> None:
     features, targets = seen(np.random.default_rng(1), 400)
     sums = gathered(features, targets, [0, 1, 130, 131])[0]

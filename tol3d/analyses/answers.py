@@ -172,7 +172,7 @@ def _of(asked: Asked | Subject, *, trust_parts: bool, run_builders: bool) -> Ite
 def _kept(
     own: Subject, name: str, found: Found, numbers: Callable[[Page], Mapping[str, Table]]
 ) -> tuple[Page, Found, Callable[[], Mapping[str, Table]], Callable[[], Charts], Path | None]:
-    """What all answers have: page, findings, what makes the tables of the frame and the charts, the run's file."""
+    """Parts of all answers: page, findings, what makes the tables of the frame and the charts, the run's file."""
     page = page_of(name, found, own.name, lambda: own.simulation.system.contributors)
     return page, found, lambda: numbers(page), partial(charts_of, name, found, own.name), own.keep(name, found)
 

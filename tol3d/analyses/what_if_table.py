@@ -108,7 +108,7 @@ def _unseen(name: str, own: MeasureWhatIf) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class BeforeAfter:
-    """What is told of a measure before and after."""
+    """A number of a measure before and after."""
 
     before: Annotated[str, Shows("before")]
     after: Annotated[str, Shows("after")]

@@ -110,7 +110,7 @@ def _beside(own: Beside) -> str:
 
 @dataclass(frozen=True)
 class TakenRow:
-    """How far something takes a mean off nominal."""
+    """Distance by which something takes a mean off nominal."""
 
     by_mean: Annotated[str, Shows("by its mean")]
     by_spread: Annotated[str, Shows("by its spread")]
@@ -239,7 +239,7 @@ def _told(after: Spread) -> str:
 
 @dataclass(frozen=True)
 class ContributionRow:
-    """What a contributor gives to a measure, in its unit."""
+    """Contribution to a measure, in its unit."""
 
     contributor: Annotated[str, Shows("contributor", "words")]
     slope_unit: Annotated[str, Shows("of the slope", "words")]

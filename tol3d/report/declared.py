@@ -13,7 +13,7 @@ from tol3d.runs.summary.shows import Shows, columns_of, shown_by
 LEFT: Final = frozenset(("words", "unit sign"))
 """Forms of cells that stand left and wrap."""
 PER: Final = {"": 1.0, "mm": 1.0, "µm": 1e3, "°": 180 / math.pi, "deg": 180 / math.pi, "%": 100.0, "10⁻⁶/K": 1e6}
-"""How much of a unit is 1 mm, 1 rad or the whole."""
+"""Numbers of a unit that are 1 mm, 1 rad or the whole."""
 
 
 def declared_table(corner: str, rows: Iterable[tuple[str | Row, Any]], unit: str = "") -> Table:

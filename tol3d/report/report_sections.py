@@ -83,7 +83,7 @@ class ReasonRow:
 
 @dataclass(frozen=True)
 class MadeRow:
-    """What a run was made from."""
+    """Sources of a run."""
 
     text: Annotated[str, Shows("", "words")]
 

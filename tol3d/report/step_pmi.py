@@ -66,7 +66,7 @@ class DimensionRow(RowOf[Dimension]):
 
 
 class RemarkRow(RowOf[Remark]):
-    """What was not read, or is incomplete."""
+    """Parts of a file that were not read, or are incomplete."""
 
     what = Computed(Shows("what", "words"), lambda own: shown(own.of.what))
     why = Computed(Shows("why", "words"), lambda own: shown(own.of.why))

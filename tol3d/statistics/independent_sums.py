@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
 from tol3d.statistics.clusters import Clusters, Pattern, Picked
-from tol3d.statistics.variance_shares import CONSTANT_RTOL, RANK_RTOL
+from tol3d.statistics.variance_shares import CONSTANT_RTOL, RANK_RTOL, feature_sigmas
 
 
 class Products(Protocol):
@@ -128,8 +128,7 @@ class IndependentSums:
     def fits(self) -> Iterator["ClusterFit"]:
         """The least-squares fit of the target on each cluster alone, those of a pattern together."""
         sigma = np.sqrt(np.maximum(self._squares, 0.0) / self.count)
-        least = CONSTANT_RTOL * np.maximum(np.abs(self.means[:-1]), max(sigma, default=0.0))
-        scale = np.where(sigma > least, sigma, 0.0)
+        scale = feature_sigmas(sigma, self.means[:-1])
         for pattern in self.clusters.patterns:
             yield self._fit(pattern, scale[pattern.columns])
 

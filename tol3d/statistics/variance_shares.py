@@ -204,14 +204,18 @@ def shares(sums: RegressorSums, groups: Mapping[str, slice], together: Sequence[
 
 
 def column_sigmas(sums: RegressorSums) -> Array:
-    """Standard deviation of each column, exactly 0 for one that holds rounding errors only.
-
-    Of features that is one that is constant, or far smaller than the others: a part that is none by theory.
-    """
+    """Standard deviation of each column, exactly 0 for one that holds rounding errors only; see feature_sigmas."""
     sigma: Array = np.sqrt(np.diagonal(sums.comoments) / max(sums.count, 1))
-    least = CONSTANT_RTOL * np.abs(sums.means)
-    least[:-1] = np.maximum(least[:-1], CONSTANT_RTOL * max(sigma[:-1], default=0.0))
-    return np.where(sigma > least, sigma, 0.0)
+    target = sigma[-1:] * (sigma[-1:] > CONSTANT_RTOL * np.abs(sums.means[-1:]))
+    return np.concatenate([feature_sigmas(sigma[:-1], sums.means[:-1]), target])
+
+
+def feature_sigmas(sigma: Array, means: Array) -> Array:
+    """Standard deviations of features, exactly 0 for one that holds rounding errors only.
+
+    That is one that is constant, or far smaller than the others: a part that is none by theory.
+    """
+    return np.where(sigma > CONSTANT_RTOL * np.maximum(np.abs(means), max(sigma, default=0.0)), sigma, 0.0)
 
 
 def _explained(sums: RegressorSums, sigma: Array, used: list[int]) -> Array:

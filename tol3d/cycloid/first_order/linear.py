@@ -157,7 +157,7 @@ class LinearStage(CycloidStage):
         return self._lobes(self._parameters(phis + self.throws[disc]))
 
     def nominal_pins(self, disc: int, phis: Array) -> "NominalPins":
-        """Where the pins of a disc stand nominally, at phis (rows,)."""
+        """Nominal places of the pins about a disc, at phis (rows,)."""
         profile, azimuths = self.profile, self._azimuths
         u = self._parameters(phis + self.throws[disc])
         normals = self._normals(u, azimuths)

@@ -194,7 +194,7 @@ class BevelColumn(GearColumn):
 
 
 class PartColumn(RowOf[Any]):
-    """What gears have as parts."""
+    """Numbers that gears have as parts."""
 
     expansion = Computed(Shows("expansion", "g", "10⁻⁶/K"), lambda own: own.of.expansion or None)
 

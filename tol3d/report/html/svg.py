@@ -88,7 +88,7 @@ def _stroke(own: Outline | Line) -> str:
 
 
 def _table(chart: Chart) -> Markup | None:
-    """What a chart shows, for those who hear it."""
+    """The words of a chart, for those who hear it."""
     if not chart.table:
         return None
     rows = (tag("tr", tag("th", word, scope="row"), tag("td", value)) for word, value in chart.table)
