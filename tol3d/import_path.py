@@ -13,6 +13,8 @@ DEFINED: Final = re.compile(r"^(?:def|class) (\w+)|^([A-Z_]+)\b.*=", re.MULTILIN
 
 REGISTRY: Final = "tol3d.kinds"
 """The registry of mechanisms: the one room above that those below load by its name, so that they import none."""
+GROUP: Final = "tol3d.mechanisms"
+"""Entry points by which packages offer mechanisms."""
 
 
 def named(path: str) -> Any:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from tol3d.errors import InputError
 from tol3d.files import Files
-from tol3d.import_path import named
+from tol3d.import_path import GROUP, named
 from tol3d.scene import Grammar, Kinds, Scene, Vocabulary, read_scene
 from tol3d.scene.entry import kind_of
 from tol3d.scene.schema import SECTIONS
@@ -37,8 +37,6 @@ SHIPPED: Final = (
     "tol3d.planetary.mechanism:PLANETARY",
     "tol3d.cycloid.mechanism:CYCLOID",
 )
-
-GROUP: Final = "tol3d.mechanisms"
 
 DECLARED: Final = re.compile(r'^    kind: Literal\["(\w+)"\]', re.MULTILINE)
 
@@ -68,6 +66,11 @@ def all_kinds() -> Grammar:
 def all_mechanisms() -> tuple[Mechanism, ...]:
     """Every mechanism: shipped, installed and registered."""
     return (*_brought(), *_registered.values())
+
+
+def other_mechanisms() -> tuple[Mechanism, ...]:
+    """Mechanisms that packages offer or that were registered; their kinds may still clash with those of others."""
+    return (*(mechanism for _, mechanism in _installed()), *_registered.values())
 
 
 class _EveryKind:
@@ -187,8 +190,13 @@ def _added(vocabulary: Vocabulary) -> "SummaryKinds":
 def _brought() -> tuple[Mechanism, ...]:
     """Mechanisms that tol3d ships, then those of installed packages."""
     brought = tuple(_mechanism(named(path), path) for path in SHIPPED)
-    for point in _offered():
-        brought = _with_installed(brought, point)
+    for point, offered in _installed():
+        try:
+            Grammar((*brought, offered))
+        except InputError as error:
+            _warn_of(point, error)
+        else:
+            brought = (*brought, offered)
     return brought
 
 
@@ -198,17 +206,22 @@ def _offered() -> tuple[EntryPoint, ...]:
     return tuple(sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)))
 
 
-def _with_installed(brought: tuple[Mechanism, ...], point: EntryPoint) -> tuple[Mechanism, ...]:
-    """Mechanisms with those that an installed package offers, if they can be used."""
-    try:
-        offered = _mechanism(point.load(), point.value)
-        Grammar((*brought, offered))
-    except Exception as error:  # whatever a stranger's module raises: other scenes are none of its business
-        package = "a package" if point.dist is None else f"{point.dist.name} {point.dist.version}"
-        what = f"{package}: its mechanism {point.name} ({point.value}) cannot be used: {error}"
-        warnings.warn(what, MechanismWarning, stacklevel=2)
-        return brought
-    return (*brought, offered)
+@cache
+def _installed() -> tuple[tuple[EntryPoint, Mechanism], ...]:
+    """Mechanisms that installed packages offer, if they can be loaded."""
+    found = list[tuple[EntryPoint, Mechanism]]()
+    for point in _offered():
+        try:
+            found.append((point, _mechanism(point.load(), point.value)))
+        except Exception as error:  # whatever a stranger's module raises: other scenes are none of its business
+            _warn_of(point, error)
+    return tuple(found)
+
+
+def _warn_of(point: EntryPoint, error: Exception) -> None:
+    package = "a package" if point.dist is None else f"{point.dist.name} {point.dist.version}"
+    what = f"{package}: its mechanism {point.name} ({point.value}) cannot be used: {error}"
+    warnings.warn(what, MechanismWarning, stacklevel=3)
 
 
 def _mechanism(found: Any, path: str) -> Mechanism:

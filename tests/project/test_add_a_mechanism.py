@@ -41,6 +41,7 @@ def names(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
     """Names that the page's program has when it has run, in a folder with its two files."""
     folder = tmp_path_factory.mktemp("page")
     (folder / "pin_gauge.py").write_text(fence("python", "PIN_GAUGES = Mechanism("), "utf-8")
+    (folder / "pin_gauge_commands.py").write_text(fence("python", "def pegs("), "utf-8")
     (folder / "pin_gauge.yaml").write_text(fence("yaml", "kind: pin_gauge"), "utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
@@ -210,6 +211,12 @@ def command(names: dict[str, Any]) -> Callable[..., str]:
         return done.stdout
 
     return printed
+
+
+@pytest.mark.slow
+def test_its_own_command_is_one_of_tol3d(command: Callable[..., str]) -> None:
+    assert command("pegs", "pin_gauge.yaml", "--play", "0.25") == "gauge: 29.500 mm\n"
+    assert re.search(r"│ schema .*│ pegs +List the diameters of the pegs that", command("--help"), re.DOTALL)
 
 
 @pytest.mark.slow

@@ -15,82 +15,14 @@ from typing import Annotated, TextIO
 
 import typer
 
-from tol3d.cli import (
-    adjustment,
-    allocate,
-    changes,
-    design,
-    effects,
-    methods,
-    new,
-    pmi,
-    rare,
-    records,
-    showing,
-    step,
-    studies,
-    sweep,
-    what_if,
-)
 from tol3d.cli.arguments import app
 from tol3d.cli.console import BROKEN_PIPE, DONE, FAULT, INTERRUPTED, WRONG_INPUT, err_console, warn, write_plainly
 
-__all__ = [
-    "adjustment",
-    "allocate",
-    "app",
-    "changes",
-    "design",
-    "effects",
-    "main",
-    "methods",
-    "new",
-    "pmi",
-    "rare",
-    "records",
-    "showing",
-    "step",
-    "studies",
-    "sweep",
-    "what_if",
-]
-
-COMMANDS = (
-    studies.run,
-    showing.scenes,
-    new.new,
-    showing.check,
-    step.features,
-    pmi.pmi,
-    showing.workspace,
-    showing.compare,
-    showing.report,
-    adjustment.shim,
-    adjustment.compensate,
-    rare.rare,
-    effects.effects,
-    what_if.what_if,
-    allocate.allocate,
-    changes.changes,
-    methods.methods,
-    sweep.sweep,
-    records.identify,
-    records.rig,
-    records.plan_rig,
-    design.design,
-    showing.export,
-    showing.view,
-    showing.schema,
-)
-"""In the order in which help shows them."""
+__all__ = ["app", "main"]
 
 NO_ROOM_TO_LOAD = "failed to map segment"  # of the dynamic loader, where a library does not fit into memory
 FULL = 0.8  # of an allowed address space; the piece that did not fit would have gone beyond it
 OBJECTS_A_COLLECTION = 200_000  # instead of Python's 700: 0.3 s of a command of 2 s
-
-
-for command in COMMANDS:
-    app.command()(command)
 
 
 def _version(asked: bool) -> None:

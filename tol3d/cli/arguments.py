@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from tol3d.cli.commands import CommandGroup
+
 if TYPE_CHECKING:
     from tol3d.runs.summary.judged import Accepted
 
@@ -19,6 +21,7 @@ SHARE = re.compile(r"\s*(?P<number>\d+\.?\d*|\.\d+)\s*(?P<unit>%|ppm)\s*")
 
 app = typer.Typer(
     name="tol3d",
+    cls=CommandGroup,
     help="Open 3D tolerance simulator for gears and robots: thousands of virtual builds on real geometry, "
     "beside an independent analytic model.",
     no_args_is_help=True,

@@ -9,18 +9,42 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from tol3d.scene.grammar import Grammar, Kinds, Vocabulary
     from tol3d.scene.load import read_scene, scene_from_python
+    from tol3d.scene.move import MoveSpec
+    from tol3d.scene.name import Name
+    from tol3d.scene.part import Length, PartSpec
+    from tol3d.scene.reference import Reference
     from tol3d.scene.schema import Scene
+    from tol3d.scene.tolerance import ToleranceSpec
 
 _HOMES = {
     "Grammar": "tol3d.scene.grammar",
     "Kinds": "tol3d.scene.grammar",
+    "Length": "tol3d.scene.part",
+    "MoveSpec": "tol3d.scene.move",
+    "Name": "tol3d.scene.name",
+    "PartSpec": "tol3d.scene.part",
+    "Reference": "tol3d.scene.reference",
     "Scene": "tol3d.scene.schema",
+    "ToleranceSpec": "tol3d.scene.tolerance",
     "Vocabulary": "tol3d.scene.grammar",
     "read_scene": "tol3d.scene.load",
     "scene_from_python": "tol3d.scene.load",
 }
 
-__all__ = ["Grammar", "Kinds", "Scene", "Vocabulary", "read_scene", "scene_from_python"]
+__all__ = [
+    "Grammar",
+    "Kinds",
+    "Length",
+    "MoveSpec",
+    "Name",
+    "PartSpec",
+    "Reference",
+    "Scene",
+    "ToleranceSpec",
+    "Vocabulary",
+    "read_scene",
+    "scene_from_python",
+]
 
 
 def __getattr__(name: str) -> Any:

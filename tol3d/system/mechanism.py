@@ -25,6 +25,8 @@ class Mechanism(Vocabulary):
         presenter: import path of the module whose PRESENTER shows it, see `tol3d.report.presenter`; "" for none.
         starters: `package:folder` of its starter scenes, YAML files that `tol3d new` writes, see
             `tol3d.system.starter`; "" for none.
+        commands: import paths of functions with typer's annotations, which the command line has under their names, see
+            `tol3d.cli.commands`; a mechanism of commands alone has no kinds.
         requires: distributions whose versions decide its results beside those that every study needs; they are part
             of a run's fingerprint.
     """
@@ -34,12 +36,14 @@ class Mechanism(Vocabulary):
     summary: str = ""
     presenter: str = ""
     starters: str = ""
+    commands: tuple[str, ...] = ()
     requires: tuple[str, ...] = ()
 
     @property
     def origin(self) -> Origin:
         """Origin of the mechanism, for messages and summaries."""
-        return Origin(self.name, (self.system or self.links).partition(":")[0])
+        path = next((own for own in (self.system, self.links, *self.commands) if own), "")
+        return Origin(self.name, path.partition(":")[0])
 
     def system_of(self, scene: Scene) -> System:
         """System of a scene.
