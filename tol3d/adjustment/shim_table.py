@@ -9,14 +9,9 @@ from tol3d.adjustment.stock import thickness_text
 from tol3d.report.measure_table import CONVERTED_ROWS
 from tol3d.report.number import NOTHING, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page, warning
+from tol3d.report.published import STATISTICS
 
-ROWS: Final[Mapping[str, str]] = {
-    "low_3sigma": "low (−3 sigma)",
-    "mean": "mean",
-    "high_3sigma": "high (+3 sigma)",
-    "p0.135": "0.135 % quantile",
-    "sample_min": "smallest",
-}
+ROWS: Final = ("low_3sigma", "mean", "high_3sigma", "p0.135", "sample_min")
 SIDES: Final[Mapping[str, str]] = {
     "behind": "behind {}, moves it towards the apex: closes",
     "in_front": "in front of {}, moves it away from the apex: opens",
@@ -54,9 +49,9 @@ def _table(plan: ShimPlan) -> Table:
         columns[_other_words(plan.chosen, plan.other)] = plan.other
     shown = list(columns.values())
     rows = [Row("each shim [µm]", [_thickness(own, plan) for own in shown])]
-    for key, label in ROWS.items():
+    for key in ROWS:
         style = "bold" if key == plan.question.minimum else ""
-        rows.append(Row(label, [value_text(own.found.value(key), "um") for own in shown], style))
+        rows.append(Row(STATISTICS[key].heading, [value_text(own.found.value(key), "um") for own in shown], style))
     for key, label in CONVERTED_ROWS.items():
         rows.append(Row(f"lost motion, {label}", [_lost_motion(own, key) for own in shown]))
     headings = [Heading(text, "bold" if text == "chosen" else "") for text in columns]

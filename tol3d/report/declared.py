@@ -6,7 +6,16 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final
 
-from tol3d.report.number import NOTHING, degrees_text, ppm_text, share_text, short_text, unsigned_zero, value_text
+from tol3d.report.number import (
+    NOTHING,
+    degrees_text,
+    number_text,
+    ppm_text,
+    share_text,
+    short_text,
+    unsigned_zero,
+    value_text,
+)
 from tol3d.report.page import Heading, Row, Shown, Table
 from tol3d.runs.summary.shows import Shows, columns_of, shown_by
 
@@ -136,6 +145,7 @@ FORMS: Final[Mapping[str, Callable[[Any, str], Shown | str]]] = {
     "ppm": _number(ppm_text),
     "ppm range": _range(ppm_text, " … "),
     "share": _number(share_text),
+    "number": _number(number_text),
     "degrees": lambda value, unit: Shown(degrees_text(value), math.degrees(value)),
     "share range": _range(share_text, " to "),
     "index": _index,

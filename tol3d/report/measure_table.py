@@ -26,29 +26,23 @@ from tol3d.report.number import (
 )
 from tol3d.report.page import Row, Shown, Table
 from tol3d.report.presenter import FurtherRow
-from tol3d.report.published import curve_columns, published_cell, published_counts, published_rows
-from tol3d.report.shown_unit import Spread
+from tol3d.report.published import (
+    STATISTICS,
+    curve_columns,
+    published_cell,
+    published_counts,
+    published_rows,
+    statistic_row,
+)
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
 from tol3d.runs.summary.sample import CurveMethods, Methods
 from tol3d.system.outcome import SEATED
 from tol3d.units import FACTORS, RESOLVED, UNITS
 
-ROWS = {
-    "low_3sigma": "low (−3 sigma)",
-    "mean": "mean",
-    "high_3sigma": "high (+3 sigma)",
-    "sigma": "sigma",
-    "p0.135": "0.135 % quantile",
-    "p50": "50 % quantile",
-    "p99.865": "99.865 % quantile",
-    "sample_min": "smallest",
-    "sample_max": "largest",
-}
 CONVERTED_ROWS = {"low_3sigma": "low", "mean": "mean", "high_3sigma": "high"}
 UNIT_HEADINGS = {"um": "[µm]", "mm": "[mm]", "arcmin": "[′, ″ of arc]", "pins": "[pins]"}
 SIDES = ("below", "above")
-INDICES = {"pp": "Pp", "ppk": "Ppk"}
 UNEXPLAINED_SHOWN = 0.05  # %; less is 0.0 in print
 ATTRIBUTING: Set[Method] = frozenset(("analytic", "geometric"))
 CURVE_ROWS = 12  # positions of a curve that are printed; the picture and the columns have them all
@@ -58,15 +52,18 @@ SHARE_HEADINGS: Mapping[Method, str] = {"analytic": "analytic", "geometric": "3D
 def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[FurtherRow] = ()) -> Table:
     """Statistics of one scalar measure, one column a method, the published ones last; `further` rows below."""
     columns, unit = columns_of(measure), measure.unit
+    limits = limit_rows(measure)
+    own = [key for key, shows in STATISTICS.items() if not shows.given]
+    indices = [key for key in own if STATISTICS[key].seldom]
     rows = [*_failure_rows(run, measure, columns)]
-    rows += [_statistic(measure, columns, key, label) for key, label in ROWS.items()]
+    rows += [statistic_row(measure, columns, key) for key in own if key not in indices]
     rows += [
         Row(label, [share_cell(_ppm(column, key, measure)) for column in columns], unit="ppm")
-        for key, label in limit_rows(measure).items()
+        for key, label in limits.items()
     ]
     rows += [
-        Row(label, [_index_cell(column.value(key)) for column in columns])
-        for key, label in INDICES.items()
+        statistic_row(measure, columns, key)
+        for key in indices
         if any(column.value(key) is not None for column in columns)
     ]
     rows += [
@@ -77,24 +74,14 @@ def measure_table(run: RunSummary, measure: MeasureSummary, further: Sequence[Fu
         )
     ]
     rows += [*_converted_rows(measure, columns), *_further_rows(further, columns, unit)]
-    rows += published_rows(measure, columns, (*ROWS, *limit_rows(measure), *INDICES))
+    rows += published_rows(measure, columns, limits)
     return Table(UNIT_HEADINGS[unit], [heading_by(own.method, own.heading) for own in columns], rows)
-
-
-def _statistic(measure: MeasureSummary, columns: Sequence[Column], key: str, label: str) -> Row:
-    spread = Spread.of(measure) if key == "sigma" else Spread(measure.unit)
-    cells = [published_cell(column, spread.times(column.value(key)), spread.unit) for column in columns]
-    return Row(f"{label}{spread.words}", cells, unit=spread.unit)
 
 
 def _build_cell(column: Column, key: str, build: Methods, unit: str) -> Shown:
     """Cell of one build: by both methods, and as published."""
     value = column.value(key) if column.method == "published" else build.value(column.method)
     return published_cell(column, value, unit)
-
-
-def _index_cell(value: float | None) -> Shown:
-    return Shown(NOTHING if value is None else unsigned_zero(f"{value:.3f}"), value)
 
 
 def _failure_rows(run: RunSummary, measure: MeasureSummary, columns: Sequence[Column]) -> Iterator[Row]:

@@ -1,9 +1,10 @@
 """Published figures for a measure in addition to its usual rows: further rows, notes, columns of curves."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from tol3d.report.column import Column, heading_by
+from tol3d.report.declared import formed
 from tol3d.report.number import (
     NOTHING,
     UNIT_SIGNS,
@@ -11,7 +12,6 @@ from tol3d.report.number import (
     given_text,
     number_cell,
     number_text,
-    share_cell,
     share_text,
     value_text,
 )
@@ -20,41 +20,38 @@ from tol3d.report.shown_unit import Spread
 from tol3d.runs.summary.joint import Joint
 from tol3d.runs.summary.measure import MeasureSummary
 from tol3d.runs.summary.run import RunSummary
+from tol3d.runs.summary.sample import Sample
+from tol3d.runs.summary.shows import shown_by
 from tol3d.runs.summary.values import Method, Section, key_of
 
-DIMENSIONED: Final[Mapping[str, str]] = {
-    "mean_se": "standard error of the mean",
-    "sigma_se": "standard error of sigma",
-    "quantile_error": "grid of the quantiles",
-    "deepest_overlap": "deepest overlap",
-}
-NUMBERS: Final[Mapping[str, str]] = {
-    "skewness": "skewness",
-    "kurtosis": "excess kurtosis",
-    "count": "trials with a value",
-    "trials": "trials",
-    "outside_grid": "trials outside the grid of quantiles",
-}
-SHARES: Final[Mapping[str, str]] = {
-    "below_limit_ppm": "below the lower limit",
-    "above_limit_ppm": "above the upper limit",
-    "failed_ppm": "failed",
-    "out_ppm": "out in all",
-}
 POOLED: Final[Mapping[str, str]] = {"half_span": "99.73 % half-range"}
 AGREEMENT: Final[Mapping[str, str]] = {
     "max_abs_difference": "at most",
     "rms_difference": "rms",
     "mean_difference": "mean",
 }
-OF_RANGES = (
-    *(("mean_95", "mean, 95 %"), ("sigma_95", "sigma, 95 %")),
-    *(("p0.135_95", "0.135 % quantile, 95 %"), ("p99.865_95", "99.865 % quantile, 95 %")),
-)
-"""Labels of bounds in a measure's unit."""
+STATISTICS: Final = {key_of(Sample, name): shows for name, shows in shown_by(Sample).items()}
+"""Rows of a measure's table by the keys of summary.json."""
 
 
-def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Sequence[str]) -> Iterator[Row]:
+def statistic_row(measure: MeasureSummary, columns: Sequence[Column], key: str) -> Row:
+    """The row of a statistic: a value a column, of bounds both."""
+    shows = STATISTICS[key]
+    form, is_range = shows.form.removesuffix(" range"), shows.form.endswith(" range")
+    spread = Spread.of(measure) if form == "spread" else Spread(measure.unit)
+    if is_range:
+        texts = {"share": share_text, "number": number_text}
+        text = texts.get(form, lambda value: value_text(spread.times(value), spread.unit))
+        cells: list[Shown | str] = [" to ".join(map(text, _pair(column.values, key))) or NOTHING for column in columns]
+    elif form in ("value", "spread"):
+        cells = [published_cell(column, spread.times(column.value(key)), spread.unit) for column in columns]
+    else:
+        cells = [formed(column.value(key), form) for column in columns]
+    unit = spread.unit if form in ("value", "spread") else "ppm" if shows.form == "share" else ""
+    return Row(f"{shows.heading}{spread.words}", cells, unit=unit)
+
+
+def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Container[str]) -> Iterator[Row]:
     """Rows of the numbers that somebody published and that have no row else, and of statistics that a measure names.
 
     Args:
@@ -62,42 +59,13 @@ def published_rows(measure: MeasureSummary, columns: Sequence[Column], shown: Se
         columns: of the table.
         shown: keys that have a row.
     """
-    others = [column for column in columns if column.method == "published"]
-    spread = Spread.of(measure)
-
-    def is_asked(key: str) -> bool:
-        return key not in shown and any(column.value(key) is not None for column in others)
-
-    for key, label in DIMENSIONED.items():
-        if is_asked(key):
-            own = Spread(measure.unit) if key == "deepest_overlap" else spread
-            cells = [published_cell(column, own.times(column.value(key)), own.unit) for column in columns]
-            yield Row(f"{label}{own.words}", cells, unit=own.unit)
-    for key, label in NUMBERS.items():
-        if is_asked(key):
-            yield Row(label, [number_cell(column.value(key)) for column in columns])
-    for key, label in SHARES.items():
-        if is_asked(key):
-            yield Row(label, [share_cell(column.value(key)) for column in columns], unit="ppm")
-    for key, label in SHARES.items():
-        bounds = [_pair(column.values, f"{key}_95") for column in columns]
-        if any(own for own, column in zip(bounds, columns, strict=True) if column.method == "published"):
-            yield Row(f"{label}, 95 %", [" to ".join(map(share_text, own)) or NOTHING for own in bounds])
-    for key, label in OF_RANGES:
-        ranges = [_pair(column.values, key) for column in columns]
-        if any(own for own, column in zip(ranges, columns, strict=True) if column.method == "published"):
-            by = spread if key == "sigma_95" else Spread(measure.unit)
-            texts = [" to ".join(value_text(by.times(end), by.unit) for end in own) or NOTHING for own in ranges]
-            yield Row(f"{label}{by.words}", texts, unit=by.unit)
-    ppks = [_pair(column.values, "ppk_95") for column in columns]
-    if any(own for own, column in zip(ppks, columns, strict=True) if column.method == "published"):
-        yield Row("Ppk, 95 %", [" to ".join(map(number_text, own)) or NOTHING for own in ppks])
+    others = [column.values for column in columns if column.method == "published" and column.values is not None]
+    for key, shows in STATISTICS.items():
+        if shows.given and key not in shown and any(own.get(key) is not None for own in others):
+            yield statistic_row(measure, columns, key)
     for name in dict.fromkeys(name for column in columns for name in _pooled(column)):
-        yield Row(
-            POOLED.get(name, name),
-            [published_cell(own, _pooled(own).get(name), measure.unit) for own in columns],
-            unit=measure.unit,
-        )
+        cells = [published_cell(own, _pooled(own).get(name), measure.unit) for own in columns]
+        yield Row(POOLED.get(name, name), cells, unit=measure.unit)
 
 
 def published_counts(column: Column) -> Mapping[str, int]:
@@ -137,7 +105,11 @@ def published_notes(measure: MeasureSummary) -> Iterator[str]:
 
 def _curve_text(curve: Section) -> str:
     """Shares of trials by their whole curves."""
-    parts = [f"{label} {share_text(own)}" for key, label in SHARES.items() if (own := curve.value(key)) is not None]
+    parts = [
+        f"{shows.heading} {share_text(own)}"
+        for key, shows in STATISTICS.items()
+        if shows.form == "share" and (own := curve.value(key)) is not None
+    ]
     parts += [
         f"out in all between {' and '.join(map(share_text, own))} (95 %)" for own in [_pair(curve, "out_ppm_95")] if own
     ]

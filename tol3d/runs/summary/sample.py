@@ -1,10 +1,11 @@
 """Statistics of a measure's trials by either method, in the measure's unit."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
+from tol3d.runs.summary.shows import Shows
 from tol3d.runs.summary.values import (
     LEFT_OUT,
     Count,
@@ -36,48 +37,69 @@ class Methods(Section):
 class LimitShares(Section):
     """Shares of all trials that are out of limits or failed [ppm]."""
 
-    trials: Count
-    below_limit_ppm: Ppm | None
-    above_limit_ppm: Ppm | None
-    failed_ppm: Ppm | None
-    out_ppm: Ppm | None = Field(description="failed or out of limits, of all trials")
-    out_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")
+    trials: Annotated[Count, Shows("trials", "number", given=True)]
+    below_limit_ppm: Annotated[Ppm | None, Shows("below the lower limit", "share", given=True)]
+    above_limit_ppm: Annotated[Ppm | None, Shows("above the upper limit", "share", given=True)]
+    failed_ppm: Annotated[Ppm | None, Shows("failed", "share", given=True)]
+    out_ppm: Annotated[Ppm | None, Shows("out in all", "share", given=True)] = Field(
+        description="failed or out of limits, of all trials"
+    )
+    out_ppm_95: Annotated[PpmRange | None, Shows("out in all, 95 %", "share range", given=True)] = Field(
+        description="bounds of the true share, 95 % confidence"
+    )
 
 
 class Sample(LimitShares):
-    """One method's sample of a measure, in its unit."""
+    """One method's sample of a measure, in its unit.
 
-    count: Count = Field(description="trials with a value")
-    mean: Known
-    sigma: NotNegative | None
-    low_3sigma: Known
-    high_3sigma: Known
-    sample_min: Known
-    sample_max: Known
-    p0_135: Known = Field(validation_alias="p0.135", description="0.135 % quantile")
-    p50: Known
-    p99_865: Known = Field(validation_alias="p99.865")
-    p0_135_95: Maybe[KnownRange] = Field(
-        default=LEFT_OUT, validation_alias="p0.135_95", description="bounds of the true quantile, 95 % confidence"
+    Fields with columns are the rows of its table, from above; those that are `given` have one where others gave them.
+    """
+
+    count: Annotated[Count, Shows("trials with a value", "number", given=True)] = Field(
+        description="trials with a value"
     )
-    p99_865_95: Maybe[KnownRange] = Field(default=LEFT_OUT, validation_alias="p99.865_95")
-    quantile_error: NotNegative = Field(
+    low_3sigma: Annotated[Known, Shows("low (−3 sigma)")]
+    mean: Annotated[Known, Shows("mean")]
+    high_3sigma: Annotated[Known, Shows("high (+3 sigma)")]
+    sigma: Annotated[NotNegative | None, Shows("sigma", "spread")]
+    p0_135: Annotated[Known, Shows("0.135 % quantile")] = Field(
+        validation_alias="p0.135", description="0.135 % quantile"
+    )
+    p50: Annotated[Known, Shows("50 % quantile")]
+    p99_865: Annotated[Known, Shows("99.865 % quantile")] = Field(validation_alias="p99.865")
+    sample_min: Annotated[Known, Shows("smallest")]
+    sample_max: Annotated[Known, Shows("largest")]
+    pp: Annotated[Known, Shows("Pp", ".3f", seldom=True)]
+    ppk: Annotated[Known, Shows("Ppk", ".3f", seldom=True)]
+    mean_se: Annotated[Known, Shows("standard error of the mean", "spread", given=True)] = Field(
+        description="standard error of the mean"
+    )
+    sigma_se: Annotated[Known, Shows("standard error of sigma", "spread", given=True)]
+    quantile_error: Annotated[NotNegative, Shows("grid of the quantiles", "spread", given=True)] = Field(
         description="width of a bin of the grid that quantiles are read from, not their sampling error"
     )
-    outside_grid: Count
-    below_limit_ppm_95: PpmRange | None = Field(description="bounds of the true share, 95 % confidence")
-    above_limit_ppm_95: PpmRange | None
-    deepest_overlap: Known
-    mean_se: Known = Field(description="standard error of the mean")
-    sigma_se: Known
-    mean_95: Maybe[KnownRange] = Field(default=LEFT_OUT, description="bounds of the true mean, 95 %, by Student's t")
-    sigma_95: Maybe[KnownRange] = LEFT_OUT
+    deepest_overlap: Annotated[Known, Shows("deepest overlap", given=True)]
+    skewness: Annotated[Known, Shows("skewness", "number", given=True)]
+    kurtosis: Annotated[Known, Shows("excess kurtosis", "number", given=True)] = Field(description="excess kurtosis")
+    outside_grid: Annotated[Count, Shows("trials outside the grid of quantiles", "number", given=True)]
+    below_limit_ppm_95: Annotated[PpmRange | None, Shows("below the lower limit, 95 %", "share range", given=True)] = (
+        Field(description="bounds of the true share, 95 % confidence")
+    )
+    above_limit_ppm_95: Annotated[PpmRange | None, Shows("above the upper limit, 95 %", "share range", given=True)]
+    mean_95: Annotated[Maybe[KnownRange], Shows("mean, 95 %", "value range", given=True)] = Field(
+        default=LEFT_OUT, description="bounds of the true mean, 95 %, by Student's t"
+    )
+    sigma_95: Annotated[Maybe[KnownRange], Shows("sigma, 95 %", "spread range", given=True)] = LEFT_OUT
+    p0_135_95: Annotated[Maybe[KnownRange], Shows("0.135 % quantile, 95 %", "value range", given=True)] = Field(
+        default=LEFT_OUT, validation_alias="p0.135_95", description="bounds of the true quantile, 95 % confidence"
+    )
+    p99_865_95: Annotated[Maybe[KnownRange], Shows("99.865 % quantile, 95 %", "value range", given=True)] = Field(
+        default=LEFT_OUT, validation_alias="p99.865_95"
+    )
     error_by: Literal["sample", "replicates"]
-    skewness: Known
-    kurtosis: Known = Field(description="excess kurtosis")
-    pp: Known
-    ppk: Known
-    ppk_95: Maybe[KnownRange] = Field(default=LEFT_OUT, description="bounds of the true Ppk, 95 % confidence")
+    ppk_95: Annotated[Maybe[KnownRange], Shows("Ppk, 95 %", "number range", given=True)] = Field(
+        default=LEFT_OUT, description="bounds of the true Ppk, 95 % confidence"
+    )
     ppk_by: PpkBy
     ppk_reason: Maybe[Label] = Field(default=LEFT_OUT, description="why by that; mean and sigma need no reason")
     pooled: Maybe[Mapping[Label, Known]] = Field(
