@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from importlib import resources
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from matplotlib.collections import PolyCollection
 
 from tol3d.report.canvas import new_figure
-from tol3d.report.chart import Axis, Cells, Chart, Filled, Lengths, Line, Mark, Names, Panel, Range
+from tol3d.report.chart import Axis, Cells, Chart, Field, Filled, Lengths, Line, Mark, Names, Panel, Range
 from tol3d.report.chart_figure import charts_figure
 from tol3d.report.drawn_chart import draw_panel
 from tol3d.report.html.frame import NARROW, WIDE
@@ -82,6 +83,25 @@ def test_rows_and_cells_bear_their_numbers() -> None:
     assert strengths == pytest.approx([1.0, 0.06 + 0.94 * 0.4 / 60, 0.06 + 0.94 * 33 / 60], rel=1e-4)
     style = resources.files("tol3d.report.html").joinpath("style.css").read_text("utf-8")
     assert not re.search(r"\.chart rect(\.cell)? \{[^}]*fill-opacity", style), "a rule would outdo the attributes"
+
+
+def test_a_field_has_a_cell_a_value_between_the_middles_of_its_places() -> None:
+    """Places 0, 10, 30: edges -5, 5, 20, 40; colours by the logarithm where that is asked for."""
+    field = Field(
+        np.array([0.0, 10.0, 30.0]), np.array([1.0, 2.0]), np.array([[1.0, 10.0, 100.0], [np.nan, 3.0, 4.0]]), "c", True
+    )
+    assert field.edges(upright=False).tolist() == [-5.0, 5.0, 20.0, 40.0]
+    drawn = Chart("field", Axis("x", -5.0, 40.0), [Panel(Axis("y", 0.5, 2.5), [field])])
+    page = svg(drawn, WIDE)
+    cells = re.findall(r'x="([\d.]+)" y="[\d.]+" width="([\d.]+)" [^>]*class="cell" fill-opacity="([\d.]+)"', page)
+    left, right = WIDE.left, WIDE.width - WIDE.right
+    widths = [float(own) / (right - left) for _, own, _ in cells]
+    assert widths == pytest.approx([10 / 45, 15 / 45, 20 / 45, 15 / 45, 20 / 45], abs=1e-3)
+    assert [float(own) for *_, own in cells[:3]] == pytest.approx([0.06, 0.53, 1.0], abs=1e-3)
+    assert "x 30, y 1: c 100" in page
+    (axes, _) = charts_figure([[drawn]]).axes
+    shown: Any = axes.collections[0].get_array()
+    assert shown.compressed().tolist() == [1.0, 10.0, 100.0, 3.0, 4.0]
 
 
 @given(st.floats(-1e4, 1e4), st.floats(1e-2, 1e4), st.integers(3, 9))

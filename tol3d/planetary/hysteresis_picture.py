@@ -1,41 +1,41 @@
-"""The picture of a torque curve."""
+"""The chart of a torque curve."""
 
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 
 from tol3d.planetary.hysteresis import ARCMIN, Hysteresis
 from tol3d.planetary.summary_types import TorqueCurve
-from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, legend_below, new_figure, plain_axes, save_figure
-
-WIDTH: Final = 9.0  # inch
-HEIGHT: Final = 5.6
+from tol3d.report.chart import Chart, Charts, Line, Mark, Panel
+from tol3d.report.chart_figure import save_charts
+from tol3d.report.measure_charts import spanned
 
 
 def draw_hysteresis(found: Hysteresis, path: Path) -> None:
-    """Turn against torque, with the breakaway torques and the dead band of a rigid carrier; .png, .svg or .pdf.
+    """Draw its chart; .png, .svg or .pdf.
 
     Raises:
         InputError: the picture cannot be written there.
     """
-    figure = new_figure(WIDTH, HEIGHT)
-    axes = plain_axes(figure.subplots())
-    rigid = [] if found.rigid is None else list(found.rigid)
-    for place, end in enumerate(rigid):
-        label = f"rigid carrier: dead band {(rigid[1] - rigid[0]) / ARCMIN:.2f}′" if not place else None
-        axes.axhline(end / ARCMIN, color=GREY, linewidth=1.0, linestyle="--", label=label)
+    save_charts(Charts([[hysteresis_chart(found)]]), path)
+
+
+def hysteresis_chart(found: Hysteresis) -> Chart:
+    """Turn against torque, with the breakaway torques and the dead band of a rigid carrier."""
+    turns = np.array(found.minutes)
+    rigid = [] if found.rigid is None else [end / ARCMIN for end in found.rigid]
+    band = f"rigid carrier: dead band {rigid[1] - rigid[0]:.2f}′" if rigid else ""
+    marks = [Mark(end, "guide", upright=False, label=band) for end in rigid]
     ends = [end for end in found.breakaway if np.isfinite(end)]
-    words = " and ".join(f"{end:.0f}" for end in ends)
-    for place, end in enumerate(ends):
-        label = f"breakaway at {words} N mm" if not place else None
-        axes.axvline(end, color=ORANGE, linewidth=1.0, label=label)
-    axes.plot(found.torques, found.minutes, color=BLUE, linewidth=1.6, label="flexible carrier, there and back")
-    axes.set_xlabel(f"torque on {found.shaft} [N mm]", fontsize=10)
-    axes.set_ylabel(f"turn of {found.shaft} [′]", fontsize=10)
-    axes.set_title("torque against turn", loc="left", fontsize=12, fontweight="bold", color=BLACK)
-    legend_below(axes)
-    save_figure(figure, path)
+    words = f"breakaway at {' and '.join(f'{end:.0f}' for end in ends)} N mm"
+    marks += [Mark(end, "guide", label=words, role="series-1") for end in ends]
+    x = spanned(f"torque on {found.shaft}", np.array([*found.torques, *ends]), "N mm")
+    y = spanned(f"turn of {found.shaft}", np.array([*turns, *rigid]), "′")
+    curve = Line(found.torques, turns, "series-0", "flexible carrier, there and back")
+    table = [*([("rigid carrier", band)] if rigid else []), *([("breakaway", words)] if ends else [])]
+    return Chart(
+        f"turn of {found.shaft} against torque", x, [Panel(y, [curve], marks, 1.5)], "torque against turn", table=table
+    )
 
 
 def draw_curve(kept: TorqueCurve, path: Path) -> None:

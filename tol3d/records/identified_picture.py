@@ -1,18 +1,20 @@
-"""Pictures of an identification: the backlash over the long period, and the residual of the fit."""
+"""Charts of an identification: the backlash over the long period, and the residual of the fit."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from tol3d.numerics.arrays import Array
 from tol3d.records.findings import Identified
 from tol3d.records.fit import Fit
 from tol3d.records.pair import ARCSEC, TURN, Side
 from tol3d.records.spectrum import with_tooth_mesh
-from tol3d.report.canvas import BLACK, BLUE, GREY, ORANGE, VERMILLION, legend_below, new_figure, plain_axes, save_figure
+from tol3d.report.chart import Axis, Band, Chart, Charts, Line, Mark, Panel, Points, Role, Series
+from tol3d.report.chart_figure import save_charts
+from tol3d.report.measure_charts import spanned
 from tol3d.runs.csv_text import csv_text
 
 
@@ -64,9 +66,7 @@ def _left(fit: Fit, side: Side, positions: int) -> Array:
     return np.where(rows > 0, total / np.maximum(rows, 1.0), np.nan)
 
 
-WIDTH: Final = 11.0  # inch
-HEIGHT: Final = 5.6
-COLOURS: Final = {"drive": BLUE, "back": ORANGE}
+SIDES: Final[Mapping[Side, Role]] = {"drive": "series-0", "back": "series-1"}
 LEAST_SHOWN: Final = 1e-3  # arc seconds, of a spectrum on a logarithmic axis
 
 
@@ -76,26 +76,31 @@ def draw_backlash(found: Identified, curve: BacklashCurve, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    figure = new_figure(WIDTH, HEIGHT)
-    axes = plain_axes(figure.subplots())
+    save_charts(Charts([[backlash_chart(found, curve)]], width=11.0), path)
+
+
+def backlash_chart(found: Identified, curve: BacklashCurve) -> Chart:
+    """Backlash over the long period: of the eccentricities with its interval, as measured, and its ends."""
     turns, predicted = curve.phi1 / TURN, curve.predicted / ARCSEC
-    wide = curve.half_width / ARCSEC
-    axes.plot(turns, curve.measured / ARCSEC, ".", color=GREY, markersize=2.5, label="measured, both sides")
-    axes.fill_between(turns, predicted - wide, predicted + wide, color=BLUE, alpha=0.3, linewidth=0)
+    measured, wide = curve.measured / ARCSEC, curve.half_width / ARCSEC
+    series: list[Series] = [
+        Points(turns, measured, "soft", "measured, both sides", "speck"),
+        Band(turns, predicted - wide, predicted + wide, "series-0"),
+    ]
     label = f"of the eccentricities alone, 95 % interval at most ±{float(wide.max()):.2f}″ at a position"
-    axes.plot(turns, predicted, color=BLUE, linewidth=1.4, label=label)
+    series.append(Line(turns, predicted, "series-0", label))
+    table = []
     for word, own in (("least", found.whole.least), ("largest", found.whole.largest)):
         at, value = own.place.value / TURN, own.backlash.value / ARCSEC
         half = own.backlash.half_width / ARCSEC
-        text = f"{word} {value:.2f} ±{half:.2f}″ at {np.degrees(own.place.value):.1f}°"
-        axes.plot([at], [value], "o", color=VERMILLION, markersize=7, label=text)
-    axes.set_xlim(0.0, float(turns[-1]))
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    axes.set_xlabel("turns of the driver", fontsize=10)
-    axes.set_ylabel("angular backlash of the driven gear [″]", fontsize=10)
-    axes.set_title("backlash over the long period", loc="left", fontsize=12, fontweight="bold", color=BLACK)
-    legend_below(axes)
-    save_figure(figure, path)
+        words = f"{value:.2f} ±{half:.2f}″ at {np.degrees(own.place.value):.1f}°"
+        series.append(Points(np.array([at]), np.array([value]), "series-5", f"{word} {words}"))
+        table.append((word, words))
+    y = spanned("angular backlash of the driven gear", np.concatenate([measured, predicted - wide, predicted + wide]))
+    y = replace(y, low=min(0.0, y.low), unit="″")
+    across = Axis("turns of the driver", 0.0, float(turns[-1]))
+    title = "backlash over the long period"
+    return Chart(title, across, [Panel(y, series, height=1.4)], title, table=table)
 
 
 def draw_residual(found: Identified, path: Path) -> None:
@@ -104,36 +109,44 @@ def draw_residual(found: Identified, path: Path) -> None:
     Raises:
         InputError: the picture cannot be written there.
     """
-    figure = new_figure(WIDTH, 1.5 * HEIGHT)
-    upper, lower = figure.subplots(2, 1)
-    _draw_over_turns(plain_axes(upper), found)
-    _draw_spectrum(plain_axes(lower), found)
-    save_figure(figure, path)
+    save_charts(Charts([[residual_chart(found)], [spectrum_chart(found)]], width=11.0), path)
 
 
-def _draw_over_turns(axes: Axes, found: Identified) -> None:
-    for side in found.fit.terms.sides:
-        at = found.fit.measured.points[side].phi1 / TURN
-        left = found.fit.residual[side] / ARCSEC
-        axes.plot(at, left, ".", color=COLOURS[side], markersize=1.5, alpha=0.6, label=f"{side} side", rasterized=True)
-    axes.set_xlim(0.0, float(found.pair.long_period_turns))
-    axes.set_xlabel("turns of the driver", fontsize=10)
-    axes.set_ylabel("what the fit leaves [″]", fontsize=10)
-    axes.set_title("residual, means of position bins", loc="left", fontsize=12, fontweight="bold", color=BLACK)
-    axes.legend(fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none", markerscale=5, loc="upper right")
+def residual_chart(found: Identified) -> Chart:
+    """The residual of the fit in bins of positions."""
+    sides = found.fit.terms.sides
+    series = [
+        Points(
+            found.fit.measured.points[side].phi1 / TURN,
+            found.fit.residual[side] / ARCSEC,
+            SIDES[side],
+            f"{side} side",
+            "speck",
+        )
+        for side in sides
+    ]
+    y = spanned("what the fit leaves", np.concatenate([own.y for own in series]), "″")
+    across = Axis("turns of the driver", 0.0, float(found.pair.long_period_turns))
+    return Chart("residual of the fit over positions", across, [Panel(y, series)], "residual, means of position bins")
 
 
-def _draw_spectrum(axes: Axes, found: Identified) -> None:
+def spectrum_chart(found: Identified) -> Chart:
+    """Amplitudes of the residual over orders, with the level of noise and the orders of turns and tooth mesh."""
     spectrum = found.spectrum
-    for side, amplitudes in spectrum.amplitudes.items():
-        shown = np.maximum(amplitudes[1:] / ARCSEC, LEAST_SHOWN)
-        axes.plot(spectrum.orders[1:], shown, color=COLOURS[side], linewidth=0.8, label=f"{side} side")
+    orders = spectrum.orders[1:]
+    series = [
+        Line(orders, np.maximum(own[1:] / ARCSEC, LEAST_SHOWN), SIDES[side], f"{side} side", "thin")
+        for side, own in spectrum.amplitudes.items()
+    ]
     noise = max(spectrum.lines[0].noise.values()) / ARCSEC
-    axes.axhline(noise, color=GREY, linewidth=1.0, linestyle="--", label="white noise, exceeded by one line of twenty")
-    for order in (1.0, found.pair.rate, float(found.pair.driver_teeth), 2.0 * found.pair.driver_teeth):
-        axes.axvline(order, color=GREY, linewidth=0.8, linestyle=":", zorder=0)
-    axes.set(xscale="log", yscale="log", xlim=(float(spectrum.orders[1]), float(spectrum.orders[-1])))
-    axes.set_xlabel("order of the driver's turn (dotted: both gears' turns, tooth mesh and twice that)", fontsize=10)
-    axes.set_ylabel("amplitude [″]", fontsize=10)
-    axes.set_title("spectrum of the residual, with tooth mesh", loc="left", fontsize=12, fontweight="bold", color=BLACK)
-    axes.legend(fontsize=8.5, frameon=True, framealpha=0.85, edgecolor="none", loc="lower left")
+    places = (1.0, found.pair.rate, float(found.pair.driver_teeth), 2.0 * found.pair.driver_teeth)
+    words = "white noise, exceeded by one line of twenty"
+    marks = [
+        Mark(noise, "guide", upright=False, label=words, role="soft"),
+        *(Mark(order, "guide", label="both gears' turns, tooth mesh and twice that") for order in places),
+    ]
+    highest = max(float(own.y.max()) for own in series)
+    y = Axis("amplitude", min(float(own.y.min()) for own in series) / 1.5, 1.5 * max(highest, noise), "″", log=True)
+    across = Axis("order of the driver's turn", float(orders[0]), float(orders[-1]), log=True)
+    title = "spectrum of the residual, with tooth mesh"
+    return Chart(title, across, [Panel(y, series, marks)], title, table=[("noise", f"{noise:.3g}″")])

@@ -28,6 +28,8 @@ SERIES: Final[tuple[Serial, ...]] = (
     *("series-0", "series-1", "series-2", "series-3"),
     *("series-4", "series-5", "series-6", "series-7"),
 )
+MOST_WRITTEN: Final = 64
+"""Cells of a field that have numbers."""
 AXIS_UNITS: Final = {"arcmin": "′, ″ of arc"}  # where an axis has other words than a number
 
 
@@ -195,7 +197,46 @@ class Cells:
     unit: str = "%"
 
 
-Series = Filled | Outline | Line | Band | Points | Range | Lengths | Cells
+@dataclass(frozen=True, eq=False)
+class Field:
+    """Values over two numbers as colours, with their numbers where they are few.
+
+    Args:
+        x, y: places of columns and rows, rising (columns,), (rows,).
+        values: (rows, columns), nan where there is none.
+        words: name of the values, with their unit.
+        log: True for a logarithmic scale of colours, values above 0.
+    """
+
+    x: Array
+    y: Array
+    values: Array
+    words: str
+    log: bool = False
+
+    def edges(self, *, upright: bool) -> Array:
+        """Edges of the columns, or upright of the rows: midway between places (places + 1,)."""
+        places = self.y if upright else self.x
+        if len(places) == 1:
+            return np.array([places[0] - 0.5, places[0] + 0.5])
+        middles = (places[1:] + places[:-1]) / 2
+        return np.concatenate([[2 * places[0] - middles[0]], middles, [2 * places[-1] - middles[-1]]])
+
+    @property
+    def strength(self) -> Array:
+        """Its values on their scale from 0 to 1, nan where there is none."""
+        values = np.log(self.values) if self.log else self.values
+        known = values[np.isfinite(values)]
+        low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
+        return np.asarray((values - low) / ((high - low) or 1.0))
+
+    @property
+    def written(self) -> bool:
+        """True where its cells have numbers."""
+        return self.values.size <= MOST_WRITTEN
+
+
+Series = Filled | Outline | Line | Band | Points | Range | Lengths | Cells | Field
 
 
 @dataclass(frozen=True)
@@ -269,7 +310,7 @@ class Chart:
         seen = set[str]()
         for panel in self.panels:
             for own in (*panel.series, *panel.marks):
-                label = "" if isinstance(own, Cells) else own.label
+                label = "" if isinstance(own, Cells | Field) else own.label
                 if label and label not in seen:
                     seen.add(label)
                     yield label, own

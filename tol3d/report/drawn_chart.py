@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.ticker import LogLocator
 
 from tol3d.report.canvas import (
     BLACK,
@@ -28,6 +30,7 @@ from tol3d.report.chart import (
     Band,
     Cells,
     Chart,
+    Field,
     Filled,
     Lengths,
     Line,
@@ -41,6 +44,7 @@ from tol3d.report.chart import (
 )
 from tol3d.report.heading import legible
 from tol3d.report.label import wrapped
+from tol3d.report.number import NOTHING
 
 COLOURS: Final[Mapping[Role, str]] = {
     "geometric": BLUE,
@@ -71,8 +75,8 @@ LEAST_ROOM: Final = 0.06  # less, and they stand together
 STROKES: Final[Mapping[str, Any]] = {"solid": "-", "dashed": (0, (5, 3)), "dotted": (0, (1, 1)), "thin": "-"}
 SIGNS: Final = {"circle": "o", "square": "s", "diamond": "D", "left": "<", "right": ">", "speck": "."}
 
-SPECK: Final = {"markersize": 3.5, "markeredgewidth": 0, "alpha": 0.5}
-POINT: Final = {"markersize": 7, "markeredgecolor": "white", "clip_on": False, "zorder": 5}
+SPECK: Final[Mapping[str, Any]] = {"markersize": 3.5, "markeredgewidth": 0, "alpha": 0.5}
+POINT: Final[Mapping[str, Any]] = {"markersize": 7, "markeredgecolor": "white", "clip_on": False, "zorder": 5}
 NUMBERS: Final = 2.9  # inch; height of a panel of numbers
 ROW, BAR, LINE, BETWEEN = 0.24, 0.115, 0.155, 0.1  # inch; a row, a bar of it that bears its number, a line of its name
 FEWEST_ROWS: Final = 4  # fewer bars are no thicker than these
@@ -80,6 +84,7 @@ NAME_WIDTH, NAME_SIZE, NAME_LINES = 2.05, 9.0, 4  # inch, points; the longest po
 LEAST_WRITTEN: Final = 0.95  # %; smaller shares have no number
 DARK: Final = 0.62  # of the largest share; numbers are white above it
 CELL_SIZE: Final = 6.5  # points
+FIELD, FIELD_LOG = "viridis", "viridis_r"
 
 
 # a panel ------------------------------------------------------------------------------------------
@@ -136,8 +141,8 @@ def _room_above(panel: Panel) -> float:
     return WORDS_ROOM / (1 - WORDS_ROOM) if worded else 0.0
 
 
-def _draw(axes: Axes, own: Filled | Outline | Line | Band | Points | Range | Cells, *, alone: bool) -> None:
-    colour, label = ("", None) if isinstance(own, Cells) else (COLOURS[own.role], own.label or None)
+def _draw(axes: Axes, own: Filled | Outline | Line | Band | Points | Range | Cells | Field, *, alone: bool) -> None:
+    colour, label = ("", None) if isinstance(own, Cells | Field) else (COLOURS[own.role], own.label or None)
     match own:
         case Filled():
             (_draw_bars if alone else _draw_area)(axes, own, colour, label)
@@ -154,11 +159,16 @@ def _draw(axes: Axes, own: Filled | Outline | Line | Band | Points | Range | Cel
             axes.fill_between(own.x, own.low, own.high, color=colour, alpha=BAND_OPACITY, linewidth=0, label=label)
         case Points():
             look: Any = SPECK if own.sign == "speck" else POINT
-            axes.plot(own.x, own.y, color=colour, linestyle="", marker=SIGNS[own.sign], label=label, **look)
+            named = None if own.sign == "speck" else label
+            axes.plot(own.x, own.y, color=colour, linestyle="", marker=SIGNS[own.sign], label=named, **look)
+            if named != label:  # a speck is too small for a legend
+                axes.plot([], [], color=colour, linestyle="", marker="o", label=label, **POINT)
         case Range():
             _draw_range(axes, own, colour, label)
         case Cells():
             draw_cells(axes, own)
+        case Field():
+            _draw_field(axes, own)
         case _:
             assert_never(own)
 
@@ -182,6 +192,25 @@ def _draw_area(axes: Axes, own: Filled, colour: str, label: str | None) -> None:
     if beyond.any():
         axes.stairs(beyond, own.edges, fill=True, color=OUTSIDE, alpha=OUTSIDE_OPACITY)
     axes.stairs(own.heights, own.edges, color=colour, linewidth=1.0)
+
+
+def _draw_field(axes: Axes, own: Field) -> None:
+    norm: Any = LogNorm if own.log else Normalize
+    shown = np.ma.masked_invalid(own.values)
+    colours = FIELD_LOG if own.log else FIELD
+    image = axes.pcolormesh(own.edges(upright=False), own.edges(upright=True), shown, cmap=colours, norm=norm())
+    ticks: Any = {"ticks": LogLocator(subs=(1.0, 2.0, 5.0)), "format": "%g"} if own.log else {}
+    figure: Any = axes.get_figure()
+    bar = figure.colorbar(image, ax=axes, **ticks)
+    bar.minorticks_off()
+    bar.ax.tick_params(labelsize=8)
+    bar.set_label(_escaped(own.words), fontsize=9)
+    if own.written:
+        for (row, column), value in np.ndenumerate(own.values):
+            dark = np.isnan(value) or own.strength[row, column] > 0.5
+            text = NOTHING if np.isnan(value) else f"{value:.3g}"
+            place = float(own.x[column]), float(own.y[row])
+            axes.text(*place, text, ha="center", va="center", fontsize=7.5, color=BLACK if dark else "white")
 
 
 def _draw_range(axes: Axes, own: Range, colour: str, label: str | None) -> None:

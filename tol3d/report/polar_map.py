@@ -1,4 +1,4 @@
-"""Values over directions and angles from an axis, or over one or two numbers, as a picture."""
+"""Values over directions and angles from an axis, as a picture: a chart has no such axes."""
 
 from collections.abc import Sequence
 from typing import Any, Final
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
-from tol3d.report.canvas import BLACK, BLUE, VERMILLION, new_figure, plain_axes
+from tol3d.report.canvas import BLACK, VERMILLION, new_figure
 
 Array = NDArray[np.float64]
 
@@ -50,36 +50,4 @@ def polar_map(title: str, azimuths: Array, tilts: Array, values: Array, ends: Ar
     ticks = LogLocator(subs=(1.0, 2.0, 5.0))
     figure.colorbar(drawn, ax=axes, pad=0.1, shrink=0.8, ticks=ticks, format="%g").minorticks_off()
     figure.text(0.02, 0.01, "\n".join(words), fontsize=WORDS_SIZE, color=BLACK)
-    return figure
-
-
-def plane_map(
-    title: str, axes_words: Sequence[str], places: Sequence[Array], values: Array, words: Sequence[str]
-) -> Figure:
-    """Values above 0 over two numbers as colours on a logarithmic scale, or over one as a curve; not yet written.
-
-    Args:
-        title: what is shown.
-        axes_words: what the numbers are, with their units.
-        places: the numbers (n,) each.
-        values: (n,) or (n, n), nothing where they are not numbers.
-        words: lines below the picture.
-    """
-    figure = new_figure(*SIZE)
-    axes: Any = figure.add_subplot()
-    if len(places) == 1:
-        plain_axes(axes).plot(places[0], values, color=BLUE)
-    else:
-        shown = np.ma.masked_invalid(values.T)
-        low, high = float(shown.min()), float(shown.max())
-        norm = LogNorm(low, high if high > low else 2 * low)
-        drawn = axes.pcolormesh(*places, shown, shading="nearest", cmap=COLOURS, norm=norm)
-        axes.set_ylabel(axes_words[1], fontsize=WORDS_SIZE)
-        figure.colorbar(
-            drawn, ax=axes, shrink=0.8, ticks=LogLocator(subs=(1.0, 2.0, 5.0)), format="%g"
-        ).minorticks_off()
-    axes.set_xlabel(axes_words[0], fontsize=WORDS_SIZE)
-    axes.set_title(title, color=BLACK, fontsize=TITLE_SIZE, fontweight="bold")
-    axes.tick_params(labelsize=WORDS_SIZE)
-    figure.supxlabel("\n".join(words), x=0.02, ha="left", fontsize=WORDS_SIZE, color=BLACK)
     return figure

@@ -16,7 +16,10 @@ from tol3d.linkage.grammar.inputs import TiltPoseSpec
 from tol3d.linkage.loop import ClosedLoop
 from tol3d.linkage.workspace import InputGrid, Workspace, input_grid_of, workspace_of
 from tol3d.report.canvas import save_figure
-from tol3d.report.polar_map import plane_map, polar_map
+from tol3d.report.chart import Axis, Chart, Field, Line, Panel
+from tol3d.report.chart_figure import charts_figure
+from tol3d.report.measure_charts import spanned
+from tol3d.report.polar_map import polar_map
 from tol3d.runs.csv_text import csv_text
 from tol3d.scene.nearest import hint
 from tol3d.study.simulation import Simulation
@@ -34,6 +37,8 @@ COARSE_RAYS: Final = 24
 COARSE_PLACES: Final = 10
 """Places per ray in a picture of a measure's sigma, for which the assembly is computed anew in each pose."""
 DRAWS: Final = 2000
+WIDTH: Final = 7.2  # inch
+CONDITION: Final = "condition number"
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,12 +114,22 @@ class InputMap:
         Raises:
             InputError: the picture cannot be written there.
         """
-        words, places = zip(*self._places, strict=True)
+        save_figure(charts_figure([[self.chart()]], width=WIDTH), path)
+
+    def chart(self) -> Chart:
+        """Condition numbers over one input as a curve, over two as a field."""
         others = [name for name in self.move.inputs if name not in self.grid.names]
         held = f"{', '.join(others)}: as parts are placed; " if others else ""
-        below = [f"{held}blank: not reached, or beyond a singular pose"]
-        title = f"{self.move.name}: condition number"
-        save_figure(plane_map(title, words, places, self.grid.conditions, below), path)
+        below = f"{held}blank: not reached, or beyond a singular pose"
+        title, (first, *second), found = f"{self.move.name}: {CONDITION}", self._places, self.grid.conditions
+        x = Axis(first[0], float(first[1].min()), float(first[1].max()))
+        if not second:
+            panel = Panel(spanned(CONDITION, found), [Line(first[1], found, "series-0")])
+            return Chart(f"{title} over {first[0]}", x, [panel], title, below)
+        ((words, places),) = second
+        y = Axis(words, float(places.min()), float(places.max()))
+        field = Field(first[1], places, found.T, CONDITION, log=True)
+        return Chart(f"{title} over {first[0]} and {words}", x, [Panel(y, [field], height=1.5)], title, below)
 
     def csv(self) -> str:
         """Inputs and condition number of each place."""

@@ -11,6 +11,7 @@ from tol3d.report.chart import (
     Band,
     Cells,
     Chart,
+    Field,
     Filled,
     Lengths,
     Line,
@@ -77,8 +78,11 @@ def _legend(chart: Chart) -> Iterator[Markup]:
         elif isinstance(own, Outline | Line):
             look = f"line {_stroke(own)}{own.role}"
         else:
-            look = "" if isinstance(own, Cells) else f"fill {own.role}"
+            look = "" if isinstance(own, Cells | Field) else f"fill {own.role}"
         yield tag("span", tag("i", class_=look), label)
+    for field in (own for own in _series(chart) if isinstance(own, Field)):
+        low, high = float(np.nanmin(field.values)), float(np.nanmax(field.values))
+        yield tag("span", f"{field.words}: {low:.4g}, pale, to {high:.4g}")
 
 
 def _stroke(own: Outline | Line) -> str:
@@ -163,10 +167,30 @@ def _drawn(own: Series, x: Scale, y: Scale) -> Iterator[Markup]:
         case Points():
             size = 1.5 if own.sign == "speck" else 4.0
             yield from (_dot(a, b, own.role, own.label, size) for a, b in _known(own.x, own.y, x, y))
+        case Field():
+            yield from _field(own, x, y)
         case Range() | Lengths() | Cells():
             raise TypeError(f"{type(own).__name__} stands in rows")
         case _:
             assert_never(own)
+
+
+def _field(own: Field, x: Scale, y: Scale) -> Iterator[Markup]:
+    """Cells with their values in tooltips, and as numbers where they are few."""
+    lefts, lows = [x.within(a) for a in own.edges(upright=False)], [y.within(a) for a in own.edges(upright=True)]
+    for (row, column), value in np.ndenumerate(own.values):
+        if np.isnan(value):
+            continue
+        place = {"x": lefts[column], "y": lows[row + 1]}
+        size = {"width": lefts[column + 1] - lefts[column], "height": lows[row] - lows[row + 1]}
+        across, up = f"{x.axis.label} {own.x[column]:g}", f"{y.axis.label} {own.y[row]:g}"
+        strength = float(own.strength[row, column])
+        words = tag("title", f"{across}, {up}: {own.words} {value:.4g}")
+        yield tag("rect", words, **place, **size, class_="cell", fill_opacity=0.06 + 0.94 * strength)
+        if own.written:
+            kind = "tick strong" if strength > DARK else "tick"
+            middle = {"x": place["x"] + size["width"] / 2, "y": place["y"] + size["height"] / 2 + 4}
+            yield tag("text", f"{value:.3g}", **middle, text_anchor="middle", class_=kind)
 
 
 def _path(d: str, kind: str, words: str) -> Markup:
