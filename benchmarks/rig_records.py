@@ -24,11 +24,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as pc
 
-from tol3d.records.findings import Settings
-from tol3d.records.identify import identified, identify
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
-from tol3d.records.reading import read_side, senses_of
-from tol3d.records.rig import Rig, measured
+from tol3d.apps.records.findings import Settings
+from tol3d.apps.records.identification import identified, identify
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen
+from tol3d.apps.records.reading import read_side, senses_of
+from tol3d.apps.records.rig import Rig, measured
 
 COS = math.cos(math.radians(20))
 PAIR = RigPair(27, 48, 27 * COS, 48 * COS, 75.0)

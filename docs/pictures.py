@@ -83,7 +83,7 @@ PICTURES: Final[Mapping[str, Picture]] = {
     "compensation.png": Picture(
         ("tol3d compensate robot_shoulder robot_shoulder_shimmed --out compensation.png",),
         "compensation.png",
-        ("adjustment/compensation_picture.py", *CHART),
+        ("apps/adjustment/compensation_picture.py", *CHART),
         ("robot_shoulder", "robot_shoulder_shimmed"),
     ),
     "contact.png": viewed("spur_pair", "--trial 175 --magnify 10", CLOSE_UP),
@@ -107,7 +107,7 @@ PICTURES: Final[Mapping[str, Picture]] = {
             "tol3d identify --drive measured/drive.csv --back measured/back.csv --scene pair.yaml --out identified",
         ),
         "identified/backlash.png",
-        ("records/identified_picture.py",),
+        ("apps/records/identified_picture.py",),
     ),
     "reducer_3k.png": viewed("reducer_3k", "--trial 3"),
     "robot.png": viewed("robot_shoulder", "--mean", CLOSE_UP),

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 from tol3d.current_folder import leave_settings_unread
 
 if TYPE_CHECKING:
+    from tol3d.apps.adjustment.answers import find_shims
     from tol3d.errors import InputError as InputError
     from tol3d.errors import RunError as RunError
     from tol3d.errors import SceneError as SceneError
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
         check_scene,
         compare_runs,
         export_trial,
-        find_shims,
         replay,
         response,
         sweep,
@@ -65,7 +65,7 @@ _HOMES = {
     "check_scene": "tol3d.notebook",
     "compare_runs": "tol3d.notebook",
     "export_trial": "tol3d.notebook",
-    "find_shims": "tol3d.notebook",
+    "find_shims": "tol3d.apps.adjustment.answers",
     "load_scene": "tol3d.kinds",
     "open_run": "tol3d.report.displayed_run",
     "register": "tol3d.kinds",

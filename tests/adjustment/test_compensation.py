@@ -16,12 +16,12 @@ from places import SCENES
 from rich.console import Console
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.adjustment import robots as robots_module
-from tol3d.adjustment.compensation import Compensation, CompensationQuestion, compensation
-from tol3d.adjustment.compensation_picture import compensation_figure
-from tol3d.adjustment.compensation_table import Spread, compensation_report
-from tol3d.adjustment.correction import CLOSED_FORM
-from tol3d.adjustment.robots import STATES, left_of_the_mean
+from tol3d.apps.adjustment import robots as robots_module
+from tol3d.apps.adjustment.compensation import Compensation, CompensationQuestion, compensation
+from tol3d.apps.adjustment.compensation_picture import compensation_figure
+from tol3d.apps.adjustment.compensation_table import Spread, compensation_report
+from tol3d.apps.adjustment.correction import CLOSED_FORM
+from tol3d.apps.adjustment.robots import STATES, left_of_the_mean
 from tol3d.errors import InputError
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.grammar.tolerances.gears import ShimSpec

@@ -22,10 +22,10 @@ from places import SCENES
 from thinned import thinned
 
 from tol3d import Overrides, Scene, load_scene, run_scene
-from tol3d.adjustment import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
-from tol3d.adjustment.shim import closing_of, formula_thickness
-from tol3d.adjustment.shim_choice import MINIMUM_XTOL, shims_of
-from tol3d.adjustment.stock import nearest
+from tol3d.apps.adjustment import Pieces, ShimPlan, ShimQuestion, Step, Stock, shim_plan, stock_of
+from tol3d.apps.adjustment.shim import closing_of, formula_thickness
+from tol3d.apps.adjustment.shim_choice import MINIMUM_XTOL, shims_of
+from tol3d.apps.adjustment.stock import nearest
 from tol3d.errors import InputError
 from tol3d.scene.edit import with_tolerances, write_scene
 

@@ -483,7 +483,7 @@ TRAINS_PICTURES = "pictures in it: histogram.png, contributors.png, chain.png, h
 
 HANGS = 120  # s; a guard against waiting for ever, no claim
 MODULES_OF_HELP = 450  # 365 of them with today's typer and rich; NumPy alone would bring 140 more
-OWN_OF_HELP = ("tol3d.cli", "tol3d.errors", "tol3d.current_folder", "tol3d.import_path")
+OWN_OF_HELP = ("tol3d.cli", "tol3d.errors", "tol3d.current_folder", "tol3d.import_path", "tol3d.apps")
 
 
 def test_help_loads_the_command_line_and_what_prints_it() -> None:

@@ -13,15 +13,15 @@ import yaml
 from fixtures import Command
 from foreign_parts import nist_file, slotted_block, solid, step_file
 
+from tol3d.apps.drafting import scene_from
+from tol3d.apps.drafting.dimensions import distance_entry, enveloped
+from tol3d.apps.drafting.entry import Entry, Scene, Wording
+from tol3d.apps.drafting.fixture import seat_and_pins, three_two_one
+from tol3d.apps.drafting.parts import drafted_parts, read_files
+from tol3d.apps.drafting.touching import TOUCHING, overlap
+from tol3d.apps.drafting.words import Names, comment, scalar
 from tol3d.assembly.model import Cone
 from tol3d.assembly.system import AssemblySystem
-from tol3d.drafting import scene_from
-from tol3d.drafting.dimensions import distance_entry, enveloped
-from tol3d.drafting.entry import Entry, Scene, Wording
-from tol3d.drafting.fixture import seat_and_pins, three_two_one
-from tol3d.drafting.parts import drafted_parts, read_files
-from tol3d.drafting.touching import TOUCHING, overlap
-from tol3d.drafting.words import Names, comment, scalar
 from tol3d.files import FileContent, read_file
 from tol3d.scene import Scene as SceneOfFile
 from tol3d.simulate import Overrides, load, run_scene, simulation_of

@@ -16,8 +16,8 @@ from oracles.thinned_pairs import ThinnedPair, random_pair
 from places import SCENES
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.adjustment.compensation import compensation
-from tol3d.adjustment.shim import ShimQuestion, shim_plan
+from tol3d.apps.adjustment.compensation import compensation
+from tol3d.apps.adjustment.shim import ShimQuestion, shim_plan
 from tol3d.errors import SceneError
 from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.engines.fcl import FclEngine

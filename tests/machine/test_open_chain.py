@@ -24,7 +24,7 @@ from machine.arm_by_hand import (
 from machine.housed import Array
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.machine import chain
 from tol3d.machine.chain import Chain
 from tol3d.machine.closed_form import with_joints

@@ -10,8 +10,8 @@ from planetary_sets import external, reducer_3k, ring, set_of
 from rich.console import Console
 
 from tol3d import Overrides, SceneError, load_scene, run_scene
-from tol3d.planetary.design.shifted_set import ShiftedSet
-from tol3d.planetary.design.working_mesh import BasicRack
+from tol3d.apps.design.shifted_set import ShiftedSet
+from tol3d.apps.design.working_mesh import BasicRack
 from tol3d.planetary.model.tooth_set import wolfrom
 from tol3d.planetary.sections import formula_efficiency, mesh_efficiencies, set_efficiency
 from tol3d.report import run_report

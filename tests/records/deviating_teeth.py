@@ -1,4 +1,4 @@
-"""Pairs whose flanks deviate tooth by tooth, in closed form: which flanks touch shares nothing with tol3d.records.
+"""Pairs whose flanks deviate tooth by tooth, in closed form: which flanks touch shares nothing with tol3d.apps.records.
 
 Eccentric gears are two strings over base circles, solved by Newton's method. Flanks that lie ahead or behind on their
 involutes shift the driven gear as a whole: of all pairs of flanks on the path of contact the first to touch governs.
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.records.pair import RigPair, Side, Specimen
+from tol3d.apps.records.pair import RigPair, Side, Specimen
 
 Array = NDArray[np.float64]
 CONTACT_RATIO = 1.6

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from tol3d.records.csv_file import Block
-from tol3d.records.findings import Identified, Settings
-from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
-from tol3d.records.reading import Pass, Senses, passes_of
-from tol3d.records.rig import Rig, measured
+from tol3d.apps.records.csv_file import Block
+from tol3d.apps.records.findings import Identified, Settings
+from tol3d.apps.records.identification import identified
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
+from tol3d.apps.records.reading import Pass, Senses, passes_of
+from tol3d.apps.records.rig import Rig, measured
 
 COS = math.cos(math.radians(20))
 PAIR = RigPair(27, 48, 27 * COS, 48 * COS, 75.0)

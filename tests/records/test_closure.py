@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from records.rigged import PAIR, REFERENCE, arcsec, identified_by
 
-from tol3d.records.csv_file import Block
-from tol3d.records.findings import Identified, Settings
-from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
-from tol3d.records.reading import Pass, Senses, passes_of
-from tol3d.records.rig import Rig, measured
+from tol3d.apps.records.csv_file import Block
+from tol3d.apps.records.findings import Identified, Settings
+from tol3d.apps.records.identification import identified
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen
+from tol3d.apps.records.reading import Pass, Senses, passes_of
+from tol3d.apps.records.rig import Rig, measured
 
 RUN = Rig(samples=360, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=3 * ARCSEC)
 SIGMA = 0.5 * math.hypot(1, 27 / 48)  # arcsec of a row, by both encoders

@@ -13,14 +13,14 @@ import pytest
 from records.deviating_teeth import ToothedUnit, deviating
 from scipy import stats
 
-from tol3d.records.background import expected_variance, likely_slopes
-from tol3d.records.csv_file import Block
-from tol3d.records.findings import Identified, Settings
-from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen
-from tol3d.records.prediction import Figure
-from tol3d.records.reading import Pass, Senses, passes_of
-from tol3d.records.rig import Rig, measured
+from tol3d.apps.records.background import expected_variance, likely_slopes
+from tol3d.apps.records.csv_file import Block
+from tol3d.apps.records.findings import Identified, Settings
+from tol3d.apps.records.identification import identified
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen
+from tol3d.apps.records.prediction import Figure
+from tol3d.apps.records.reading import Pass, Senses, passes_of
+from tol3d.apps.records.rig import Rig, measured
 
 SIDES: tuple[Side, ...] = ("drive", "back")
 COS = math.cos(math.radians(20))

@@ -8,7 +8,7 @@ import pytest
 from records.rigged import PAIR, REFERENCE, arcsec
 from scipy.optimize import brentq
 
-from tol3d.records.pair import Side, Specimen, angular_backlash, driven_angle, transmission_error
+from tol3d.apps.records.pair import Side, Specimen, angular_backlash, driven_angle, transmission_error
 
 
 def first_order(specimen: Specimen, phi1: np.ndarray) -> np.ndarray:

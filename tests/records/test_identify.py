@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, START, arcsec, ends_of, identified_by, passes, within
 
+from tol3d.apps.records.alignment import hidden_shift
+from tol3d.apps.records.cautions import refuse_other_gear
+from tol3d.apps.records.csv_file import Block
+from tol3d.apps.records.findings import Identified, Settings
+from tol3d.apps.records.identification import identified
+from tol3d.apps.records.identified_picture import curve_of
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
+from tol3d.apps.records.reading import Pass, Senses, passes_of
+from tol3d.apps.records.rig import Rig, measured
 from tol3d.errors import InputError
-from tol3d.records.alignment import hidden_shift
-from tol3d.records.cautions import refuse_other_gear
-from tol3d.records.csv_file import Block
-from tol3d.records.findings import Identified, Settings
-from tol3d.records.identified_picture import curve_of
-from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, angular_backlash
-from tol3d.records.reading import Pass, Senses, passes_of
-from tol3d.records.rig import Rig, measured
 
 ENCODERS = Rig(samples=180, encoder1=6 * ARCSEC, encoder2=4 * ARCSEC, tooth_mesh=5 * ARCSEC)
 

@@ -6,6 +6,7 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pytest
@@ -13,15 +14,15 @@ from fixtures import Command
 from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, scene_in
 
 from tol3d import load_scene, run_scene
+from tol3d.apps.records import csv_file
+from tol3d.apps.records.findings import Settings
+from tol3d.apps.records.from_scene import mean_row, mesh_of, scene_text, specimen_of_build
+from tol3d.apps.records.identification import identify
+from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen, transmission_error
+from tol3d.apps.records.rig import Rig, measured, write_readings
+from tol3d.apps.records.summary import IdentifiedSummary
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
-from tol3d.records import csv_file
-from tol3d.records.findings import Settings
-from tol3d.records.from_scene import mean_row, mesh_of, scene_text, specimen_of_build
-from tol3d.records.identify import identify
-from tol3d.records.pair import ARCSEC, RigPair, Side, Specimen, transmission_error
-from tol3d.records.rig import Rig, measured, write_readings
-from tol3d.records.summary import IdentifiedSummary
 
 SIDES: tuple[Side, ...] = ("drive", "back")
 SHORT = Rig(turns=2, samples=90)
@@ -367,13 +368,13 @@ def test_an_interrupted_command_says_so_and_leaves_nothing_half_written(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as own:
-        own.setattr("tol3d.records.reading.blocks_of", interrupted)
+        own.setattr("tol3d.apps.records.reading.blocks_of", interrupted)
         assert tol3d(*arguments, "--out", str(out)) == (130, "", "stopped\n")
     assert not out.exists()
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
-    def half_written(path: Path, *_: object, **__: object) -> None:
-        path.write_text("phi1 [deg],phi2 [deg]\n0,", encoding="utf-8")
+    def half_written(stream: BinaryIO, *_: object, **__: object) -> None:
+        stream.write(b"phi1 [deg],phi2 [deg]\n0,")
         raise KeyboardInterrupt
 
     monkeypatch.setattr(np, "savetxt", half_written)

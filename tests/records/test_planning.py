@@ -10,10 +10,10 @@ import pytest
 from fixtures import Command
 from records.rigged import PAIR, REFERENCE, identified_by, scene_in
 
-from tol3d.records.findings import Settings
-from tol3d.records.pair import ARCSEC, RigPair, Specimen
-from tol3d.records.planning import plan_rig, row_variance
-from tol3d.records.rig import Rig, measured
+from tol3d.apps.records.findings import Settings
+from tol3d.apps.records.pair import ARCSEC, RigPair, Specimen
+from tol3d.apps.records.planning import plan_rig, row_variance
+from tol3d.apps.records.rig import Rig, measured
 
 FIGURES = (
     "e1",

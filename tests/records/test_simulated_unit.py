@@ -11,13 +11,13 @@ from fixtures import Command
 from scipy.optimize import brentq
 
 from tol3d import load_scene, run_scene
-from tol3d.records.csv_file import Block
-from tol3d.records.findings import Settings
-from tol3d.records.identify import identified
-from tol3d.records.pair import ARCSEC, Side
-from tol3d.records.reading import Senses, passes_of
-from tol3d.records.rig import Rig, measured
-from tol3d.records.scene_mesh import SceneMesh, SimulatedUnit
+from tol3d.apps.records.csv_file import Block
+from tol3d.apps.records.findings import Settings
+from tol3d.apps.records.identification import identified
+from tol3d.apps.records.pair import ARCSEC, Side
+from tol3d.apps.records.reading import Senses, passes_of
+from tol3d.apps.records.rig import Rig, measured
+from tol3d.apps.records.scene_mesh import SceneMesh, SimulatedUnit
 from tol3d.simulate import simulation_of
 
 SIDES: tuple[Side, ...] = ("drive", "back")

@@ -25,8 +25,8 @@ from rich.console import RenderableType
 from scipy.stats import norm
 
 from tol3d import load_scene
-from tol3d.adjustment.compensation import CompensationQuestion, compensation
-from tol3d.adjustment.compensation_table import swing_table
+from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.apps.adjustment.compensation_table import swing_table
 from tol3d.errors import InputError
 from tol3d.gearing.shown.display import seated_build
 from tol3d.gearing.shown.placed import DISPLAY_DEFLECTION, OPEN_SHARE

@@ -18,8 +18,8 @@ from pydantic import ValidationError
 from schemas import validate
 
 from tol3d import Run, load_scene
-from tol3d.adjustment.compensation import CompensationQuestion, compensation
-from tol3d.adjustment.compensation_table import highs_table
+from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.apps.adjustment.compensation_table import highs_table
 from tol3d.report import published as shown
 from tol3d.report.chart_figure import charts_figure
 from tol3d.report.measure_charts import histogram

@@ -10,7 +10,7 @@ from of_kind import of_kind
 from places import SCENES
 
 from tol3d import load_scene
-from tol3d.adjustment.compensation import CompensationQuestion, compensation
+from tol3d.apps.adjustment.compensation import CompensationQuestion, compensation
 from tol3d.errors import SceneError
 from tol3d.gearing.model import LostMotion, model_from_scene
 from tol3d.gearing.presenting.shown_stage import distributions_of, sums_of, trains_of

@@ -138,9 +138,9 @@ def schema(
 
     described: type[BaseModel]
     if identified:
-        from tol3d.records.summary import IdentifiedSummary
+        from tol3d.import_path import named
 
-        described = IdentifiedSummary
+        described = named("tol3d.apps.records.summary:IdentifiedSummary")
     elif summary:
         from tol3d.runs.summary.kinds import default_kinds
 

@@ -1,7 +1,7 @@
 """Planetary gear sets: central gears on one axis, planets on a carrier; simple, compound and 3K (Wolfrom) by one code.
 
 `model/tooth_set.py` is shared by all of it: tooth numbers, ratios, numbers of planets that can be assembled.
-`design/` finds sets and their efficiencies.
+`model/efficiency.py` has their efficiencies; `tol3d.apps.design` finds sets.
 """
 
 from tol3d.planetary.model.tooth_set import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom

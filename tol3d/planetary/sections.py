@@ -4,7 +4,9 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
-from tol3d.planetary.design.efficiency import (
+from tol3d.planetary.hysteresis import ARCMIN, crossing, hysteresis
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.efficiency import (
     Drive,
     Efficiencies,
     MeshEfficiencies,
@@ -14,8 +16,6 @@ from tol3d.planetary.design.efficiency import (
     shared_sliding_factor,
     sliding_factor,
 )
-from tol3d.planetary.hysteresis import ARCMIN, crossing, hysteresis
-from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.planetary.model.tooth_set import CARRIER, ToothSet
@@ -37,7 +37,7 @@ def contact_ratios(mesh: SetMesh) -> tuple[float, float]:
 
 
 def mesh_efficiencies(own: PlanetarySet, friction: float, sharing: Sharing) -> Mapping[str, float]:
-    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see design.efficiency."""
+    """1 - mu pi (1/z_p + s/z) E of each mesh, by its central gear; see model.efficiency."""
     factor = sliding_factor if sharing == "formula" else shared_sliding_factor
     return {
         mesh.central.name: 1

@@ -4,8 +4,9 @@ Names are loaded when they are first used: a table needs no matplotlib, a pictur
 `tol3d.report.view` loads pyvista.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
     from tol3d.report.check import check_report
@@ -44,8 +45,4 @@ __all__ = [
     "view_run",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'tol3d.report' has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _HOMES)

@@ -1,12 +1,12 @@
 """Files that are whole or not there, also after a kill or a power cut; and whose fault it is when they are not."""
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from io import BufferedRandom
 from pathlib import Path
 
-from tol3d.errors import NO_SPACE
+from tol3d.errors import NO_SPACE, InputError, unwritable
 
 UNFINISHED = ".writing"
 
@@ -34,9 +34,39 @@ def write_by(path: Path, write: Callable[[BufferedRandom], object]) -> None:
                 stream.flush()
                 os.fsync(stream.fileno())
             beside.replace(path)
-    except OSError:
+    except BaseException:  # one who interrupts it too
         beside.unlink(missing_ok=True)
         raise
+
+
+def write_texts(texts: Mapping[str, str], folder: Path) -> tuple[Path, ...]:
+    """Write files into a folder, which is made if it is not there.
+
+    Raises:
+        InputError: they cannot be written.
+    """
+    place = made_folder(folder)
+    for name, text in texts.items():
+        try:
+            write_whole(place / name, text.encode())
+        except OSError as error:
+            raise unwritable(place / name, error, "choose another folder") from None
+    return tuple(place / name for name in texts)
+
+
+def made_folder(folder: Path) -> Path:
+    """The folder, made if it is not there.
+
+    Raises:
+        InputError: it cannot be, or is a file.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise InputError(f"{folder}: expected a folder, got a file") from None
+    except OSError as error:
+        raise unwritable(folder, error, "choose another folder") from None
+    return folder
 
 
 @contextmanager

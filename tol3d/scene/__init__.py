@@ -3,8 +3,9 @@
 Names are loaded when they are first used: summaries read the classes of published figures alone.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
     from tol3d.scene.grammar import Grammar, Kinds, Vocabulary
@@ -46,8 +47,4 @@ __all__ = [
     "scene_from_python",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'tol3d.scene' has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _HOMES)

@@ -11,21 +11,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from planetary_sets import working_radii
 
+from tol3d.apps.design.shifted_set import tip_gap
+from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh, mesh_efficiency, shift_sum
 from tol3d.errors import GeometryError
 from tol3d.planetary import CARRIER, ToothSet, compound, simple, wolfrom
-from tol3d.planetary.design.efficiency import (
+from tol3d.planetary.model.efficiency import (
     Drive,
     MeshEfficiencies,
     balances,
     efficiency,
     inner_ratios,
-    mesh_efficiency,
     published_efficiencies,
     shared_sliding_factor,
     sliding_factor,
 )
-from tol3d.planetary.design.shifted_set import tip_gap
-from tol3d.planetary.design.working_mesh import BasicRack, WorkingMesh, shift_sum
 
 BUILT = wolfrom(25, 27, 79, 24, 76)
 REDUCER = Drive("sun", "ring 2", "ring 1")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from oracles.placed_planets import placed
 
+from tol3d.apps.design.families import COMPOUND, SIMPLE, WOLFROM, Teeth
+from tol3d.apps.design.search import Found, Wish, find, teeth_text
+from tol3d.apps.design.shifted_set import Limits
 from tol3d.errors import GeometryError
 from tol3d.planetary import ToothSet, compound, simple, wolfrom
-from tol3d.planetary.design.families import COMPOUND, SIMPLE, WOLFROM, Teeth
-from tol3d.planetary.design.search import Found, Wish, find, teeth_text
-from tol3d.planetary.design.shifted_set import Limits
 
 ALPHA = math.radians(20)
 EVERY = 1000

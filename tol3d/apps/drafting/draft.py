@@ -1,0 +1,289 @@
+"""A scene from STEP files: parts, their drawings, moves and measures, as a text that a person edits."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tol3d.apps.drafting.drawing import source
+from tol3d.apps.drafting.entry import LAW as LAW_HERE
+from tol3d.apps.drafting.entry import Entry, Scene, Wording
+from tol3d.apps.drafting.fixture import fixture
+from tol3d.apps.drafting.parts import DraftedPart, ReadText, drafted_parts, read_files, seated
+from tol3d.apps.drafting.touching import ALONE, between, moves
+from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
+from tol3d.errors import InputError, SceneError
+from tol3d.files import FileContent
+from tol3d.scene.nearest import hint
+from tol3d.step.found import FoundFeature
+from tol3d.step.refused import StepError, shown
+
+LAW: Final = "{kind: normal}"
+GUESS: Final = 0.1  # mm; zones where no file states any
+MOST_TRIES: Final = 200
+TRIALS: Final = 10_000
+LONGEST: Final = 240  # characters of a reason
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Seat of a face of a part on one of another: `cover.A` on `base.D`."""
+
+    seat: str
+    on: str
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A drafted scene and its sources.
+
+    Args:
+        files: as they were read.
+        parts: of the scene.
+        entries: in the order in which they are written; the parts are not among them.
+    """
+
+    files: Sequence[ReadText]
+    parts: Sequence[DraftedPart]
+    entries: Sequence[Entry]
+
+    def scene(self) -> tuple[str, dict[int, Entry]]:
+        """The text, and the entry of each line of it."""
+        body = [own.entry() for own in self.parts]
+        return Scene(self.head(), LAW, [*body, *self.entries], [*self.tail()]).written()
+
+    def head(self) -> list[str]:
+        """Heading of the scene."""
+        files = [shown(own.file.content.path.name) for own in self.files]
+        name = cleaned(" and ".join(own.rpartition(".")[0] or own for own in files), "/\\:") or "from STEP"
+        return [
+            f"# Drafted by tol3d new --from {comment(' '.join(files))}; yours to edit. What the files do not say is",
+            "# marked `guess`; what of them the scene lacks is listed at its end. `tol3d check` says what it means.",
+            f"scene: {scalar(name)}",
+        ]
+
+    def tail(self) -> Iterator[str]:
+        """The study, and the losses and omissions of the files, so that counts add up."""
+        yield from ("", f"study: {{trials: {TRIALS}, seed: 1}}")
+        for own in self.files:
+            yield from self.told(own)
+
+    def notes(self) -> Iterator[str]:
+        """Notes to read before the scene: counts, and parts that nothing places."""
+        for line in self.tail():
+            if line.startswith("# Of the "):
+                yield line.removeprefix("# ")
+        for own in self.entries:
+            if own.section == "moves" and own.stands and ALONE in own.wording.comment:
+                part = own.wording.lines[0].partition("part: ")[2].removesuffix("}")
+                yield f"{part}: {ALONE}, and is fixed there; --seat PART.FACE --on PART.FACE lays it on another"
+
+    def told(self, own: ReadText) -> Iterator[str]:
+        """Outcome of each tolerance and dimension of a file, in comments."""
+        drawings = [each.drawing for each in self.parts if not each.like and each.file is own.file]
+        reasons = {key: why for each in drawings for key, why in each.reasons.items()}
+        doubled = {key: why for each in drawings for key, why in each.doubled.items()}
+        lost: list[str] = []
+        left: list[str] = []
+        for tolerance, meaning in zip(own.text.tolerances, own.meanings.all, strict=True):
+            made = [each for each in self.entries if tolerance.id in (each.source, *each.below)]
+            standing = [each for each in made if each.stands]
+            words = [doubled.get(tolerance.id, ""), *(word for each in standing for word in each.losses)]
+            why = "; ".join(dict.fromkeys(filter(None, words)))
+            if not standing:
+                refused = next((each.refused for each in made if each.refused), "")
+                reason = refused or reasons.get(tolerance.id) or meaning.why or "its part is not in the scene"
+                left.append(f"{source(tolerance)}: {comment(reason, LONGEST)}")
+            elif meaning.why or why:
+                lost.append(f"{source(tolerance)}: {comment('; '.join(filter(None, (meaning.why, why))), LONGEST)}")
+        left += unread(own, "tolerance")
+        count = len(own.text.tolerances) + len(unread(own, "tolerance"))
+        said = count - len(lost) - len(left)
+        name = comment(own.file.content.path.name)
+        if count:
+            yield from ("", f"# Of the {count} tolerances in {name} {said} are said, {len(lost)} approximately, "
+                        f"{len(left)} left out.")  # fmt: skip
+        for heading, listed in (("Approximately:", lost), ("Left out:", left)):
+            if listed:
+                yield f"# {heading}"
+                yield from (f"#   {line}" for line in listed)
+        yield from self.dimensions_told(own, reasons)
+        if own.text.remarks:
+            yield f"# {len(own.text.remarks)} remarks on what was not read or is incomplete: tol3d pmi lists them."
+
+    def dimensions_told(self, own: ReadText, reasons: dict[int, str]) -> Iterator[str]:
+        """Outcome of each dimension of a file."""
+        said = {each.source for each in self.entries if each.source is not None and each.stands}
+        left = []
+        for dimension in own.text.dimensions:
+            if dimension.id in said:
+                continue
+            refused = next((each.refused for each in self.entries if each.source == dimension.id and each.refused), "")
+            why = (
+                refused
+                or reasons.get(dimension.id)
+                or (
+                    "basic: the nominal shape says it"
+                    if dimension.role == "basic"
+                    else "for reference"
+                    if dimension.role == "reference"
+                    else "it states no limits"
+                    if dimension.limits is None
+                    else f"{comment(dimension.kind)} of what the scene does not use, or uses already"
+                )
+            )
+            left.append(f"#   {comment(str(dimension))}: #{dimension.id}: {comment(why, LONGEST)}")
+        left += [f"#   {line}" for line in unread(own, "dimension")]
+        count = len(own.text.dimensions) + len(unread(own, "dimension"))
+        if count:
+            yield f"# Of its {count} dimensions {count - len(left)} are said, {len(left)} not:"
+            yield from left
+
+
+def unread(own: ReadText, what: str) -> list[str]:
+    """The tolerances or dimensions of a file that cannot be read, each with the reason, for the list of omissions."""
+    read = {each.id for each in own.text.tolerances} | {each.id for each in own.text.dimensions}
+    lost = [each for each in own.text.remarks if each.what == what and each.id not in read]
+    return [f"#{each.id}: {comment(each.why, LONGEST)}" for each in lost]
+
+
+def draft(contents: Sequence[FileContent], seats: Sequence[Seat] = ()) -> Draft:
+    """A scene from STEP files, not yet checked.
+
+    Raises:
+        InputError: a file cannot be read, or a seat is of no part or face.
+    """
+    files = read_files(contents)
+    names = Names()
+    parts = list(drafted_parts(files, names))
+    for part in parts:
+        if not part.like:
+            part.drawing.read()
+    for own in seats:
+        part, face = found(parts, own.seat, "--seat")
+        other, there = found(parts, own.on, "--on")
+        if part is other:
+            raise InputError(f"--on: expected a face of another part than {shown(own.seat)!r}, got {shown(own.on)!r}")
+        seated(part, face, other, there)
+    said = [entry for part in parts if not part.like for entry in part.drawing.entries]
+    placed = fixture(parts[0], names) if len(parts) == 1 else [*moves(parts, names), *between(parts, names)]
+    made = [*said, *placed, *something(parts, [*said, *placed], names)]
+    made += () if said else guessed(parts, names)
+    return Draft(files, parts, sorted(made, key=is_inspection))
+
+
+def is_inspection(entry: Entry) -> bool:
+    """True if an entry is the measure of a frame's own limit: those come last, there are many of them."""
+    return entry.section == "measures" and "kind: inspected" in entry.wording.lines[0]
+
+
+def guessed(parts: Sequence[DraftedPart], names: Names) -> Iterator[Entry]:
+    """Zones of all named features, if no file states a tolerance: a list of contributors to begin with."""
+    for part in parts:
+        for group in () if part.like else part.features.groups:
+            flat = group.kind == "plane"
+            zone = f"{{width: {length(GUESS)}}}" if flat else f"{{diameter: {length(GUESS)}}}"
+            kind = "profile" if flat else "position"
+            words = f"{{kind: {kind}, of: {part.of(group.name)}, zone: {zone}, law: {LAW_HERE}}}"
+            name = names.new(f"{part.name} {group.name}", kind, len(group.members))
+            yield Entry("tolerances", scalar(name), [Wording((words,), "guess: the files state no tolerance")])
+
+
+def something(parts: Sequence[DraftedPart], entries: Sequence[Entry], names: Names) -> Iterator[Entry]:
+    """A measure where there is none yet, and a feature of each part that has none: a scene has both.
+
+    Raises:
+        StepError: a part has no face that a scene can use.
+    """
+    for part in parts:
+        if not part.features.groups:
+            part.features.name(part.features.largest()[0])
+    if any(own.section == "measures" for own in entries):
+        return
+    first, last = parts[0], parts[-1]
+    faces = first.features.largest()
+    start = first.features.name(faces[0])
+    end = last.features.name(faces[-1] if first is last else last.features.largest()[0])
+    words = f"{{kind: distance, from: {first.of(start)}, to: {last.of(end)}}}"
+    yield Entry("measures", scalar(names.new("distance", "distance")), [Wording((words,), "guess: name what counts")])
+
+
+def found(parts: Sequence[DraftedPart], words: str, option: str) -> tuple[DraftedPart, FoundFeature]:
+    """A face of a part, by the name of the part and a datum's letter, a feature's name, or the number of a face.
+
+    Raises:
+        InputError: there is none.
+    """
+    name, _, feature = words.rpartition(".")
+    part = next((own for own in parts if own.name == name), None)
+    if part is None:
+        known = [own.name for own in parts]
+        listed = ", ".join(map(repr, known[:8]))
+        raise InputError(
+            f"{option}: expected a part and a face of it, such as {known[0]}.A, got {shown(words)!r}"
+            f"{hint(name, known)}; parts: {listed}"
+        )
+    wanted = part.drawing.datums.get(feature, feature)
+    members = {n: m for group in part.features.groups for n, m in zip(group.names, group.members, strict=True)}
+    number = int(feature[1:]) if feature.startswith("#") and feature[1:].isdecimal() else None
+    own = members.get(wanted)
+    if number is not None:
+        own = next((each for each in part.features.part.features if number in each.faces), None)
+    if own is None or own.kind != "plane":
+        known = [n for n, m in members.items() if m.kind == "plane"]
+        what = "no flat face" if own is not None else "none of its faces"
+        raise InputError(
+            f"{option}: expected a flat face of {name!r}, got {shown(feature)!r}, {what}; write one of "
+            f'{", ".join(map(repr, known[:12])) or "its faces"}, or its number in the file, such as "{name}.#12"'
+        )
+    return part, own
+
+
+def settled(drafted: Draft, check: Callable[[str], None]) -> str:
+    """The text of a drafted scene that a check accepts: refused entries are written otherwise, or left out.
+
+    Args:
+        drafted: the scene.
+        check: raises SceneError with messages that begin with file and line.
+
+    Raises:
+        SceneError: something else than an entry is refused.
+    """
+    for _ in range(MOST_TRIES):
+        text, by_line = drafted.scene()
+        try:
+            check(text)
+        except SceneError as error:
+            blamed = list(blame(error.problems, by_line))
+            if not blamed:
+                raise
+            for entry, why in blamed:
+                entry.worsen(why)
+            continue
+        return text
+    raise StepError("no scene that can be checked comes of these files")
+
+
+def blame(problems: Sequence[str], by_line: dict[int, Entry]) -> Iterator[tuple[Entry, str]]:
+    """The entries that messages are about, each once; the one that refines another rather than that."""
+    told: set[int] = set()
+    for problem in problems:
+        entry = entry_of(problem, by_line)
+        if entry is None or entry.section == "parts":
+            continue
+        words = problem.partition(": ")[2]
+        refining = problem.partition("of '")[2].partition("', which refines it")
+        if refining[1]:
+            other = next((own for own in by_line.values() if own.name in (refining[0], scalar(refining[0]))), None)
+            entry = other or entry
+        if id(entry) not in told:
+            told.add(id(entry))
+            yield entry, words
+
+
+def entry_of(problem: str, by_line: dict[int, Entry]) -> Entry | None:
+    """The entry on whose line a message is, else the one that it names."""
+    place = problem.split(": ", 1)[0].rpartition(":")[2]
+    if place.isdecimal() and int(place) in by_line:
+        return by_line[int(place)]
+    named = [own for own in dict.fromkeys(by_line.values()) if f"{own.section}.{own.name.strip(chr(34))}" in problem]
+    return named[0] if named else None

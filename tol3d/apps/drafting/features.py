@@ -1,0 +1,260 @@
+"""The features of a drafted part: each is selected once, under one name, even if several name its faces."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+
+from tol3d.apps.drafting.words import UNNAMEABLE_FEATURE, Names, direction, length, place, scalar
+from tol3d.numerics.arrays import Array
+from tol3d.step.found import FoundFeature, Triple, by_place
+from tol3d.step.reading import StepPart
+from tol3d.step.refused import StepError, shown
+from tol3d.step.selecting import Selector, line_of, selected
+
+USABLE: Final = frozenset(("plane", "hole", "pin", "fillet", "round", "cone", "ball", "socket"))
+SHORTEST_NAMES: Final = 40  # characters of a PMI name by which a feature is selected; longer ones are data
+AXES: Final = frozenset(("hole", "pin", "fillet", "round"))
+OPPOSED: Final = -1.0 + 1e-9
+
+
+@dataclass(frozen=True)
+class Group:
+    """One feature, or several of one kind that the drawing names alike.
+
+    Args:
+        name: in the scene.
+        members: the features, in the order of their numbers.
+        line: their selection, as YAML.
+        slot: both walls, of a slot or tab; else none.
+        comment: text after the line.
+    """
+
+    name: str
+    members: tuple[FoundFeature, ...]
+    line: str
+    slot: tuple[FoundFeature, ...] = ()
+    comment: str = ""
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the members."""
+        if len(self.members) == 1:
+            return [self.name]
+        return [f"{self.name} {k}" for k in range(1, len(self.members) + 1)]
+
+    @property
+    def kind(self) -> str:
+        """Kind of the members, as in a scene."""
+        if self.slot:
+            return "slot"
+        first = self.members[0]
+        return "cylinder" if first.kind in AXES else "sphere" if first.kind in ("ball", "socket") else first.kind
+
+    @property
+    def size(self) -> float | None:
+        """Nominal diameter or width [mm]; None for features without one."""
+        if self.slot:
+            first, second = self.slot
+            return abs(float(np.dot(np.subtract(second.at, first.at), first.direction)))
+        return 2 * self.members[0].radius if self.kind in ("cylinder", "sphere") else None
+
+
+@dataclass
+class Features:
+    """The features of one part that a scene uses.
+
+    Args:
+        part: the part as it was read.
+        names: those that are given.
+        groups: selected features; grows.
+    """
+
+    part: StepPart
+    names: Names = field(default_factory=lambda: Names(UNNAMEABLE_FEATURE))
+    groups: list[Group] = field(default_factory=list)
+
+    def of_faces(self, faces: Sequence[int], skipped: frozenset[str] = frozenset()) -> list[FoundFeature]:
+        """The features of the part that some faces are; of a plane that is known already that one, whole.
+
+        Args:
+            faces: by their numbers.
+            skipped: kinds of features that are passed over.
+
+        Raises:
+            StepError: a scene can use one of them for nothing.
+        """
+        found: list[FoundFeature] = []
+        for own in self.part.features:
+            here = [face for face in faces if face in own.faces]
+            if not here and not set(faces) & {*own.repeated}:
+                continue
+            if own.kind in skipped:
+                continue
+            if own.kind not in USABLE:
+                raise StepError(f"a {own.kind} is not simulated")
+            if own.kind == "plane" and here and len(here) < len(own.faces):
+                known = next((each for each in self.planes() if {*each.faces} & {*here}), None)
+                own = known or replace(self.part.shell.made_of(here), on=own.on)
+            found.append(own)
+        if not found:
+            raise StepError("it has no face that a scene can use")
+        return found
+
+    def planes(self) -> Iterator[FoundFeature]:
+        """Planes that are selected already."""
+        for group in self.groups:
+            if group.kind == "plane":
+                yield from group.members
+
+    def largest(self) -> list[FoundFeature]:
+        """The two features of most area, or the one that there is.
+
+        Raises:
+            StepError: there is none.
+        """
+        usable = [own for own in self.part.features if own.kind in USABLE and not own.loose]
+        if not usable:
+            raise StepError(f"{shown(self.part.name)}: expected a flat or round face, found free forms alone")
+        return sorted(usable, key=lambda own: -own.area)[:2]
+
+    def named(self, member: FoundFeature) -> tuple[Group, str] | None:
+        """The group that has a feature, and its name; None where none has."""
+        for group in self.groups:
+            for own, name in zip(group.members, group.names, strict=True):
+                if not group.slot and own.faces == member.faces:
+                    return group, name
+        return None
+
+    def name(self, member: FoundFeature, wish: str = "") -> str:
+        """The name of one feature, which is selected if it was not."""
+        known = self.named(member)
+        return known[1] if known else self.add([member], wish).name
+
+    def slot(self, walls: Sequence[FoundFeature], wish: str = "") -> Group:
+        """The slot or tab between two walls, by its numbers."""
+        for group in self.groups:
+            if group.slot and {own.faces for own in group.slot} == {own.faces for own in walls}:
+                return group
+        first, second = walls
+        there = np.subtract(second.at, first.at)
+        across = np.array(first.direction)
+        width = float(across @ there)
+        middle = np.array(first.at) + there / 2
+        tab = width < 0.0
+        name = self.names.new(wish, "tab" if tab else "slot")
+        sides = ", ".join(length(min(pair)) for pair in zip(first.extent, second.extent, strict=True))
+        line = (
+            f"{{kind: slot, at: {place(middle)}, normal: {direction(first.direction)}, extent: [{sides}], "
+            f"width: {length(abs(width))}{', tab: true' if tab else ''}, along: {direction(first.x)}}}"
+        )
+        faces = ", ".join(f"#{own}" for each in walls for own in each.faces)
+        middle_plane = replace(first, at=(float(middle[0]), float(middle[1]), float(middle[2])))
+        made = Group(name, (middle_plane,), line, (first, second), f"between {faces}")
+        self.groups.append(made)
+        return made
+
+    def projected(self, member: FoundFeature, along: Triple, wish: str) -> Group:
+        """A hole by its numbers, with its axis along a direction: a zone is projected beyond its end there."""
+        name = self.names.new(wish, member.kind)
+        line = (
+            f"{{kind: cylinder, at: {place(member.at)}, axis: {direction(along)}, length: {length(member.length)}, "
+            f"diameter: {length(2 * member.radius)}{', hole: true' if member.hollow else ''}}}"
+        )
+        made = Group(name, (member,), line, comment=f"{faces_of(member)}, by numbers: its axis leads out")
+        self.groups.append(made)
+        return made
+
+    def disc(self, member: FoundFeature, middle: Array, normal: Array, radius: float) -> Group:
+        """A face that turns about an axis, as a disc by its numbers."""
+        line = f"{{kind: plane, at: {place(middle)}, normal: {direction(normal)}, radius: {length(radius)}}}"
+        made = Group(
+            self.names.new("", self.kind_name(member.kind)), (member,), line,
+            comment=f"{faces_of(member)}, by numbers: to its farthest edge from the axis",
+        )  # fmt: skip
+        self.groups.append(made)
+        return made
+
+    def add(self, members: Sequence[FoundFeature], wish: str = "", letter: str = "", pmi: Sequence[str] = ()) -> Group:
+        """Features that are none yet, selected under one name.
+
+        Args:
+            members: of one kind and size.
+            wish: a name for them.
+            letter: that of the datum that they are.
+            pmi: names of their tolerances and dimensions in the drawing.
+        """
+        ordered = tuple(by_place(members))
+        if len(ordered) > 1 and (line := self.selector(ordered, letter, pmi)) is None:
+            raise StepError("no one line selects them")
+        first = ordered[0]
+        name = self.names.new(wish, self.kind_name(first.kind), len(ordered))
+        found = self.selector(ordered, letter, pmi)
+        line = found if found is not None else self.by_faces(first)
+        made = Group(name, ordered, line, comment=described(ordered))
+        self.groups.append(made)
+        return made
+
+    def kind_name(self, kind: str) -> str:
+        """A name for the next feature of a kind: "hole 3"."""
+        count = 1
+        while self.names.clashes(f"{kind} {count}", 1) or any(f"{kind} {count} 1" in own.names for own in self.groups):
+            count += 1
+        return f"{kind} {count}"
+
+    def selector(self, members: Sequence[FoundFeature], letter: str, pmi: Sequence[str]) -> str | None:
+        """A line that means just these features; None where none does."""
+        count = len(members) if len(members) > 1 else None
+        counted = f", count: {count}" if count else ""
+        tries: list[tuple[str, Selector]] = []
+        if letter:
+            tries.append((f"{{datum: {scalar(letter)}{counted}}}", Selector(datum=letter, count=count)))
+        for own in pmi:
+            if own and len(own) <= SHORTEST_NAMES and own.isprintable():
+                tries.append((f"{{pmi: {scalar(own)}{counted}}}", Selector(pmi=own, count=count)))
+        first = members[0]
+        round_one = first.kind in ("hole", "pin", "ball", "socket")
+        size = round(2 * first.radius, 6)
+        if count:
+            words = f"{{kind: {first.kind}, diameter: {length(size)}{counted}}}"
+            tries.append((words, Selector(kind=first.kind, diameter=size, count=count)))
+        else:
+            at = first.at if round_one else first.on
+            near = (round(at[0], 4) + 0.0, round(at[1], 4) + 0.0, round(at[2], 4) + 0.0)
+            tries.append((line_of(first), Selector(kind=first.kind, diameter=size if round_one else None, near=near)))
+        wanted = [own.faces for own in members]
+        for line, selector in tries:
+            try:
+                if [each.faces for each in selected(self.part, selector)] == wanted:
+                    return line
+            except StepError:
+                continue
+        return None
+
+    def by_faces(self, member: FoundFeature) -> str:
+        """A feature by its faces alone."""
+        whole = any(own.faces == member.faces for own in self.part.features)
+        if whole:
+            return f'{{face: "#{member.faces[0]}"}}'
+        return "{faces: [" + ", ".join(f'"#{own}"' for own in member.faces) + "]}"
+
+
+def faces_of(member: FoundFeature) -> str:
+    """The numbers of its faces, the first few."""
+    more = ", …" if len(member.faces) > 4 else ""
+    return ", ".join(f"#{own}" for own in member.faces[:4]) + more
+
+
+def described(members: Sequence[FoundFeature]) -> str:
+    """Description of features, for a comment."""
+    first = members[0]
+    if first.kind == "plane" and not first.radius:
+        size = f"{first.extent[0]:.6g} × {first.extent[1]:.6g}"
+    elif first.kind in AXES:
+        size = f"⌀{2 * first.radius:.6g} × {first.length:.6g}"
+    else:
+        size = f"⌀{2 * first.radius:.6g}"
+    count = f"{len(members)} × " if len(members) > 1 else ""
+    where = faces_of(first) if len(members) == 1 else f"from {faces_of(first)} on"
+    return f"{count}{first.kind} {size}, {where}"

@@ -1,0 +1,173 @@
+"""The parts of a drafted scene: one of each use in each file, those of one product alike."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from tol3d.apps.drafting.drawing import Drawing
+from tol3d.apps.drafting.entry import Entry, Wording
+from tol3d.apps.drafting.features import Features
+from tol3d.apps.drafting.words import Names, across, comment, direction, place, scalar
+from tol3d.files import FileContent
+from tol3d.numerics.arrays import Array
+from tol3d.step.found import FoundFeature
+from tol3d.step.meaning import Meanings, surfaces_of
+from tol3d.step.outline import StepText, read_step_text
+from tol3d.step.reading import StepFile, Use, read_step
+from tol3d.step.refused import StepError
+
+STILL: Final = 1e-12
+MOST_PARTS: Final = 200  # of one scene that a person reads
+
+
+@dataclass
+class DraftedPart:
+    """A part of a drafted scene.
+
+    Args:
+        name: in the scene.
+        file: that it is from.
+        selection: how the scene names it in its file, as YAML; "" where that has only one.
+        pose: in the world (4, 4) [mm].
+        by_file: True if the file states it, False if the scene does.
+        features: of its product; parts that are alike share them.
+        drawing: of its product; parts that are alike share it.
+        like: the first part of its product.
+        guess: reason for its pose; "" if the file states it.
+    """
+
+    name: str
+    file: StepFile
+    selection: str
+    pose: Array
+    by_file: bool
+    features: Features
+    drawing: Drawing
+    like: str = ""
+    guess: str = ""
+
+    def at(self, feature: FoundFeature) -> Array:
+        """The middle of a feature in the world (3,) [mm]."""
+        return np.asarray(self.pose[:3, :3] @ np.array(feature.at) + self.pose[:3, 3])
+
+    def along(self, local: Sequence[float]) -> Array:
+        """A direction in the world (3,)."""
+        return np.asarray(self.pose[:3, :3] @ np.array(local))
+
+    def of(self, feature: str) -> str:
+        """A feature with the part, as YAML."""
+        return scalar(f"{self.name}.{feature}")
+
+    def first_of(self, feature: str) -> str:
+        """A feature with the first part of the product, whose tolerances are those of the others too, as YAML."""
+        return scalar(f"{self.like or self.name}.{feature}")
+
+    def entry(self) -> Entry:
+        """The part as an entry, with the features that are selected by now."""
+        lines = ["kind: step", f"file: {scalar(self.file.content.path.name)}"]
+        if self.selection:
+            lines.append(self.selection)
+        if self.like:
+            lines.append(f"like: {scalar(self.like)}")
+        elif self.features.groups:
+            lines.append("features:")
+            for group in self.features.groups:
+                remark = f"  # {group.comment}" if group.comment else ""
+                lines.append(f"  {scalar(group.name)}: {group.line}{remark}")
+        if not self.by_file and not np.allclose(self.pose, np.eye(4), atol=STILL):
+            z, x = self.pose[:3, 2], self.pose[:3, 0]
+            remark = f"  # guess: {self.guess}" if self.guess else ""
+            where = f"{{at: {place(self.pose[:3, 3])}, z: {direction(z)}, x: {direction(x)}}}"
+            lines.append(f"placed: {where}{remark}")
+        product = self.features.part.name
+        told = f"{comment(product)}, #{self.features.part.body.product}"
+        return Entry("parts", scalar(self.name), [Wording(tuple(lines), told)])
+
+
+@dataclass(frozen=True)
+class ReadText:
+    """A file with its text."""
+
+    file: StepFile
+    text: StepText
+    meanings: Meanings
+
+
+def read_files(contents: Sequence[FileContent]) -> tuple[ReadText, ...]:
+    """Files as they are read, text and geometry.
+
+    Raises:
+        StepError: one cannot be read.
+    """
+    found = []
+    for content in contents:
+        text = read_step_text(content.content, content.path.name)
+        found.append(ReadText(read_step(content), text, Meanings(text, surfaces_of(text))))
+    return tuple(found)
+
+
+def drafted_parts(files: Sequence[ReadText], names: Names) -> Iterator[DraftedPart]:
+    """A part of each use in each file; their drawings are not read yet.
+
+    Raises:
+        StepError: there are too many.
+    """
+    count = sum(len(own.file.uses) for own in files)
+    if count > MOST_PARTS:
+        raise StepError(f"expected at most {MOST_PARTS} parts in a scene, got {count}")
+    for own in files:
+        first: dict[int, DraftedPart] = {}
+        for use in own.file.uses:
+            made = drafted_part(own, use, names, first.get(use.product))
+            first.setdefault(use.product, made)
+            yield made
+
+
+def drafted_part(own: ReadText, use: Use, names: Names, like: DraftedPart | None) -> DraftedPart:
+    """The part of one use."""
+    part = next(each for each in own.file.parts if each.body.product == use.product)
+    single = len(own.file.uses) == 1
+    name = names.new(use.path.rpartition("/")[2], own.file.content.path.stem)
+    name = name if "." not in name else names.new(name.replace(".", " "), "part")
+    features = like.features if like is not None else Features(part)
+    pose = np.eye(4) if single else posed(use)
+    selection = "" if single else f"use: {scalar(use.path)}"
+    if single and len(own.file.parts) > 1:
+        selection = f"product: {scalar(part.name)}"
+    drawing = like.drawing if like is not None else Drawing(own.text, own.meanings, name, features, names)
+    return DraftedPart(
+        name, own.file, selection, pose, not single, features, drawing, "" if like is None else like.name
+    )
+
+
+def posed(use: Use) -> Array:
+    """Pose of a use (4, 4) [mm]."""
+    at, z, x = use.frame
+    pose = np.eye(4)
+    pose[:3, 0], pose[:3, 1], pose[:3, 2], pose[:3, 3] = x, np.cross(z, x), z, at
+    return pose
+
+
+def seated(part: DraftedPart, seat: FoundFeature, on: DraftedPart, target: FoundFeature) -> None:
+    """Place a part with a face of it on a face of another, middle on middle, with the least turn."""
+    normal, wanted = part.along(seat.direction), -on.along(target.direction)
+    turn = least_turn(normal, wanted)
+    part.pose[:3, :3] = turn @ part.pose[:3, :3]
+    part.pose[:3, 3] = on.at(target) - part.pose[:3, :3] @ np.array(seat.at)
+    part.by_file = False
+    part.guess = "the middle of one face on that of the other"
+
+
+def least_turn(start: Array, end: Array) -> Array:
+    """The least rotation that brings one direction to another (3, 3)."""
+    axis = np.cross(start, end)
+    sine, cosine = float(np.linalg.norm(axis)), float(start @ end)
+    if sine < STILL:
+        if cosine > 0.0:
+            return np.eye(3)
+        axis, sine, cosine = np.array(across(start)[0]), 0.0, -1.0
+    axis = axis / np.linalg.norm(axis)
+    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    return np.asarray(np.eye(3) + sine * cross + (1.0 - cosine) * (cross @ cross))
