@@ -111,7 +111,7 @@ def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
     }
     if spec.output is not None:
         others.add(part_of(spec.output.from_))
-    placed = {part: setting.touched.poses[part] for part in sorted(others - set(spec.bodies))}
+    placed = {part: setting.poses[part] for part in sorted(others - set(spec.bodies))}
     known = _KNOWN.setdefault(understood, _Known())
     key = name, b"".join(own.tobytes() for own in placed.values())
     if key not in known.kinematics:
@@ -149,7 +149,7 @@ def kinematics_of(
     Raises:
         SceneError: it does not close, or is held twice or not at all.
     """
-    scene, drawing = understood.scene, understood.effects.drawing
+    scene, drawing = understood.scene, understood.drawing
     try:
         structure = _structure(spec, name, scene, drawing)
         nominal = {joint: play.nominal for joint, play in plays.items() if play.toward is not None}

@@ -5,6 +5,7 @@ from typing import Final
 
 import numpy as np
 
+from tol3d.assembly.from_scene.datums import frame_name
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.setting import Setting
 from tol3d.assembly.grammar.drawing import Drawing
@@ -67,13 +68,9 @@ def chain_of(spec: OpenChainSpec, name: str, setting: Setting) -> Chain:
     Raises:
         SceneError: a joint whose two axes are not one line where its parts are placed.
     """
-    scene, drawing, drawn, pose = setting.scene, setting.effects.drawing, setting.drawn, setting.pose
+    scene, drawing, drawn, pose = setting.scene, setting.drawing, setting.drawn, setting.pose
     _refuse_apart(scene, name, spec, drawing)
-    frames = {
-        joint: setting.understood.frames.named(part_of(own.between[1]), own.seat)
-        for joint, own in spec.joints.items()
-        if own.seat
-    }
+    frames = {joint: frame_name(part_of(own.between[1]), own.seat) for joint, own in spec.joints.items() if own.seat}
     columns = {joint: own.start for joint, own in zip(spec.joints, drawn.values(), strict=False)}
     carried = tuple(part_of(own.between[0]) for own in spec.joints.values())
     return Chain(name, joints_of(spec, drawing, frames, columns, pose), carried)

@@ -1,16 +1,16 @@
 """From what a scene says to the assembly that it means.
 
-features      nominal shapes and frames
-datums        datum frames, each once
-bonus         the size that widens a zone
-boundaries    the gauges of datums at their maximum material boundary
-contributors  how tolerances are drawn, and what each moves
-projected     axes beyond their ends
-zones         the zone that is left to a feature, and its law
-moves         pairs, normals, locators
-measures      what is read
-warming       parts that are warmer grow
-assembly      all of it together
+datums          datum frames, each once
+contributors    how tolerances are drawn, and what each moves
+zones           the zone that is left to a feature, and its law
+warming         parts that are warmer grow
+boundaries      the gauges of datums at their material boundaries
+effects         all contributors with what they change
+features        nominal shapes and frames, with what moves them
+contact_points  points of planes at which moves lay parts
+moves           pairs, normals, locators
+measures        what is read
+assembly        all of it together
 """
 
 from tol3d.assembly.from_scene.assembly import Meant, meant, understood

@@ -3,15 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tol3d.assembly.from_scene.boundaries import shift_frames
+from tol3d.assembly.from_scene.boundaries import gauge_shifts, on_gauges
+from tol3d.assembly.from_scene.contact_points import contact_points
 from tol3d.assembly.from_scene.contributors import effects_of
-from tol3d.assembly.from_scene.datums import DatumFrames, in_order
-from tol3d.assembly.from_scene.features import TouchedPoints, features_of
-from tol3d.assembly.from_scene.held import mark_held
-from tol3d.assembly.from_scene.measures import add_projected, add_twins, measured_of, named_by, shown_measures
+from tol3d.assembly.from_scene.datums import frames_of, in_order
+from tol3d.assembly.from_scene.features import features_of, twins_of
+from tol3d.assembly.from_scene.held import with_held
+from tol3d.assembly.from_scene.measures import measured_of, named_by, shown_measures
 from tol3d.assembly.from_scene.moves import moves_of
 from tol3d.assembly.from_scene.setting import Understood
-from tol3d.assembly.from_scene.warming import warmed
+from tol3d.assembly.from_scene.warming import growth
 from tol3d.assembly.grammar.checks import read_at
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -41,6 +42,24 @@ class Meant:
     second_order: float = 0.0
 
 
+def understood(scene: Scene) -> Understood:
+    """Drawings and measures of a scene, wherever its parts lie. Each step makes new objects of those before.
+
+    Raises:
+        SceneError: tolerances, zones or directions that do not fit their features.
+    """
+    drawing = Drawing(scene)
+    nominal = frames_of(drawing)
+    toleranced = effects_of(drawing)
+    warmed = toleranced.with_drawn(growth(drawing, nominal))
+    gauged = warmed.with_drawn(gauge_shifts(drawing, warmed, nominal))
+    effects = with_held(drawing, gauged, nominal)
+    frames = on_gauges(drawing, effects, nominal)
+    features = features_of(drawing, effects)
+    measured = measured_of(drawing)
+    return Understood(drawing, effects, frames, features, measured)
+
+
 def meant(understood: Understood, poses: Mapping[str, Array], pose: str = "") -> Meant:
     """The assembly with given nominal poses of its parts in the world (4, 4).
 
@@ -49,41 +68,31 @@ def meant(understood: Understood, poses: Mapping[str, Array], pose: str = "") ->
         poses: by part.
         pose: of moves that have poses, with the measures read in it; all measures if no move has poses.
     """
-    features, frames = dict(understood.features), understood.frames
-    add_twins(understood.scene, features, poses)
-    moves = moves_of(understood, TouchedPoints(features, poses), pose)
+    scene, effects, named = understood.scene, understood.effects, understood.features
+    made = {**twins_of(scene, named, poses), **contact_points(scene, effects, named, poses)}
+    features = {**named, **made}
+    moves = moves_of(understood, features, poses, pose)
+    parts = parts_of(scene, features, understood.frames.made, poses)
+    measured = {name: own for name, own in understood.measured.items() if pose in read_at(scene, name)}
+    assembly = Assembly(parts, moves, measured, effects.width)
+    shown = tuple(own for own in shown_measures(scene, understood.measured) if own.name in measured)
+    return Meant(assembly, effects.contributors, shown, named_by(scene))
+
+
+def parts_of(
+    scene: Scene, features: Mapping[str, Feature], frames: Mapping[str, DatumFrame], poses: Mapping[str, Array]
+) -> tuple[Part, ...]:
+    """Parts with their features and datum frames, each after what it is made of."""
     parents = {name: feature.parent for name, feature in features.items()}
-    feature_order, frame_order, _ = in_order(parents, frames.made)  # rings are refused where the scene is checked
+    feature_order, frame_order, _ = in_order(parents, frames)  # rings are refused where the scene is checked
     its_features: dict[str, list[Feature]] = {name: [] for name in poses}
     its_frames: dict[str, list[DatumFrame]] = {name: [] for name in poses}
     for own in feature_order:
         its_features[features[own].part].append(features[own])
     for own in frame_order:
-        its_frames[frames.made[own].part].append(frames.made[own])
-    solids = shapes_of(understood.scene)
-    parts = tuple(
+        its_frames[frames[own].part].append(frames[own])
+    solids = shapes_of(scene)
+    return tuple(
         Part(name, poses[name], tuple(its_features[name]), tuple(its_frames[name]), solids.get(name))
-        for name in understood.scene.of(SolidSpec)
+        for name in scene.of(SolidSpec)
     )
-    measured = {name: own for name, own in understood.measured.items() if pose in read_at(understood.scene, name)}
-    assembly = Assembly(parts, moves, measured, understood.effects.width)
-    shown = tuple(own for own in shown_measures(understood.scene, understood.measured) if own.name in measured)
-    return Meant(assembly, tuple(understood.effects.contributors), shown, named_by(understood.scene))
-
-
-def understood(scene: Scene) -> Understood:
-    """Model of a scene.
-
-    Raises:
-        SceneError: tolerances, zones or directions that do not fit their features.
-    """
-    drawing = Drawing(scene)
-    effects = effects_of(scene, drawing)
-    frames = DatumFrames(drawing.features)
-    warmed(effects, scene, drawing, frames)
-    features = features_of(drawing, effects, frames)
-    add_projected(scene, features)
-    measured = measured_of(scene, drawing, frames)
-    shift_frames(scene, drawing, effects, frames)
-    mark_held(scene, drawing, effects, frames)
-    return Understood(scene, effects, frames, features, measured)

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
-from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
-from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.datums import DatumFrames, frame_name, of_tolerances
+from tol3d.assembly.from_scene.effects import Drawn, Effects
 from tol3d.assembly.from_scene.zones import sized_by
 from tol3d.assembly.grammar.boundary_checks import earlier_zone, is_square, shifts_alone
 from tol3d.assembly.grammar.datums import DatumSpec, Lying
@@ -16,9 +17,8 @@ from tol3d.assembly.grammar.features.feature_spec import AXES
 from tol3d.assembly.model import Axis, Contribution, DatumFrame, Floating, Gauges, Slot
 from tol3d.assembly.model.datum_frame import GaugeRoom
 from tol3d.assembly.zones import Bonus, SizedBy, ZoneDraw, catalogue, uniform_in
-from tol3d.assembly.zones.float_draw import FloatDraw, GaugeShift, Leaning
+from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, GaugeShift, Leaning
 from tol3d.numerics.arrays import Array
-from tol3d.scene import Scene
 from tol3d.system.plain import PlainContributor
 
 ANY = 1e3
@@ -43,34 +43,50 @@ class Boundary:
     own: DatumSpec
 
 
-def shift_frames(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
-    """Add the shift of datum frames by their gauges: one contributor each, common to all features of the frame."""
-    for name, boundary in _boundaries(drawing, frames).items():
+def gauge_shifts(drawing: Drawing, effects: Effects, frames: DatumFrames) -> Iterator[Drawn]:
+    """The draws of gauges in their clearances: one contributor each, common to all features of the frame.
+
+    Args:
+        drawing: tolerances by feature.
+        effects: of tolerances, by which datum features lean.
+        frames: regardless of sizes.
+    """
+    for name, boundary in _boundaries(drawing).items():
         if boundary.own.gauge == "random":
-            frame = frames.made[name]
-            frames.made[name] = replace(frame, shifted_by=(_shift(scene, drawing, effects, frame, boundary),))
-    drawn = dict.fromkeys(_named_by_tolerances(drawing, frames))
-    for name in dict.fromkeys((*drawn, *frames.made)):
-        frame, datums = frames.made[name], frames.specs[name]
-        if (gauge := _lying(datums)) is not None and (
-            name not in drawn or not shifts_alone(drawing, frame.part, datums)
-        ):
-            rooms = rooms_of(scene, drawing, frame.part, datums)
-            floating = None if gauge == "least" else _floating(effects, frame, datums)
-            frames.made[name] = replace(frame, gauges=Gauges(rooms, floating))
+            yield Drawn(_shift(drawing, effects, boundary), of=name)
+    for name in _with_gauges(drawing, frames):
+        if _lying(frames.specs[name]) == "random":
+            yield Drawn(_floating(frames.made[name], frames.specs[name]), of=name)
 
 
-def _named_by_tolerances(drawing: Drawing, frames: DatumFrames) -> Iterator[str]:
-    """Datum frames in the order of the tolerances."""
-    for own in drawing.stated:
-        if not isinstance(own, str) and own.spec.named_datums:
-            yield frames.named(own.feature.partition(".")[0], own.spec.named_datums)
+def on_gauges(drawing: Drawing, effects: Effects, frames: DatumFrames) -> DatumFrames:
+    """Datum frames whose datums at their boundaries lie on gauges, which shift as they are drawn."""
+    made = dict(frames.made)
+    for name, boundary in _boundaries(drawing).items():
+        across = drawing.kind(boundary.feature).frame[:3, :2]
+        own = (Contribution(drawn, columns, across) for drawn, columns in effects.drawn.get(name, {}).items())
+        made[name] = replace(made[name], shifted_by=tuple(own))
+    for name in _with_gauges(drawing, frames):
+        frame, datums, lying = made[name], frames.specs[name], _lying(frames.specs[name])
+        floating = Floating("centred")
+        if lying == "random":
+            (columns,) = effects.drawn[name].values()
+            floating = Floating("random", columns)
+        rooms = rooms_of(drawing, frame.part, datums)
+        made[name] = replace(frame, gauges=Gauges(rooms, None if lying == "least" else floating))
+    return replace(frames, made=MappingProxyType(made))
 
 
-def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) -> Floating:
-    """Position of a frame's gauges within their clearances."""
-    if _lying(datums) != "random":
-        return Floating("centred")
+def _with_gauges(drawing: Drawing, frames: DatumFrames) -> Iterator[str]:
+    """Datum frames with gauges of their own, those of tolerances first and in their order."""
+    toleranced = {frame_name(*own): shifts_alone(drawing, *own) for own in of_tolerances(drawing)}
+    for name in dict.fromkeys((*toleranced, *frames.specs)):
+        if _lying(frames.specs[name]) is not None and not toleranced.get(name, False):
+            yield name
+
+
+def _floating(frame: DatumFrame, datums: Sequence[DatumSpec]) -> PlainContributor:
+    """The position of a frame's gauges within their clearances."""
     first = next(k for k, own in enumerate(datums) if own.gauge is not None)
     own, to, then = (
         ", ".join("-".join(each.features) + _least(each) for each in some)
@@ -83,7 +99,7 @@ def _floating(effects: Effects, frame: DatumFrame, datums: Sequence[DatumSpec]) 
     draw = FloatDraw(("room",), (*SHIFT_AND_TURN, "start"))
     name = f"shift of {frame.part}.{own}" + (f" to {to}" if to else "") + (f", then {then}" if then else "")
     words = f"of the gauges at the {_boundary(datums)} material boundary of datums"
-    return Floating("random", effects.added(PlainContributor(name, "datum_shift", draw, "1", 1.0, words)))
+    return PlainContributor(name, "datum_shift", draw, "1", 1.0, words)
 
 
 def _lying(datums: Sequence[DatumSpec]) -> Lying | None:
@@ -91,26 +107,21 @@ def _lying(datums: Sequence[DatumSpec]) -> Lying | None:
     return next((own.gauge for own in datums if own.gauge is not None), None)
 
 
-def _boundaries(drawing: Drawing, frames: DatumFrames) -> dict[str, Boundary]:
+def _boundaries(drawing: Drawing) -> dict[str, Boundary]:
     """By the name of the frame, in the order of the tolerances."""
-    found: dict[str, Boundary] = {}
-    for own in drawing.stated:
-        if isinstance(own, str):
-            continue
-        datums = own.spec.named_datums
-        part = own.feature.partition(".")[0]
-        if shifts_alone(drawing, part, datums):
-            feature = f"{part}.{datums[-1].features[0]}"
-            found.setdefault(frames.named(part, datums), Boundary(feature, datums[:-1], datums[-1]))
-    return found
+    return {
+        frame_name(part, datums): Boundary(f"{part}.{datums[-1].features[0]}", datums[:-1], datums[-1])
+        for part, datums in of_tolerances(drawing)
+        if shifts_alone(drawing, part, datums)
+    }
 
 
-def rooms_of(scene: Scene, drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
+def rooms_of(drawing: Drawing, part: str, datums: tuple[DatumSpec, ...]) -> tuple[GaugeRoom, ...]:
     """Datum shift allowed to each gauge of the datums at their boundary."""
     found = []
     for k, name in ((k, name) for k, own in enumerate(datums) if own.gauge is not None for name in own.features):
         feature = f"{part}.{name}"
-        shape, (virtual, grows) = drawing.kind(feature).shape, _virtual(scene, drawing, feature, datums, k)
+        shape, (virtual, grows) = drawing.kind(feature).shape, _virtual(drawing, feature, datums, k)
         assert isinstance(shape, Axis | Slot)
         nominal = shape.width if isinstance(shape, Slot) else shape.diameter or 0.0
         found.append(GaugeRoom(feature, nominal + virtual, grows))
@@ -127,7 +138,7 @@ def _boundary(datums: Sequence[DatumSpec]) -> str:
     return " or ".join(dict.fromkeys(words[own.boundary] for own in datums if own.gauge is not None))
 
 
-def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
+def room_of(drawing: Drawing, of: str, datums: tuple[DatumSpec, ...]) -> GaugeRoom | None:
     """Datum shift allowed to the gauge of the last datum, for a position along it; None unless it shifts alone."""
     part = part_of(of)
     if not shifts_alone(drawing, part, datums):
@@ -136,7 +147,7 @@ def room_of(scene: Scene, drawing: Drawing, of: str, datums: tuple[DatumSpec, ..
     measured = drawing.kind(of)
     if measured.kind not in AXES or not is_square(*_axes(drawing, boundary.feature, of)):
         return None
-    return rooms_of(scene, drawing, part, datums)[0]
+    return rooms_of(drawing, part, datums)[0]
 
 
 def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
@@ -144,7 +155,7 @@ def _axes(drawing: Drawing, *features: str) -> tuple[Array, Array]:
     return first, second
 
 
-def _virtual(scene: Scene, drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int) -> tuple[float, bool]:
+def _virtual(drawing: Drawing, feature: str, datums: Sequence[DatumSpec], k: int) -> tuple[float, bool]:
     """Virtual condition of a feature of a datum, as a deviation from nominal [mm], and whether larger ones leave room.
 
     At the maximum material boundary a hole holds its gauge, and a pin is held by it; at the least one the gauge lies
@@ -152,29 +163,23 @@ def _virtual(scene: Scene, drawing: Drawing, feature: str, datums: Sequence[Datu
     size, by a bonus from the other condition, have all of it in their gauge.
     """
     boundary = datums[k].boundary
-    bonus = sized_by(scene, drawing, feature, boundary).bonus
+    bonus = sized_by(drawing, feature, boundary).bonus
     tolerance, modifier = earlier_zone(drawing, feature, datums, k) or (0.0, None)
     tolerance += bonus.most if modifier not in (None, boundary) else 0.0
     return bonus.low - tolerance if bonus.grows else bonus.high + tolerance, bonus.grows
 
 
-def _shift(scene: Scene, drawing: Drawing, effects: Effects, frame: DatumFrame, boundary: Boundary) -> Contribution:
-    draw = _room(scene, drawing, effects, boundary)
+def _shift(drawing: Drawing, effects: Effects, boundary: Boundary) -> PlainContributor:
+    """The shift of the gauge of a datum within its clearance."""
     to = ", ".join(name for datum in boundary.earlier for name in datum.features)
     name = f"shift of {boundary.feature}{_least(boundary.own)} to {to}"
-    columns = slice(effects.width, effects.width + len(draw.components))
     words = f"of the gauge at the {_boundary((boundary.own,))} material boundary of a datum"
-    effects.contributors.append(PlainContributor(name, "datum_shift", draw, description=words))
-    effects.width = columns.stop
-    across = drawing.kind(boundary.feature).frame[:3, :2]
-    return Contribution(name, columns, across)
+    return PlainContributor(name, "datum_shift", _room(drawing, effects, boundary), description=words)
 
 
-def _room(scene: Scene, drawing: Drawing, effects: Effects, boundary: Boundary) -> GaugeShift:
-    sized = sized_by(scene, drawing, boundary.feature, boundary.own.boundary)
-    virtual, grows = _virtual(
-        scene, drawing, boundary.feature, (*boundary.earlier, boundary.own), len(boundary.earlier)
-    )
+def _room(drawing: Drawing, effects: Effects, boundary: Boundary) -> GaugeShift:
+    sized = sized_by(drawing, boundary.feature, boundary.own.boundary)
+    virtual, grows = _virtual(drawing, boundary.feature, (*boundary.earlier, boundary.own), len(boundary.earlier))
     bonus = Bonus(virtual if grows else virtual - ANY, virtual + ANY if grows else virtual, grows=grows)
     zone = catalogue.point_in_disc(0.0)
     draws = {own.name: own.draw for own in effects.contributors}

@@ -1,11 +1,12 @@
 """Contributors of a scene, and the effect of each on features and locators."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from tol3d.assembly.from_scene.effects import NO_EFFECTS, Drawn, Effect, Effects, Touch
 from tol3d.assembly.from_scene.segments import motion_of
 from tol3d.assembly.from_scene.zones import drawn_in, enveloped, sized_by
 from tol3d.assembly.grammar.drawing import Drawing, Stated
@@ -15,7 +16,7 @@ from tol3d.assembly.grammar.forms import whole_form
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec, is_of_round_surface
 from tol3d.assembly.grammar.tolerances.plus_minus import LocatorSpec, PlusMinusSpec, SizeSpec
-from tol3d.assembly.model import Axis, Cone, Contribution, Point, Slot
+from tol3d.assembly.model import Axis, Cone, Point, Slot
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.assembly.zones import EnvelopedForm
 from tol3d.distributions import Distribution
@@ -25,95 +26,77 @@ from tol3d.scene import Scene
 from tol3d.system.draw import Draw, Each, Scalar
 from tol3d.system.plain import PlainContributor
 
-Touch = tuple[str, str]
-"""A move, and one of its pairs by the name that locators have."""
 
-
-@dataclass
-class Effects:
-    """Contributors in order, and their effects.
+@dataclass(frozen=True)
+class _Tolerances:
+    """Tolerances of a scene, and what decides how each of them acts.
 
     Args:
-        scene: the scene.
-        drawing: its tolerances by feature.
+        drawing: tolerances by feature.
         touching: the pairs at which each feature touches, by what touches it there; the same for all pairs of two
             features.
         fitting: features that engage with play.
     """
 
-    scene: Scene
     drawing: Drawing
     touching: Mapping[str, Mapping[str, Sequence[Touch]]]
-    fitting: frozenset[str] = frozenset()
-    contributors: list[PlainContributor] = field(default_factory=list)
-    moved_by: dict[str, list[Contribution]] = field(default_factory=dict)
-    size_by: dict[str, list[Contribution]] = field(default_factory=dict)
-    formed_by: dict[str, list[Contribution]] = field(default_factory=dict)
-    grown_by: dict[str, list[Contribution]] = field(default_factory=dict)
-    locators: dict[Touch, list[Contribution]] = field(default_factory=dict)
-    heights: dict[Touch, list[Contribution]] = field(default_factory=dict)
-    """Form contributions of surfaces at points of touch."""
-    drawn: dict[str, Mapping[str, slice]] = field(default_factory=dict)
-    """Columns of contributors of moves, by the move's name and theirs."""
-    width: int = 0
+    fitting: frozenset[str]
 
-    def _added(
-        self, name: str, spec_kind: str, description: str, draw: Draw, *, line: str = "", nominal: str = ""
-    ) -> slice:
-        return self.added(PlainContributor(name, spec_kind, draw, description=description, line=line, nominal=nominal))
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.drawing.scene
 
-    def added(self, contributor: PlainContributor) -> slice:
-        """The columns of a further contributor."""
-        columns = slice(self.width, self.width + len(contributor.draw.components))
-        self.contributors.append(contributor)
-        self.width = columns.stop
-        return columns
+    def drawn(self) -> Iterator[Drawn]:
+        """What they draw, in the scene's order; the motion of a pattern after its last feature."""
+        for own in self.drawing.stated:
+            if isinstance(own, str):
+                yield self._locator(own)
+                continue
+            match own.spec:
+                case PlusMinusSpec() | SizeSpec():
+                    yield self._dimension(own, own.spec)
+                case LocationSpec():
+                    yield self._zone(own)
+                case OrientationSpec() if own.spec.law is not None:
+                    yield self._zone(own)
+                case FormSpec() if own.spec.law is not None:
+                    yield from self._form(own, own.spec)
+            if (pattern := self.drawing.composite(own)) and own is pattern[-1]:
+                yield self._motion(pattern)
 
-    def add(self, own: Stated | str) -> None:
-        """A tolerance, if it draws anything."""
-        if isinstance(own, str):
-            self._locator(own)
-            return
-        match own.spec:
-            case PlusMinusSpec() | SizeSpec():
-                self._dimension(own, own.spec)
-            case LocationSpec():
-                self._zone(own)
-            case OrientationSpec() if own.spec.law is not None:
-                self._zone(own)
-            case FormSpec() if own.spec.law is not None:
-                self._form(own, own.spec)
-
-    def add_motion(self, pattern: Sequence[Stated]) -> None:
+    def _motion(self, pattern: Sequence[Stated]) -> Drawn:
         """The motion of a pattern as a whole, which a composite tolerance leaves it."""
         own = pattern[0]
         draw, moved, word = motion_of(self.scene, self.drawing, pattern)
-        name = motion_name(own, word)
-        line = f"{own.entry} {word}"
-        columns = self._added(name, own.spec.kind, f"of all features of {own.entry} together", draw, line=line)
-        for feature, matrix in moved.items():
-            self.moved_by.setdefault(feature, []).append(Contribution(name, columns, matrix))
+        made = PlainContributor(
+            motion_name(own, word),
+            own.spec.kind,
+            draw,
+            description=f"of all features of {own.entry} together",
+            line=f"{own.entry} {word}",
+            nominal="",
+        )
+        return Drawn(made, tuple(Effect("moved_by", feature, matrix) for feature, matrix in moved.items()))
 
-    def _locator(self, name: str) -> None:
+    def _locator(self, name: str) -> Drawn:
         spec = self.scene.tolerances[name]
         assert isinstance(spec, LocatorSpec)
         draw = Scalar(spec.distribution.resolve(self.scene.files))
-        columns = self._added(name, spec.kind, spec.description, draw, nominal=spec.nominal)
-        self.locators.setdefault((spec.of, spec.pair), []).append(Contribution(name, columns, np.eye(1)))
+        made = PlainContributor(name, spec.kind, draw, description=spec.description, nominal=spec.nominal)
+        return Drawn(made, (Effect("locators", (spec.of, spec.pair), np.eye(1)),))
 
-    def _dimension(self, own: Stated, spec: PlusMinusSpec | SizeSpec) -> None:
+    def _dimension(self, own: Stated, spec: PlusMinusSpec | SizeSpec) -> Drawn:
         draw = Scalar(spec.distribution.resolve(self.scene.files))
-        words = (own.name, spec.kind, spec.description)
-        columns = self._added(*words, draw, line=own.entry, nominal=spec.nominal)
-        if isinstance(spec, SizeSpec):
-            self._refuse_no_size(own, draw)
-            self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, np.eye(1)))
-            if isinstance(shape := self.drawing.kind(own.feature).shape, Cone):
-                along = np.array([[0.0], [0.0], [0.0], [0.0], [shape.along_by_size]])
-                self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, along))
-        else:
-            matrix = self._along(own.feature, spec)[:, None]
-            self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+        made = _of_line(own, draw, nominal=spec.nominal)
+        if not isinstance(spec, SizeSpec):
+            return Drawn(made, (Effect("moved_by", own.feature, self._along(own.feature, spec)[:, None]),))
+        self._refuse_no_size(own, draw)
+        effects = [Effect("size_by", own.feature, np.eye(1))]
+        if isinstance(shape := self.drawing.kind(own.feature).shape, Cone):
+            along = np.array([[0.0], [0.0], [0.0], [0.0], [shape.along_by_size]])
+            effects.append(Effect("moved_by", own.feature, along))
+        return Drawn(made, tuple(effects))
 
     def _refuse_no_size(self, own: Stated, draw: Scalar) -> None:
         """A law that leaves nothing of a diameter or width, or more than doubles it."""
@@ -141,23 +124,23 @@ class Effects:
             return np.array([z, 0.0, 0.0])
         return np.array([x, y, x, y, z]) if isinstance(own, ConeSpec) else np.array([x, y, x, y])
 
-    def _zone(self, own: Stated) -> None:
+    def _zone(self, own: Stated) -> Drawn:
         draw, matrix = drawn_in(self.scene, own, self.drawing)
-        columns = self._added(own.name, own.spec.kind, own.spec.description, draw, line=own.entry)
-        self.moved_by.setdefault(own.feature, []).append(Contribution(own.name, columns, matrix))
+        effects = [Effect("moved_by", own.feature, matrix)]
         if is_of_round_surface(own.spec, self.drawing.kind(own.feature).kind):
             shape, larger = self.drawing.kind(own.feature).shape, np.zeros((1, matrix.shape[1]))
             assert isinstance(shape, Axis | Point)
             larger[0, 0] = -2.0 if shape.inner else 2.0  # outward is out of the material
             if isinstance(shape, Cone):
                 larger[0, 0] /= math.cos(shape.angle)
-            self.size_by.setdefault(own.feature, []).append(Contribution(own.name, columns, larger))
+            effects.append(Effect("size_by", own.feature, larger))
+        return Drawn(_of_line(own, draw), tuple(effects))
 
-    def _form(self, own: Stated, spec: FormSpec) -> None:
+    def _form(self, own: Stated, spec: FormSpec) -> Iterator[Drawn]:
         others = self.touching.get(own.feature, {})
         alike = [each.feature for each in self.drawing.stated if isinstance(each, Stated) and each.entry == own.entry]
         if own.feature in self.fitting:
-            self._form_in_fit(own, spec)
+            yield self._form_in_fit(own, spec)
             return
         if not others and (own.alike or any(self.touching.get(each) or each in self.fitting for each in alike)):
             return  # a copy of the toleranced part, or one of a pattern, without a touch
@@ -170,14 +153,11 @@ class Effects:
         law: Distribution = named(spec.law.touching)(
             spec.law, 0.5 * whole_form(spec, self.drawing.kind(own.feature).shape), self.scene.files
         )
-        columns = self._added(own.name, spec.kind, spec.description, Each(law, tuple(others)), line=own.entry)
-        for k, touches in enumerate(others.values()):
-            matrix = np.zeros((1, len(others)))
-            matrix[0, k] = 1.0
-            for touch in touches:
-                self.heights.setdefault(touch, []).append(Contribution(own.name, columns, matrix))
+        heights = zip(np.eye(len(others)), others.values(), strict=True)
+        effects = (Effect("heights", touch, row[None]) for row, touches in heights for touch in touches)
+        yield Drawn(_of_line(own, Each(law, tuple(others))), tuple(effects))
 
-    def _form_in_fit(self, own: Stated, spec: FormSpec) -> None:
+    def _form_in_fit(self, own: Stated, spec: FormSpec) -> Drawn:
         """The form by which a fit sees a larger pin or tab, or a smaller hole or slot."""
         assert spec.law is not None
         if not spec.law.fitting:
@@ -194,12 +174,11 @@ class Effects:
         form = whole_form(spec, shape)
         draw: Draw = Scalar(law(spec.law, form, self.scene.files))
         if self.drawing.is_enveloped(own.feature):
-            size = sized_by(self.scene, self.drawing, own.feature, "mmc")
+            size = sized_by(self.drawing, own.feature, "mmc")
             share = law(spec.law, 1.0, self.scene.files)
             draw = EnvelopedForm(share, spec.law.kind, enveloped(size, self.drawing, own.feature, form))
-        columns = self._added(own.name, spec.kind, spec.description, draw, line=own.entry)
         sign = np.array([[-1.0 if shape.inner else 1.0]])
-        self.formed_by.setdefault(own.feature, []).append(Contribution(own.name, columns, sign))
+        return Drawn(_of_line(own, draw), (Effect("formed_by", own.feature, sign),))
 
     def _untouched(self, own: Stated) -> str:
         words = f"expected a feature that touches a point in a move, got {own.feature!r}"
@@ -209,29 +188,33 @@ class Effects:
         return f"{words}; {lay}, or leave the law out, and the form {then}"
 
 
+def _of_line(own: Stated, draw: Draw, *, nominal: str = "") -> PlainContributor:
+    """The contributor of a tolerance of one feature."""
+    return PlainContributor(
+        own.name, own.spec.kind, draw, description=own.spec.description, line=own.entry, nominal=nominal
+    )
+
+
 def motion_name(own: Stated, word: str) -> str:
     """The name of a pattern's motion: "holes shift and turn", "holes shift of cover 2"."""
     return f"{own.entry} {word}" + (f" of {part_of(own.feature)}" if own.alike else "")
 
 
-SHIFT_AND_TURN = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
-
-
-def effects_of(scene: Scene, drawing: Drawing) -> Effects:
-    """All contributors of a scene, and their effects.
+def effects_of(drawing: Drawing) -> Effects:
+    """Contributors of a scene's tolerances, then those of its moves, and their effects.
 
     Raises:
         SceneError: a zone does not fit its feature, or the file of a law is invalid.
     """
-    effects = Effects(scene, drawing, _touching(scene), _fitting(scene))
-    for own in drawing.stated:
-        effects.add(own)
-        if isinstance(own, Stated) and (pattern := drawing.composite(own)) and own is pattern[-1]:
-            effects.add_motion(pattern)
-    for name, move in scene.of(AssemblyMoveSpec).items():
-        drawn = named(move.drawn_by)(move, name, scene) if move.drawn_by else ()
-        effects.drawn[name] = {own.name: effects.added(own) for own in drawn}
-    return effects
+    scene = drawing.scene
+    stated = _Tolerances(drawing, _touching(scene), _fitting(scene)).drawn()
+    own = (
+        Drawn(contributor, of=name)
+        for name, move in scene.of(AssemblyMoveSpec).items()
+        if move.drawn_by
+        for contributor in named(move.drawn_by)(move, name, scene)
+    )
+    return NO_EFFECTS.with_drawn((*stated, *own))
 
 
 def _fitting(scene: Scene) -> frozenset[str]:

@@ -2,18 +2,17 @@
 
 from dataclasses import replace
 
-from tol3d.assembly.from_scene.contributors import Effects
 from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.effects import Effects
 from tol3d.assembly.from_scene.measures import named_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.tolerances.location import FormSpec, LocationSpec, OrientationSpec
 from tol3d.assembly.grammar.tolerances.plus_minus import SizeSpec
-from tol3d.scene import Scene
 
 
-def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFrames) -> None:
-    """Add to contributors the other effects of their tolerances: gauges, inspections, reduced zones."""
-    held: dict[str, str] = {}
+def with_held(drawing: Drawing, effects: Effects, frames: DatumFrames) -> Effects:
+    """Effects whose contributors say what else their tolerances act on: gauges, inspections, reduced zones."""
+    scene, held = drawing.scene, dict[str, str]()
     inspected = {
         feature
         for name, names in named_by(scene).items()
@@ -21,9 +20,9 @@ def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFra
         for feature in names
     }
     gauged = {
-        f"{own.part}.{feature}"
-        for name, own in frames.made.items()
-        for datum in frames.specs[name]
+        f"{frames.made[name].part}.{feature}"
+        for name, datums in frames.specs.items()
+        for datum in datums
         if datum.gauge is not None
         for feature in datum.features
     }
@@ -37,6 +36,5 @@ def mark_held(scene: Scene, drawing: Drawing, effects: Effects, frames: DatumFra
             held[own.name] = "sizes the zone that a measure inspects"
         elif isinstance(own.spec, FormSpec | OrientationSpec) and drawing.of(own.feature, LocationSpec):
             held[own.name] = "narrows another zone"
-    for k, each in enumerate(effects.contributors):
-        if each.name in held:
-            effects.contributors[k] = replace(each, held=held[each.name])
+    marked = (replace(own, held=held[own.name]) if own.name in held else own for own in effects.contributors)
+    return replace(effects, contributors=tuple(marked))

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
 from tol3d.assembly.from_scene.boundaries import room_of
-from tol3d.assembly.from_scene.datums import DatumFrames
-from tol3d.assembly.from_scene.zones import LEAST_SINE, projected, projected_name, sized_by
+from tol3d.assembly.from_scene.datums import frame_name
+from tol3d.assembly.from_scene.zones import LEAST_SINE, projected_name, sized_by
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.measure_checks import dimension_of
@@ -19,58 +20,60 @@ from tol3d.assembly.grammar.measures.inspected import (
     InspectedSetSpec,
     InspectedTogetherSpec,
 )
-from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec, DirectionErrorSpec, PoseErrorSpec
-from tol3d.assembly.grammar.moves.assembly_move import fixed_parts
-from tol3d.assembly.model import Feature, Measured, Point
+from tol3d.assembly.grammar.measures.pose_errors import DifferenceSpec
+from tol3d.assembly.model import Measured
 from tol3d.assembly.model.datum_frame import MaterialBonus
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.plain import UNITS, PlainMeasure, measures_of
 
 
-def measured_of(scene: Scene, drawing: Drawing, frames: DatumFrames) -> dict[str, Measured]:
+def measured_of(drawing: Drawing) -> Mapping[str, Measured]:
     """Model of each measure of a scene."""
-    return {name: _measured(scene, _named(scene, name), drawing, frames) for name in scene.measures}
+    measures = {name: _measured(_named(drawing.scene, name), drawing) for name in drawing.scene.measures}
+    return MappingProxyType(measures)
 
 
-def _measured(scene: Scene, spec: AssemblyMeasureSpec, drawing: Drawing, frames: DatumFrames) -> Measured:
+def _measured(spec: AssemblyMeasureSpec, drawing: Drawing) -> Measured:
+    scene = drawing.scene
     if isinstance(spec, DifferenceSpec):
-        own, less = (_measured(scene, _named(scene, name), drawing, frames) for name in (spec.of, spec.minus))
+        own, less = (_measured(_named(scene, name), drawing) for name in (spec.of, spec.minus))
         return replace(own, minus=less, rocking=spec.rocking)
     found = spec.measured(list(scene.moves))
     if isinstance(spec, TimedSpec):
         found = replace(found, after=_after(scene, spec), rocking=spec.rocking)
-    return _inspected(scene, spec, drawing, frames, found) if isinstance(spec, FeatureMeasureSpec) else found
+    return _inspected(spec, drawing, found) if isinstance(spec, FeatureMeasureSpec) else found
 
 
-def _inspected(
-    scene: Scene, spec: FeatureMeasureSpec, drawing: Drawing, frames: DatumFrames, found: Measured
-) -> Measured:
+def _inspected(spec: FeatureMeasureSpec, drawing: Drawing, found: Measured) -> Measured:
     """A measure of features with its datum frame, its bonuses, and what gauges may do."""
     features = found.features
-    bonuses = _bonuses(scene, drawing, spec, features)
+    bonuses = _bonuses(drawing, spec, features)
     if isinstance(spec, InspectedPositionSpec | InspectedOrientationSpec) and spec.projected is not None:
         features = (projected_name(spec.of, spec.projected.internal),)
-    frame = frames.named(part_of(features[0]), spec.named_datums)
+    first = spec.named()[0][1]
+    frame = frame_name(part_of(first), spec.named_datums)
     several = spec if isinstance(spec, InspectedTogetherSpec) else None
-    room = None if several else room_of(scene, drawing, spec.named()[0][1], spec.named_datums)
+    room = None if several else room_of(drawing, first, spec.named_datums)
     over_gauges = room is None and any(own.gauge is not None for own in spec.named_datums)
     gauge = spec.free if isinstance(spec, InspectedPatternSpec) else found.gauge
     found = replace(found, features=features, frame=frame, bonuses=bonuses)
     if isinstance(spec, InspectedOrientationSpec) and found.direction is not None:
-        found = replace(found, direction=_across(scene, spec, drawing, found.direction))
+        found = replace(found, direction=_across(spec, drawing, found.direction))
     zones = tuple(own.internal for own in several.zones) if several else ()
     return replace(found, gauge=gauge, zones=zones, room=room, over_gauges=over_gauges)
 
 
-def _across(scene: Scene, spec: InspectedOrientationSpec, drawing: Drawing, along: Array) -> Array:
+def _across(spec: InspectedOrientationSpec, drawing: Drawing, along: Array) -> Array:
     """The part of a direction (3,) across an axis, of unit length."""
     z = drawing.kind(spec.of).frame[:3, 2]
     across = along - (along @ z) * z
     size = float(np.linalg.norm(across))
     if size < LEAST_SINE:
-        name = next(name for name, own in scene.measures.items() if own is spec)
-        raise scene.refuse(("measures", name, "direction"), "expected a direction across the axis, got one along it")
+        name = next(name for name, own in drawing.scene.measures.items() if own is spec)
+        raise drawing.scene.refuse(
+            ("measures", name, "direction"), "expected a direction across the axis, got one along it"
+        )
     return np.asarray(across / size)
 
 
@@ -79,36 +82,13 @@ def _after(scene: Scene, spec: TimedSpec) -> int:
     return -1 if spec.after is None else list(scene.moves).index(spec.after)
 
 
-def add_twins(scene: Scene, features: dict[str, Feature], poses: Mapping[str, Array]) -> None:
-    """Add the nominal twins of features whose pose errors other parts see, for given poses of parts (4, 4)."""
-    for spec in scene.measures.values():
-        if isinstance(spec, PoseErrorSpec | DirectionErrorSpec) and (name := spec.twin) not in features:
-            own, part = features[spec.of], spec.from_ or fixed_parts(scene.moves)[0]
-            frame = np.linalg.inv(poses[part]) @ poses[own.part] @ own.frame
-            features[name] = Feature(name, part, Point(), frame, is_named=False)
-
-
-def add_projected(scene: Scene, features: dict[str, Feature]) -> None:
-    """Add the projected parts of axes that measures inspect."""
-    inspected: list[InspectedPositionSpec | InspectedOrientationSpec] = [
-        *scene.of(InspectedPositionSpec).values(),
-        *scene.of(InspectedOrientationSpec).values(),
-    ]
-    for spec in inspected:
-        if spec.projected is not None:
-            own = projected(features[spec.of], spec.projected.internal)
-            features[own.name] = own
-
-
-def _bonuses(
-    scene: Scene, drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]
-) -> tuple[MaterialBonus, ...]:
+def _bonuses(drawing: Drawing, spec: FeatureMeasureSpec, features: Sequence[str]) -> tuple[MaterialBonus, ...]:
     """Bonus of each feature; empty without a modifier."""
     widened = InspectedPositionSpec | InspectedPatternSpec | InspectedSetSpec | InspectedTogetherSpec
     modifier = spec.modifier if isinstance(spec, widened) else None
     if modifier is None:
         return ()
-    found = (sized_by(scene, drawing, own, modifier).bonus for own in features)
+    found = (sized_by(drawing, own, modifier).bonus for own in features)
     return tuple(MaterialBonus(own.low, own.high, own.grows) for own in found)
 
 

@@ -1,10 +1,10 @@
 """Moves of a scene: pairs, normals, locators."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tol3d.assembly.from_scene.features import TouchedPoints
+from tol3d.assembly.from_scene.contact_points import inward, lifted_name, outward, touched_name
 from tol3d.assembly.from_scene.setting import Setting, Understood
 from tol3d.assembly.grammar.features.nominal_frame import unit
 from tol3d.assembly.grammar.moves import (
@@ -17,24 +17,39 @@ from tol3d.assembly.grammar.moves import (
     TouchSpec,
     WeldSpec,
 )
-from tol3d.assembly.grammar.moves.locating import ContactSpec
 from tol3d.assembly.grammar.moves.mate import RelationSpec
-from tol3d.assembly.model import BestFit, Contact, Fit, Fix, Locate, Mate, Move, Pair, Relation, Rest, Touch, Weld
+from tol3d.assembly.model import (
+    BestFit,
+    Contact,
+    Feature,
+    Fit,
+    Fix,
+    Locate,
+    Mate,
+    Move,
+    Pair,
+    Relation,
+    Rest,
+    Touch,
+    Weld,
+)
 from tol3d.assembly.model.moves import unfit_for_contact
 from tol3d.import_path import named
 from tol3d.numerics.arrays import Array
-from tol3d.scene import Scene
 
 FLAT = 1e-6
 """Sine of the angle between directions that are the same."""
 
 
-def moves_of(understood: Understood, touched: TouchedPoints, pose: str) -> tuple[Move, ...]:
-    """All moves of a scene, in order; the points of planes that they touch are added to the features.
+def moves_of(
+    understood: Understood, features: Mapping[str, Feature], poses: Mapping[str, Array], pose: str
+) -> tuple[Move, ...]:
+    """All moves of a scene, in order.
 
     Args:
         understood: the scene's drawings.
-        touched: features, and nominal poses of parts.
+        features: all, the points of planes that moves touch among them.
+        poses: of parts, nominally.
         pose: of moves that have poses.
 
     Raises:
@@ -42,7 +57,8 @@ def moves_of(understood: Understood, touched: TouchedPoints, pose: str) -> tuple
     """
     found: list[Move] = []
     for name, spec in understood.scene.of(AssemblyMoveSpec).items():
-        setting = Setting(understood, touched, understood.effects.drawn[name], spec.pose_like(pose))
+        drawn = understood.effects.drawn.get(name, {})
+        setting = Setting(understood, features, poses, drawn, spec.pose_like(pose))
         found.append(named(spec.stated_by)(spec, name, setting))
     return tuple(found)
 
@@ -88,7 +104,7 @@ def fitted(spec: BestFitSpec, name: str, setting: Setting) -> BestFit:
     Raises:
         SceneError: points on a line.
     """
-    _refuse_a_line(setting.scene, name, spec, setting.touched)
+    _refuse_a_line(name, spec, setting)
     fits = tuple(Fit(own.from_, own.to, own.weight, _directions(own.along)) for own in spec.pairs)
     return BestFit(name, spec.part, fits, spec.criterion)
 
@@ -109,15 +125,15 @@ def rested(spec: RestSpec, name: str, setting: Setting) -> Rest:
     return Rest(name, spec.part, _pairs(spec, name, setting), force, at, spec.points_on, relations)
 
 
-def _refuse_a_line(scene: Scene, name: str, spec: BestFitSpec, touched: TouchedPoints) -> None:
+def _refuse_a_line(name: str, spec: BestFitSpec, setting: Setting) -> None:
     """Refuse points in space that leave a turn free; a fit with directions may leave those that it does not name."""
     if any(own.along for own in spec.pairs):
         return
-    points = np.array([touched.origin(own.from_) for own in spec.pairs])
+    points = np.array([setting.origin(own.from_) for own in spec.pairs])
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if spread[1] <= FLAT * max(spread[0], 1.0):
         words = f"expected points that do not all lie on one line, about which {spec.part!r} would be free to turn"
-        raise scene.refuse(("moves", name, "pairs"), f"{words}; add a point beside it")
+        raise setting.scene.refuse(("moves", name, "pairs"), f"{words}; add a point beside it")
 
 
 def _pairs(spec: LocatingSpec, name: str, setting: Setting) -> tuple[Pair, ...]:
@@ -125,31 +141,24 @@ def _pairs(spec: LocatingSpec, name: str, setting: Setting) -> tuple[Pair, ...]:
 
 
 def _pair(spec: LocatingSpec, move: str, number: str, setting: Setting) -> Pair:
-    scene, effects, touched = setting.scene, setting.effects, setting.touched
-    path, own = spec.pairs_by_name[number]
-    on_part = spec.points_on == "part"
-    side, point = (own.to, own.from_) if on_part else (own.from_, own.to)
-    touched_point = touched.on(side, point)
-    named = effects.drawing.kind(side)
+    scene, effects, features = setting.scene, setting.effects, setting.features
+    path, touch = spec.pairs_by_name[number][0], spec.touches[number]
+    side, point = touch.side, touch.point
+    touched_point = touched_name(touch, features)
+    named = setting.drawing.kind(side)
     has_normal = named.kind == "plane" or (named.kind == "point" and named.normal is not None)
-    if own.along is None and not has_normal:
+    if touch.along is None and not has_normal:
         words = f"expected the direction `along` in which {side!r} is touched, for it has no normal; got none"
         raise scene.refuse(("moves", move, *path), words)
-    out = _normal(own, touched.features[side].frame[:3, 2])
-    if touched_point != side and np.linalg.norm(out - touched.features[side].frame[:3, 2]) > FLAT:
+    out = outward(touch, features)
+    if touched_point != side and np.linalg.norm(out - features[side].frame[:3, 2]) > FLAT:
         words = f"expected none, or the normal of the plane {side!r}"
         raise scene.refuse(("moves", move, *path, "along"), words)
-    locators, heights = tuple(effects.locators.get((move, number), ())), tuple(effects.heights.get((move, number), ()))
-    if on_part:
-        return Pair(own.from_, touched_point, out, locators + heights)
-    inward = touched.turned(-out, touched.features[side].part, spec.part)
-    lifted = touched.lifted(own.to, f"{move} {number}", inward, spec.part, locators) if locators else own.to
-    return Pair(touched_point, lifted, inward, heights)
-
-
-def _normal(own: ContactSpec, feature_normal: Array) -> Array:
-    """Out of the material, in the frame of the part that the plane stays with (3,)."""
-    return feature_normal if own.along is None else unit(own.along)
+    locators, heights = effects.locators.get((move, number), ()), effects.heights.get((move, number), ())
+    if not touch.lifted_for:
+        return Pair(point, touched_point, out, locators + heights)
+    lifted = lifted_name(point, move, number) if locators else point
+    return Pair(touched_point, lifted, inward(touch, features, setting.poses), heights)
 
 
 def _directions(along: tuple[tuple[float, float, float], ...]) -> Array:

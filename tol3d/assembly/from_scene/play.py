@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from tol3d.assembly.from_scene.contributors import SHIFT_AND_TURN, Effects
+from tol3d.assembly.from_scene.effects import Effects
 from tol3d.assembly.from_scene.features import poses_of
 from tol3d.assembly.from_scene.moves import relations_of
 from tol3d.assembly.from_scene.setting import Setting
@@ -15,7 +15,7 @@ from tol3d.assembly.grammar.moves import PlaySpec
 from tol3d.assembly.grammar.moves.play import BoltSpec, EngagementSpec, RandomSpec, TowardSpec
 from tol3d.assembly.model import Axis, Bolt, Contribution, Engage, Engagement, Feature, Floating, Plane, Slot
 from tol3d.assembly.model.feature import nominal_size
-from tol3d.assembly.zones.float_draw import FloatDraw, Law
+from tol3d.assembly.zones.float_draw import SHIFT_AND_TURN, FloatDraw, Law
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene
 from tol3d.system.draw import Scalar
@@ -135,7 +135,7 @@ def _hole_ends(hole: Feature) -> Array:
 def _floating(name: str, spec: PlaySpec, setting: Setting) -> Floating:
     match spec.floating:
         case RandomSpec():
-            by_pairs = spec.floats_by_pairs(setting.effects.drawing)
+            by_pairs = spec.floats_by_pairs(setting.drawing)
             return Floating("random", setting.drawn[_float_name(name)], by_pairs=by_pairs)
         case TowardSpec(along=along, at=at):
             return Floating("toward", at=at, along=unit(along))

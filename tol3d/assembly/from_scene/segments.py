@@ -12,7 +12,7 @@ from typing import Final, assert_never
 
 import numpy as np
 
-from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.datums import frame_on
 from tol3d.assembly.from_scene.zones import drawn_by, limited_along
 from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.drawing import Drawing, Stated
@@ -152,13 +152,11 @@ def _free_turns(drawing: Drawing, part: str, datums: Sequence[DatumSpec]) -> Arr
     """The projection (3, 3) on directions about which datums let their frame turn: a lower segment shifts anyway."""
     if not datums:
         return np.eye(3)
-    frames = DatumFrames(drawing.features)
-    name = frames.named(part, datums)
     features = tuple(
         Feature(f"{part}.{own}", part, spec.shape, spec.frame) for own, spec in drawing.features[part].items()
     )
     nominal = Assembly((Part(part, np.eye(4), features, ()),), (), {}, 0)
-    left = held_by_datums(nominal, frames.made[name]).left.turns
+    left = held_by_datums(nominal, frame_on(drawing, part, datums)).left.turns
     return np.asarray(left.T @ left)
 
 

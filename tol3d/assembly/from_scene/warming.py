@@ -8,16 +8,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from tol3d.assembly.from_scene.contributors import Effects
-from tol3d.assembly.from_scene.datums import DatumFrames
+from tol3d.assembly.from_scene.datums import DatumFrames, frame_name
+from tol3d.assembly.from_scene.effects import Drawn, Effect
 from tol3d.assembly.grammar.drawing import Drawing
 from tol3d.assembly.grammar.feature_name import part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
-from tol3d.assembly.model import Axis, Cone, Contribution, Datum, DatumFrame, Point, RoundPlane, Slot
+from tol3d.assembly.model import Axis, Cone, Datum, DatumFrame, Point, RoundPlane, Slot
 from tol3d.assembly.model.feature import nominal_size
 from tol3d.numerics.arrays import Array
-from tol3d.scene import Scene
 from tol3d.scene.temperature import TemperatureSpec
 from tol3d.system.draw import Scalar
 from tol3d.system.plain import UNITS, PlainContributor
@@ -28,23 +27,25 @@ HELD = 1e-9
 """Length of the free part of a direction that earlier datums hold."""
 
 
-def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames) -> None:
-    """Add the effect of part temperatures on their features."""
-    solids = scene.of(SolidSpec)
+def growth(drawing: Drawing, frames: DatumFrames) -> Iterator[Drawn]:
+    """Part temperatures, with their effects on features.
+
+    Raises:
+        SceneError: datums that turn as their part grows.
+    """
+    scene, solids = drawing.scene, drawing.scene.of(SolidSpec)
     for entry, spec in scene.of(TemperatureSpec).items():
         grown = {part: solids[part].expansion for part in spec.of if part in solids}
         expansions = {part: own.internal for part, own in grown.items() if own is not None}
         if not expansions:
             continue
         draw = Scalar(spec.distribution.resolve(scene.files))
-        columns = effects.added(
-            PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description, nominal="")
-        )
+        effects = list[Effect]()
         for name, datums in drawing.parents():
             expansion = expansions.get(part_of(name), 0.0)
             if expansion == 0.0:
                 continue
-            frame = frames.named(part_of(name), datums)
+            frame = frame_name(part_of(name), datums)
             if frame and np.linalg.norm(_turn(frames.made[frame], drawing)) > HELD:
                 own = " | ".join("-".join(datum.features) for datum in datums)
                 words = f"expected datums that a part which grows evenly keeps upright, got {own} of {name!r}"
@@ -55,10 +56,11 @@ def warmed(effects: Effects, scene: Scene, drawing: Drawing, frames: DatumFrames
             shift = _shift(frames.made[frame], drawing) if frame else np.zeros(3)
             turn = drawing.kind(name).frame[:3, :3]
             matrix = expansion * turn.T @ (_grown(drawing.kind(name)) - shift)
-            effects.grown_by.setdefault(name, []).append(Contribution(entry, columns, matrix[:, None]))
+            effects.append(Effect("grown_by", name, matrix[:, None]))
             if size := nominal_size(drawing.kind(name).shape):
-                larger = Contribution(entry, columns, np.array([[expansion * size]]))
-                effects.size_by.setdefault(name, []).append(larger)
+                effects.append(Effect("size_by", name, np.array([[expansion * size]])))
+        contributor = PlainContributor(entry, spec.kind, draw, *UNITS["temperature"], spec.description, nominal="")
+        yield Drawn(contributor, tuple(effects))
 
 
 def _shift(frame: DatumFrame, drawing: Drawing) -> Array:

@@ -152,7 +152,7 @@ def _size(scene: Scene, own: Stated, drawing: Drawing, zone: Zone) -> SizedBy | 
     modifier, is_enveloped = of_zone or of_orientation, zone.form > 0.0 and drawing.is_enveloped(own.feature)
     if modifier is None and not is_enveloped:
         return None
-    found = sized_by(scene, drawing, own.feature, modifier or "mmc")
+    found = sized_by(drawing, own.feature, modifier or "mmc")
     bonus = replace(found.bonus, of_zone=of_zone is not None, of_orientation=of_orientation is not None)
     size = replace(found, bonus=bonus)
     return enveloped(size, drawing, own.feature, zone.form) if is_enveloped else size
@@ -165,7 +165,7 @@ def enveloped(size: SizedBy, drawing: Drawing, feature: str, form: float) -> Siz
     return replace(size, bonus=replace(bonus, envelope=Envelope(bonus.low, bonus.high, shape.inner, form)))
 
 
-def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:
+def sized_by(drawing: Drawing, feature: str, modifier: Modifier) -> SizedBy:
     """The size of a feature that has a tolerance of it, and its bonus.
 
     Raises:
@@ -175,11 +175,11 @@ def sized_by(scene: Scene, drawing: Drawing, feature: str, modifier: Modifier) -
     spec, shape = own.spec, drawing.kind(feature).shape
     assert isinstance(spec, SizeSpec)
     assert isinstance(shape, Axis | Slot)
-    law = spec.distribution.resolve(scene.files)
+    law = spec.distribution.resolve(drawing.scene.files)
     limits = law.limits if spec.limits is None else tuple(own.internal for own in spec.limits)
     if limits is None:
         words = "expected the drawing's limits of size, such as [0 um, 15 um], from which the bonus counts; got none"
-        raise scene.refuse(("tolerances", own.entry), f"{words}, and its distribution has none")
+        raise drawing.scene.refuse(("tolerances", own.entry), f"{words}, and its distribution has none")
     low, high = limits
     bonus = Bonus.at(modifier, low, high, inner=shape.inner)
     return SizedBy(own.name, law, bonus, of_drawing=spec.limits is not None)

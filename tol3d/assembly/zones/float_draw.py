@@ -19,6 +19,9 @@ from tol3d.system.steepest import Values
 
 Law = Literal["disc", "interval", "room"]
 
+SHIFT_AND_TURN: Final = ("shift x", "shift y", "shift z", "turn x", "turn y", "turn z")
+"""Components of a pose of a room, but where its chain starts."""
+
 SIZES: Final = {"disc": 2, "interval": 1, "room": 7}
 """Components of each law, and uniforms."""
 SIGMAS: Final = {"disc": 0.5, "interval": 1 / np.sqrt(3.0), "room": 1 / np.sqrt(3.0)}

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Final, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tol3d.assembly.grammar.datums import Datums
+from tol3d.assembly.grammar.datums import Datums, DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -100,6 +100,10 @@ class OpenChainSpec(AssemblyMoveSpec):
 
     def targets(self) -> Iterator[tuple[KeyPath, FeatureName]]:
         return ((("joints", name, "between", 0), own.between[0]) for name, own in self.joints.items())
+
+    @property
+    def seats(self) -> Sequence[tuple[str, Sequence[DatumSpec]]]:
+        return [(part_of(own.between[1]), own.seat) for own in self.joints.values() if own.seat]
 
     @property
     def pose_names(self) -> Sequence[str]:

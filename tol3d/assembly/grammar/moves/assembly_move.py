@@ -1,10 +1,12 @@
 """Common base of all moves of an assembly: what they place, what they lay it on, and the code of each."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
 from pydantic import Field
 
+from tol3d.assembly.grammar.datums import DatumSpec
 from tol3d.assembly.grammar.feature_name import FeatureName, Use, part_of
 from tol3d.assembly.grammar.features import FeatureUnion
 from tol3d.assembly.grammar.parts import SolidSpec
@@ -14,6 +16,7 @@ from tol3d.scene.move import MoveSpec
 from tol3d.scene.name import Name
 from tol3d.scene.place import KeyPath
 from tol3d.scene.reference import Reference
+from tol3d.scene.vector import Direction
 from tol3d.strict import Strict
 
 
@@ -36,6 +39,23 @@ class PairSpec(Strict):
 
     from_: FeatureName = Field(alias="from", description="of the part that is placed")
     to: FeatureName = Field(description="of a part that is placed already")
+
+
+@dataclass(frozen=True)
+class PointTouch:
+    """A point of one part on a surface of another.
+
+    Args:
+        side: the feature that is touched.
+        point: the feature that touches it.
+        along: out of the material, in the frame of the part with the surface; None for that feature's own normal.
+        lifted_for: the part that is placed, for which locators shift the point; "" where it carries the points.
+    """
+
+    side: FeatureName
+    point: FeatureName
+    along: Direction | None
+    lifted_for: str = ""
 
 
 class AssemblyMoveSpec(MoveSpec):
@@ -95,6 +115,16 @@ class AssemblyMoveSpec(MoveSpec):
     @property
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, PairSpec]]:
         """Contacts of points on planes with their fields, by the names that locators have; by default none."""
+        return {}
+
+    @property
+    def seats(self) -> Sequence[tuple[str, Sequence[DatumSpec]]]:
+        """Parts that it takes by datum frames of their own, each with the datums; by default none."""
+        return ()
+
+    @property
+    def touches(self) -> Mapping[str, PointTouch]:
+        """Surfaces that points of other parts touch, by the names that locators have; by default none."""
         return {}
 
     @property

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from tol3d.assembly.grammar.features import ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
-from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec
+from tol3d.assembly.grammar.moves.assembly_move import DrawnFeatures, PairSpec, PlacingSpec, PointTouch
 from tol3d.assembly.grammar.moves.mate import RelationSpec
 from tol3d.assembly.model.move import Acts
 from tol3d.assembly.model.moves import STATED_BY, Locate, PointsOn, Rest
@@ -44,6 +44,13 @@ class LocatingSpec(PlacingSpec):
     @abstractmethod
     def pairs_by_name(self) -> Mapping[str, tuple[KeyPath, ContactSpec]]:
         """The contacts with their fields, by the names that locators have."""
+
+    @property
+    def touches(self) -> Mapping[str, PointTouch]:
+        pairs = {name: pair for name, (_, pair) in self.pairs_by_name.items()}
+        if self.points_on == "part":
+            return {name: PointTouch(own.to, own.from_, own.along) for name, own in pairs.items()}
+        return {name: PointTouch(own.from_, own.to, own.along, self.part) for name, own in pairs.items()}
 
     def paired(self) -> Iterator[tuple[KeyPath, PairSpec]]:
         return iter(self.pairs_by_name.values())
