@@ -14,9 +14,8 @@ from tol3d.cycloid.grammar.tolerances import BearingPlaySpec
 from tol3d.cycloid.model.limits import circle_fault, faults, hole_faults, largest_window, lobes_fault
 from tol3d.cycloid.model.profile import DiscProfile, Modification
 from tol3d.cycloid.model.shapes import DiscHoles
-from tol3d.cycloid.reducer.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.reducer.draws import acts_of, draw_of
 from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
-from tol3d.cycloid.reducer.trials import Reading, RVMeasure
 from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.measures import GearStudyOptions
@@ -25,12 +24,10 @@ from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.gears.pair import SAME_LENGTH
+from tol3d.reducers.contributors import contributors_of
+from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
-from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
-from tol3d.system.pooled_statistic import HalfSpan
-from tol3d.system.positions import Positions, Take
-from tol3d.system.spectrum import Spectrum
 
 
 def rv_set(scene: Scene) -> RVSet:
@@ -190,51 +187,21 @@ def rv_system(scene: Scene) -> RVSystem:
         SceneError: kinds that do not act on it, or a reducer that cannot be built, with its numbers.
     """
     own = rv_set(scene)
-    acts = {name: acts_of(scene, own, name, spec) for name, spec in scene.tolerances.items()}
-    contributors = [
-        PlainContributor(
-            name,
-            spec.kind,
-            draw_of(own, acts[name], spec, scene.files),
-            *UNITS[spec.dimensions[0]],
-            spec.description,
-            least=0.0 if acts[name].effect in NOT_NEGATIVE else None,
-            nominal=spec.nominal,
-        )
-        for name, spec in scene.distributed.items()
-    ]
+    contributors, acts = contributors_of(scene, own, acts_of, draw_of)
     disc = scene.of(CycloidDiscSpec)[own.disc]
     width, hole = (None if size is None else size.internal for size in (disc.width, disc.hole))
     steps = scene.options(GearStudyOptions).profile_steps
     system = PlayingSystem if own.plays else RVSystem
-    stated = tuple(contributors), tuple(_measure(scene, name, spec) for name, spec in scene.measures.items())
-    return system(scene.scene, *stated, own, acts, width, hole, steps, implausible=implausible_stage(scene, own))
+    measures = tuple(_measure(scene, name, spec, own.output) for name, spec in scene.measures.items())
+    of_gears = implausible_stage(scene, own)
+    return system(scene.scene, contributors, measures, own, acts, width, hole, steps, implausible=of_gears)
 
 
-def _measure(scene: Scene, name: str, spec: Any) -> RVMeasure:
+def _measure(scene: Scene, name: str, spec: Any, output: str) -> ReducerMeasure:
     if not isinstance(spec, CycloidMeasureSpec):
         words = "cycloid_transmission_error, cycloid_lost_motion or cycloid_pins_near_contact"
         raise scene.refuse(("measures", name, "kind"), f"expected of an RV reducer {words}, got {spec.kind}")
-    reading: Reading = "lost motion"
-    take: Take = "value"
-    positions, spectrum, deflection = one_position(getattr(spec, "over", None)), None, None
-    if isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec):
-        reading, take = spec.flank, spec.taken
-        if spec.over == "turn":  # over it the curve bends where another pin takes over
-            positions = Positions("turn", 1, spec.positions, jumps=True)
-    if isinstance(spec, CycloidPinsNearContactSpec):
-        deflection = spec.deflection.internal
-    elif isinstance(spec, CycloidTransmissionErrorSpec) and take in ("harmonic", "curve"):
-        orders = (spec.order or 1,) if take == "harmonic" else spec.orders
-        spectrum = Spectrum.over(positions, orders) if orders else None
-    return RVMeasure(
-        *stated_of(name, spec),
-        worse="high" if deflection is None else "low",
-        adds_up=False,
-        pooled_statistics=(HalfSpan(),) if (take, deflection) == ("value", None) and reading != "lost motion" else (),
-        positions=positions,
-        take=take,
-        spectrum=spectrum,
-        reading=reading,
-        deflection=deflection,
-    )
+    if not isinstance(spec, CycloidTransmissionErrorSpec | CycloidPinsNearContactSpec):
+        return reducer_measure(name, spec, "lost motion", output)
+    deflection = spec.deflection.internal if isinstance(spec, CycloidPinsNearContactSpec) else None
+    return reducer_measure(name, spec, spec.flank, output, spec.taken, deflection)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 import numpy as np
@@ -13,36 +13,35 @@ from tol3d.cycloid.from_scene import implausible_stage, parts_of, reducer_of
 from tol3d.cycloid.grammar.measures import CycloidMeasureSpec
 from tol3d.cycloid.grammar.moves import RVReducerSpec
 from tol3d.cycloid.grammar.parts import CrankCarrierSpec, CrankshaftSpec, CycloidDiscSpec, PinRingSpec
-from tol3d.cycloid.reducer.deviated import Acts, Effect, RVDeviated
-from tol3d.cycloid.reducer.draws import NOT_NEGATIVE, acts_of, draw_of
+from tol3d.cycloid.reducer.deviated import RVDeviated
+from tol3d.cycloid.reducer.draws import acts_of, draw_of
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import BEND, BentTurning
 from tol3d.cycloid.reducer.problems import problems_at
-from tol3d.cycloid.reducer.resting import exact_turning, linear_rates, linear_turning
+from tol3d.cycloid.reducer.resting import exact_turning, linear_turning, lost_motion_rates
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import NO_FIT
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning
 from tol3d.cycloid.system import REST_COSTS
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
-from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
-from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.numerics.plane import turned
+from tol3d.reducers.contributors import contributors_in_trains
+from tol3d.reducers.deviations import Acts
+from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone, refuse_unused
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
 
 PARTS: Final = (PinRingSpec, CycloidDiscSpec, CrankshaftSpec, CrankCarrierSpec)
 """Kinds of part that stand in reducers alone."""
-BOTH_WAYS: Final = ((1, 1.0), (-1, -1.0))
-"""Senses of the output's turn, and how each counts in its lost motion."""
-Rates = list[tuple[float, RVDeviated]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class RVLink(OutputLink):
+class RVLink(ReducerLink):
     """A reducer whose input and carrier turn with shafts of a train, its pins fixed in the world.
 
     Its play is below 0 where pins press on both sides, as the lost motion of a reducer by itself: trains add it up so.
@@ -59,6 +58,7 @@ class RVLink(OutputLink):
         "scene of its own)"
     )
     presenter: ClassVar[str] = "tol3d.cycloid.presenting"
+    made_of: ClassVar[type[RVDeviated]] = RVDeviated
 
     own: RVSet
     sun_level: float = 0.0
@@ -77,44 +77,37 @@ class RVLink(OutputLink):
 
     def exact(self, seen: LinkTrials) -> FreeTurn:
         """The free turn of the output in finite geometry, until pins touch or, of bearings with play, all rests."""
-        return self._free(exact_turning(self.own), seen)
+        return self.free_turn(exact_turning(self.own), seen)
 
     def analytic(self, seen: LinkTrials) -> FreeTurn:
         """The same to first order."""
-        return self._free(linear_turning(self.own), seen)
+        return self.free_turn(linear_turning(self.own), seen)
 
-    def _free(self, turning: Turning, seen: LinkTrials) -> FreeTurn:
-        """Position by position, as a measure of the reducer by itself reads one; NaN where nothing touches."""
-        found = []
-        for turns in self.output_turns(seen).T:
-            deviated = self.deviated(seen, turns)
-            ends = [turning.turned(deviated, turns[:, None], sense) for sense, _ in BOTH_WAYS]
-            jams = [np.zeros(len(seen), dtype=bool) if end.codes is None else end.codes[:, 0] == NO_FIT for end in ends]
-            found.append((ends[0].turns[:, 0], ends[1].turns[:, 0], jams[0] | jams[1]))
-        on, back, jammed = (np.stack(own, axis=1) for own in zip(*found, strict=True))
-        return FreeTurn(on - back, np.where(jammed, 0.0, (on + back) / 2), jammed.astype(bool))
+    def lost(self, turning: Turning, deviated: RVDeviated, turns: Array) -> Lost:
+        """See ReducerLink; NaN where nothing touches."""
+        on, back = (turning.turned(deviated, turns[:, None], sense) for sense in (1, -1))
+        jams = np.any([end.codes[:, 0] == NO_FIT for end in (on, back) if end.codes is not None], axis=0)
+        middle = (on.turns[:, 0] + back.turns[:, 0]) / 2
+        return on.turns[:, 0] - back.turns[:, 0], middle, np.broadcast_to(jams, len(turns))
 
     def neglected(self, seen: LinkTrials) -> Mapping[str, Array]:
         """The bend of flanks; see StatedLink, and neglected.py."""
         if self.own.plays:
             return {}
-        bent, straight = (self._free(method(self.own), seen).play for method in (BentTurning, LinearTurning))
+        bent, straight = (self.free_turn(method(self.own), seen).play for method in (BentTurning, LinearTurning))
         return {BEND: np.abs(bent - straight)}
 
     def deviated(self, seen: LinkTrials, turns: Array) -> RVDeviated:
-        """Deviations of the reducer's parts at turns of the output (trials,).
+        """See ReducerLink.
 
         An offset carrier equals a ring and a sun offset the other way: moving the whole reducer changes nothing.
         """
-        found = RVDeviated.nothing(self.own, len(seen))
-        for contributor in seen.contributors:
-            if contributor.name in self.acts:
-                found.add(self.acts[contributor.name], seen.deviations[contributor.name])
+        found: RVDeviated = self.drawn(seen)
         asides = self.asides(seen)
         for acts, part, sun_turned in self._against_carrier if asides else ():
             none = np.zeros((len(seen), 2))
             aside = asides.get(part, none) - asides.get(self.own.carrier, none)
-            found.add(acts, turned(aside, -sun_turned * turns))
+            found.add(self.own, acts, turned(aside, -sun_turned * turns))
         for k, (_, azimuth) in enumerate(self.pins):
             if pin_name(k) in asides:
                 found.stage.carrier_holes[:, k] += turned(asides[pin_name(k)], _alike(seen, azimuth))
@@ -135,49 +128,35 @@ class RVLink(OutputLink):
 
     # what acts on it --------------------------------------------------------------------------------
 
-    def part_of(self, slopes: Rates, acts: Acts, off: Array) -> Array:
-        """See OutputLink."""
-        return np.asarray(sum(counts * each.term(acts, off) for counts, each in slopes))
-
-    def slopes_at(self, piece: LinkTrials, turns: Array) -> Rates:
-        """See OutputLink: by the pins and planets that touch, of both ends, and how each end counts."""
-        own, deviated = self.own, self.deviated(piece, turns[:, 0])
-        return [(counts, linear_rates(own, deviated, turns[:, 0], sense)) for sense, counts in BOTH_WAYS]
+    def slopes_at(self, deviated: RVDeviated, turns: Array) -> RVDeviated:
+        """See ReducerLink: by the pins and planets that touch at both ends."""
+        return lost_motion_rates(self.own, deviated, turns)
 
     @property
     def pins(self) -> Sequence[tuple[float, float]]:
         """See StatedLink: where cranks turn in the carrier."""
         return [(self.own.crank_circle, float(azimuth)) for azimuth in self.own.azimuths]
 
-    @property
-    def held(self) -> str:
-        """See StatedLink."""
-        return self.own.ring
-
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """See StatedLink."""
         found: dict[str, list[Array]] = {part: [] for part in (*self.levels, *map(pin_name, range(self.own.cranks)))}
-        for piece, turns, rates in self.slopes(seen):
+        for piece, turns, slopes in self.slopes(seen):
             against = np.zeros((len(piece), 2))
             for acts, part, sun_turned in self._against_carrier:
                 units = (turned(np.tile(unit, (len(piece), 1)), -sun_turned * turns) for unit in np.eye(2))
-                by = np.stack([sum(n * each.term(acts, unit) for n, each in rates) for unit in units], axis=-1)
+                by = np.stack([slopes.term(self.own, acts, unit) for unit in units], axis=-1)
                 found[part].append(by)
                 against -= by
             found[self.own.carrier].append(against)
             for k, (_, azimuth) in enumerate(self.pins):
-                of_hole = np.sum([n * each.stage.carrier_holes[:, k] for n, each in rates], axis=0)
-                found[pin_name(k)].append(turned(of_hole, _alike(piece, -azimuth)))
+                found[pin_name(k)].append(turned(slopes.stage.carrier_holes[:, k], _alike(piece, -azimuth)))
         return {part: np.concatenate(each) for part, each in found.items()}
 
-    def offset_by(self, contributor: str, part: str) -> "RVLink | None":
-        """See StatedLink: of the sun, and of the carrier, which its main bearing would displace as well."""
-        effects: dict[str, Effect] = {self.own.carrier: "carrier offset"}
-        if self.own.first is not None:
-            effects[self.own.first.sun] = "sun offset"
-        if part not in effects:
-            return None
-        return replace(self, actions=(*self.actions, (contributor, Acts(effects[part]))))
+    @property
+    def offsets(self) -> Mapping[str, Acts]:
+        """See ReducerLink: the sun, and the carrier, which its main bearing would displace as well."""
+        sun = {} if self.own.first is None else {self.own.first.sun: Acts("sun offset", self.own.first.sun)}
+        return {self.own.carrier: Acts("carrier offset"), **sun}
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Its cycloid stage by formula; see StatedLink."""
@@ -212,42 +191,31 @@ def reducers_as_links(scene: Scene) -> Brought:
         SceneError: it cannot be built, or such a train cannot have it; with its place.
     """
     specs = {str(name): spec for name, spec in scene.of(RVReducerSpec).items()}
-    sets = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}
-    owners = {part: sets[name] for name, spec in specs.items() for part in parts_of(spec)}
-    refuse_alone(scene, CycloidMeasureSpec, {name: (own.input, own.carrier) for name, own in sets.items()}, "reducer")
+    reducers = {name: reducer_of(scene, name, spec) for name, spec in specs.items()}
+    parts = {name: parts_of(spec) for name, spec in specs.items()}
+    owners = {part: own for name, own in reducers.items() for part in parts[name]}
+    refuse_alone(scene, CycloidMeasureSpec, reducers, "reducer")
     refuse_unused(scene, PARTS, owners, "an RV reducer")
-    actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
-    contributors = {}
-    for name, own in tolerances_of(scene, owners):
-        spec: Any = scene.tolerances[name]
-        acts = acts_of(scene, own, name, spec)
-        actions[own.name].append((name, acts))
-        draw = draw_of(own, acts, spec, scene.files)
-        turning = {"sun offset": spec.of, "planet offset": spec.of}.get(acts.effect)
-        least = 0.0 if acts.effect in NOT_NEGATIVE else None
-        contributors[name] = acting_in(scene, name, own.name, draw, turning, least)
-    links = tuple(
-        BroughtLink(_link(scene, own, tuple(actions[name])), parts_of(specs[name]), (own.input, own.carrier))
-        for name, own in sets.items()
-    )
-    return Brought(links, contributors, tuple(line for own in sets.values() for line in implausible_stage(scene, own)))
+    contributors, actions = contributors_in_trains(scene, owners, acts_of, draw_of)
+    links = [_link(scene, own, tuple(actions[name])) for name, own in reducers.items()]
+    warnings = (line for own in reducers.values() for line in implausible_stage(scene, own))
+    return brought_by(links, parts, contributors, warnings)
 
 
 def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RVLink:
     """A reducer as a link of the shafts that turn with its input and its carrier."""
-    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.carrier))
     disc = scene.of(CycloidDiscSpec)[own.disc]
     hole = None if disc.hole is None else disc.hole.internal
     sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
-    height = first - sun_level
+    ends = ends_of(scene, own, {own.input: sun_level, own.output: 0.0})
     return RVLink(
         name=own.name,
-        driver=driver,
-        driven=driven,
+        driver=ends.driver,
+        driven=ends.driven,
         rate=1 / own.ratio,
-        offset=height - last,
+        offset=ends.offset,
         own=own,
-        height=height,
+        height=ends.height,
         sun_level=sun_level,
         actions=actions,
         crank_hole=hole,

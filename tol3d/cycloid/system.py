@@ -13,7 +13,7 @@ from tol3d.cycloid.model.shapes import lobe_strips
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import neglected
 from tol3d.cycloid.reducer.problems import problems_at
-from tol3d.cycloid.reducer.regressors import TAKEN, parts_over_turn, regress_touching
+from tol3d.cycloid.reducer.regressors import TAKEN, regress_touching, slopes_over_turn
 from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import STATUSES, RVMethod, RVTrials
@@ -60,13 +60,6 @@ class RVSystem(RVTrials):
         mean = self.deviated(mean_build(self, self.measures[0]))
         return problems_at(self.own, self.acts, self.contributors, mean)
 
-    def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System."""
-        own = self.read[measure.name]
-        order = {"order": int(own.spectrum.orders[0])} if own.take == "harmonic" and own.spectrum else {}
-        counted = {} if own.deflection is None else {"deflection_um": round(1e3 * own.deflection, 9)}
-        return {"kind": own.kind, "of": self.own.name, **order, **counted}
-
     def is_compiled(self, method: str) -> bool:
         """See System."""
         if self.own.plays:
@@ -93,7 +86,7 @@ class RVSystem(RVTrials):
         read = [
             (own.positions, sense, own.deflection)
             for own in (self.read[measure.name] for measure in measures)
-            for sense in ((1, -1) if own.reading == "lost motion" else (own.sense,))
+            for sense in ((1, -1) if own.is_free_turn else (own.load,))
         ]
         counted = {(positions, sense) for positions, sense, deflection in read if deflection is not None}
         apart = {own for own in read if own[2] is not None or own[:2] not in counted}
@@ -108,7 +101,7 @@ class RVSystem(RVTrials):
         if own.positions.in_a_trial == 1:
             regress_touching(self, own, contributors, columns, rows)
         elif own.take in TAKEN:
-            self.regress_parts(own, contributors, columns, rows, partial(parts_over_turn, self, own))
+            self.regress_slopes(own, contributors, columns, rows, partial(slopes_over_turn, self, own))
         else:
             super().regress(measure, contributors, columns, rows)
 

@@ -1,7 +1,12 @@
 """Arrays of trials that belong together, such as all deviations of a mechanism."""
 
+from collections.abc import Callable
 from dataclasses import fields
 from typing import Any, Self
+
+import numpy as np
+
+from tol3d.numerics.arrays import Array, Places
 
 
 class TrialArrays:
@@ -16,6 +21,28 @@ class TrialArrays:
         for own in fields(self):  # type: ignore[arg-type]
             getattr(self, own.name)[trials] = getattr(part, own.name)
 
-    def plus(self, other: Self) -> Self:
-        """Both added up."""
-        return type(self)(*(getattr(self, own.name) + getattr(other, own.name) for own in fields(self)))  # type: ignore[arg-type]
+    def plus(self, other: Self, factor: float = 1.0) -> Self:
+        """Both added up, the other one times a factor."""
+        return self._each(lambda one, two: one + factor * two, other)
+
+    def summed(self, rows: Places, weights: Array, trials: int) -> Self:
+        """Sums of values times weights (values,) by the trial (values,) that each is of, in rising order."""
+        found, first = np.unique(rows, return_index=True)
+
+        def sums(own: Array) -> Array:
+            into = np.zeros((trials, *own.shape[1:]))
+            if len(found):
+                weighted = weights.reshape(-1, *(1,) * (own.ndim - 1)) * own
+                into[found] = np.add.reduceat(weighted, first, axis=0)
+            return into
+
+        return self._each(sums)
+
+    def _each(self, made: Callable[..., Array], *others: Self) -> Self:
+        """The same of every array, and of those at the same place of others."""
+        found = []
+        for own in fields(self):  # type: ignore[arg-type]
+            values = [getattr(each, own.name) for each in (self, *others)]
+            nested = isinstance(values[0], TrialArrays)
+            found.append(values[0]._each(made, *values[1:]) if nested else made(*values))
+        return type(self)(*found)

@@ -18,19 +18,16 @@ from tol3d.planetary.grammar.measures import (
 from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import FlexibleCarrierSpec
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
-from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.model.draws import acts_of, draw_of
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
-from tol3d.planetary.trials import PlanetaryMeasure, Reading
+from tol3d.reducers.contributors import contributors_of
+from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned
 from tol3d.scene.place import KeyPath
-from tol3d.scene.tolerance import ToleranceSpec
-from tol3d.system.plain import UNITS, PlainContributor, one_position, stated_of
-from tol3d.system.positions import Positions, Take
-from tol3d.system.spectrum import Spectrum
 
 HALF: Final = Implausible(0.5)
 
@@ -93,19 +90,11 @@ def planetary_system(scene: Scene) -> PlanetarySystem:
         SceneError: kinds that do not act on such a set, or a set that cannot be built, with its numbers.
     """
     own = planetary_set(scene)
-    for name in scene.tolerances:
-        refuse_other_tolerance(scene, name)
-    contributors, acts = [], {}
-    for name, spec in scene.tolerances.items():
-        acts[name] = acts_of(scene, own, name, spec)
-        draw = draw_of(scene, own, spec)
-        unit, per_unit = UNITS[spec.dimensions[0] if isinstance(spec, ToleranceSpec) else "length"]
-        nominal = spec.nominal if isinstance(spec, ToleranceSpec) else ""
-        contributors.append(PlainContributor(name, spec.kind, draw, unit, per_unit, spec.description, nominal=nominal))
+    contributors, acts = contributors_of(scene, own, acts_of, draw_of)
     made = made_gears(scene, own)
     return PlanetarySystem(
         scene.scene,
-        tuple(contributors),
+        contributors,
         tuple(_measure(scene, own, name, spec) for name, spec in scene.measures.items()),
         own,
         acts,
@@ -125,15 +114,13 @@ def _leaf_spring(carrier: Any) -> LeafSpring | None:
     return LeafSpring(carrier.force.internal, *others)
 
 
-def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> PlanetaryMeasure:
+def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> ReducerMeasure:
     if not isinstance(spec, PlanetaryMeasureSpec):
         words = "planetary_lost_motion, planetary_low_stiffness or planetary_transmission_error"
         raise scene.refuse(("measures", name, "kind"), f"expected of a planetary set {words}, got {spec.kind}")
     if isinstance(spec, PlanetaryLowStiffnessSpec) and not any(spring.pushes for spring in own.springs):
         words = "expected a set on a flexible carrier whose springs press"
         raise scene.refuse(("measures", name, "of"), f"{words}, got {own.name!r}, where none does")
-    reading: Reading
-    take: Take
     if isinstance(spec, PlanetaryTransmissionErrorSpec):
         if spec.over == "long_period":
             turns = own.period_planet_turns
@@ -142,20 +129,8 @@ def _measure(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Planetary
                 f"expected turn, got long_period: the same teeth meet again as they did after {turns} turns of the "
                 f"planets on their pins, {float(own.period):.6g} turns of the output; take turn, one of the output",
             )
-        reading, take, shaft = "lag" if spec.flank == "drive" else "lead", spec.take, own.output
-        positions = Positions("turn", 1, spec.positions, jumps=True)  # bends where other contacts take over
-    else:
-        assert isinstance(spec, PlanetaryFreeTurnSpec)
-        reading = "lost motion" if isinstance(spec, PlanetaryLostMotionSpec) else "low stiffness"
-        take, shaft = "value", own.output if spec.at == "output" else own.input
-        positions = one_position(spec.over)
-    return PlanetaryMeasure(
-        *stated_of(name, spec),
-        worse="high",
-        adds_up=False,
-        positions=positions,
-        take=take,
-        spectrum=Spectrum.over(positions, (spec.order or 1,)) if take == "harmonic" else None,
-        reading=reading,
-        shaft=shaft,
-    )
+        return reducer_measure(name, spec, spec.flank, own.output, spec.take)
+    assert isinstance(spec, PlanetaryFreeTurnSpec)
+    lost_motion = isinstance(spec, PlanetaryLostMotionSpec)
+    shaft = own.output if spec.at == "output" else own.input
+    return reducer_measure(name, spec, "lost motion" if lost_motion else "low stiffness", shaft)

@@ -1,14 +1,13 @@
 """Planetary sets between two shafts of a train, whose play is the set's lost motion at its output."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
-from tol3d.gearing.model.brought import Brought, BroughtLink, acting_in, shaft_of, tolerances_of
-from tol3d.gearing.model.output_link import OutputLink, refuse_alone, refuse_unused
+from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.numerics.programme import NO_ROOM, ranges
@@ -20,19 +19,22 @@ from tol3d.planetary.from_scene import implausible_set
 from tol3d.planetary.grammar.measures import PlanetaryMeasureSpec
 from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import CarrierSpec, PlanetSpec
-from tol3d.planetary.model.deviated import Acts, Deviated
-from tol3d.planetary.model.draws import acts_of, draw_of, refuse_other_tolerance
+from tol3d.planetary.model.deviated import Deviated
+from tol3d.planetary.model.draws import acts_of, draw_of
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
+from tol3d.reducers.contributors import contributors_in_trains
+from tol3d.reducers.deviations import Acts
+from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone, refuse_unused
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
 
 
 @dataclass(frozen=True, kw_only=True)
-class SetLink(OutputLink):
+class SetLink(ReducerLink):
     """A set whose input and output turn with shafts of a train; its height is that of its first planet gear's middle.
 
     Args:
@@ -46,6 +48,7 @@ class SetLink(OutputLink):
         "scene of its own)"
     )
     presenter: ClassVar[str] = "tol3d.planetary.presenting"
+    made_of: ClassVar[type[Deviated]] = Deviated
 
     own: PlanetarySet
     made: Made
@@ -64,38 +67,31 @@ class SetLink(OutputLink):
 
     def exact(self, seen: LinkTrials) -> FreeTurn:
         """The free turn of the output with all gears placed."""
-        return self._free(Contact(self.own), seen)
+        return self.free_turn(Contact(self.own), seen)
 
     def analytic(self, seen: LinkTrials) -> FreeTurn:
         """The same to first order."""
-        return self._free(StackUp(self.own), seen)
+        return self.free_turn(StackUp(self.own), seen)
 
-    def _free(self, method: StackUp | Contact, seen: LinkTrials) -> FreeTurn:
-        own, stands = self.own, self.own.opposite(self.own.output)
-        found = [
-            method.free(deviated, turns, own.output, stands)
-            for turns in self.output_turns(seen).T
-            for deviated in [self.deviated(seen, turns)]
-        ]
-        jams = np.stack([free.status == NO_ROOM for free in found], axis=1)
-        lacking = np.stack([free.lacking for free in found], axis=1)
-        ends = np.stack([free.ends for free in found], axis=1)
-        play = np.where(jams, -2 * lacking / own.arm(own.output), ends[..., 1] - ends[..., 0])
-        return FreeTurn(play, np.where(jams, 0.0, ends.mean(axis=-1)), jams)
+    def lost(self, turning: StackUp | Contact, deviated: Deviated, turns: Array) -> Lost:
+        """See ReducerLink; a set that jams lacks room at both ends."""
+        own = self.own
+        free = turning.free(deviated, turns, own.output, own.opposite(own.output))
+        jams = np.asarray(free.status == NO_ROOM)
+        play = np.where(jams, -2 * free.lacking / own.arm(own.output), free.ends[:, 1] - free.ends[:, 0])
+        return play, free.ends.mean(axis=-1), jams
 
     def deviated(self, seen: LinkTrials, turns: Array) -> Deviated:
-        """Deviations of the set's gears and pins at turns of the output (trials,)."""
-        own, found = self.own, Deviated.nothing(self.own, len(seen))
-        for contributor in seen.contributors:
-            if contributor.name in self.acts:
-                found.add(own, self.acts[contributor.name], seen.deviations[contributor.name])
+        """See ReducerLink: of the set's gears and pins."""
+        own, found = self.own, self.drawn(seen)
         asides, none = self.asides(seen), np.zeros((len(seen), 2))
         for m, mesh in enumerate(own.meshes if asides else ()):
             aside = asides.get(own.carrier, none) - asides.get(mesh.central.name, none)
             found.aside[:, m] = turned(aside, -self._carrier_rate * turns)
         for k in range(own.planets):
             found.pins[:, k] += asides.get(pin_name(k), none)
-        return found
+        made: Deviated = found
+        return made
 
     @property
     def _carrier_rate(self) -> float:
@@ -109,16 +105,13 @@ class SetLink(OutputLink):
 
     # what acts on it --------------------------------------------------------------------------------
 
-    def part_of(self, slopes: Deviated, acts: Acts, off: Array) -> Array:
-        """See OutputLink."""
-        return np.asarray((slopes.of(self.own, acts) * off).sum(axis=1))
-
-    def slopes_at(self, piece: LinkTrials, turns: Array) -> Deviated:
-        """See OutputLink: by the contacts that are met."""
-        own, deviated, method = self.own, self.deviated(piece, turns[:, 0]), StackUp(self.own)
-        senses = ((end, np.full((len(piece), 1), 2.0 * end - 1.0)) for end in range(2))
+    def slopes_at(self, deviated: Deviated, turns: Array) -> Deviated:
+        """See ReducerLink: by the contacts that are met."""
+        own, method = self.own, StackUp(self.own)
+        senses = ((end, np.full((len(turns), 1), 2.0 * end - 1.0)) for end in range(2))
         low, high = (
-            method.slopes(deviated, turns, own.output, own.opposite(own.output), end, sign) for end, sign in senses
+            method.slopes(deviated, turns[:, None], own.output, own.opposite(own.output), end, sign)
+            for end, sign in senses
         )
         return low.plus(high)
 
@@ -135,11 +128,6 @@ class SetLink(OutputLink):
         """See StatedLink."""
         return [(self.own.centre_distance, azimuth) for azimuth in self.own.azimuths]
 
-    @property
-    def held(self) -> str:
-        """See StatedLink."""
-        return self.own.held
-
     def aside_slopes(self, seen: LinkTrials) -> Mapping[str, Array]:
         """See StatedLink."""
         found = [
@@ -151,11 +139,10 @@ class SetLink(OutputLink):
         of_pins = {pin_name(k): pins[:, k] for k in range(self.own.planets)}
         return {**of_gears, **of_pins, self.own.carrier: aside.sum(axis=1)}
 
-    def offset_by(self, contributor: str, part: str) -> "SetLink | None":
-        """See StatedLink: of a central gear."""
-        if part not in {mesh.central.name for mesh in self.own.meshes}:
-            return None
-        return replace(self, actions=(*self.actions, (contributor, Acts("offset", part))))
+    @property
+    def offsets(self) -> Mapping[str, Acts]:
+        """See ReducerLink: central gears."""
+        return {mesh.central.name: Acts("offset", mesh.central.name) for mesh in self.own.meshes}
 
     def sections(self, contributors: Sequence[Contributor]) -> Mapping[str, Any]:
         """Efficiencies, where the friction of its teeth is given; see StatedLink."""
@@ -178,43 +165,29 @@ def sets_as_links(scene: Scene) -> Brought:
     """
     specs = {str(name): spec for name, spec in scene.of(PlanetarySpec).items()}
     sets = {name: set_of(scene, name, spec) for name, spec in specs.items()}
-    owners = {part: own for name, own in sets.items() for part in parts_of(own, specs[name])}
-    refuse_alone(scene, PlanetaryMeasureSpec, {name: (own.input, own.output) for name, own in sets.items()}, "set")
+    parts = {name: frozenset(parts_of(own, specs[name])) for name, own in sets.items()}
+    owners = {part: own for name, own in sets.items() for part in parts[name]}
+    refuse_alone(scene, PlanetaryMeasureSpec, sets, "set")
     refuse_unused(scene, (PlanetSpec, CarrierSpec), owners, "a set")
-    actions: dict[str, list[tuple[str, Acts]]] = {name: [] for name in sets}
-    contributors = {}
-    for name, own in tolerances_of(scene, owners):
-        refuse_other_tolerance(scene, name)
-        spec: Any = scene.tolerances[name]
-        acts = acts_of(scene, own, name, spec)
-        turning = acts.gear if acts.effect == "offset" else None
-        actions[own.name].append((name, acts))
-        contributors[name] = acting_in(scene, name, own.name, draw_of(scene, own, spec), turning)
+    contributors, actions = contributors_in_trains(scene, owners, acts_of, draw_of)
     links = [_link(scene, own, specs[name], tuple(actions[name])) for name, own in sets.items()]
-    return Brought(
-        tuple(
-            BroughtLink(each, frozenset(parts_of(each.own, specs[each.name])), (each.own.input, each.own.output))
-            for each in links
-        ),
-        contributors,
-        tuple(line for each in links for line in implausible_set(scene, each.own, each.made)),
-    )
+    warnings = (line for each in links for line in implausible_set(scene, each.own, each.made))
+    return brought_by(links, parts, contributors, warnings)
 
 
 def _link(scene: Scene, own: PlanetarySet, spec: PlanetarySpec, actions: tuple[tuple[str, Acts], ...]) -> SetLink:
     """A set as a link of the shafts that turn with its input and its output."""
-    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
     made = made_gears(scene, own)
-    heights = heights_of(own, made)
+    ends = ends_of(scene, own, heights_of(own, made))
     return SetLink(
         name=own.name,
-        driver=driver,
-        driven=driven,
+        driver=ends.driver,
+        driven=ends.driven,
         rate=1 / own.ratio,
-        offset=(first - heights[own.input]) - (last - heights[own.output]),
+        offset=ends.offset,
         own=own,
         made=made,
-        height=first - heights[own.input],
+        height=ends.height,
         actions=actions,
         friction=spec.friction,
     )

@@ -13,7 +13,7 @@ from tol3d.planetary.exact.contact_kernel import seated_ranges
 from tol3d.planetary.exact.shown import Made, ShownSet, shown_set
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.problems import problems_at
-from tol3d.planetary.regressors import parts_met
+from tol3d.planetary.regressors import slopes_of
 from tol3d.planetary.sections import set_sections, spring_summary
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.summary_types import PlanetarySetSummary
@@ -61,12 +61,6 @@ class PlanetarySystem(SetTrials):
         measure = self.measures[0]
         return problems_at(self.own, self.deviated(mean_build(self, measure)), self.read[measure.name].shaft)
 
-    def describe(self, measure: Measure) -> Mapping[str, Any]:
-        """See System."""
-        own = self.read[measure.name]
-        order = {"order": int(own.spectrum.orders[0])} if own.spectrum is not None else {}
-        return {"kind": own.kind, "of": self.own.name, "shaft": own.shaft, **order}
-
     # its methods --------------------------------------------------------------------------------------
 
     def is_compiled(self, method: str) -> bool:
@@ -102,7 +96,7 @@ class PlanetarySystem(SetTrials):
     ) -> None:
         """See System: offsets as they lie seen from the planets."""
         own = self.read[measure.name]
-        self.regress_parts(own, contributors, columns, rows, partial(parts_met, self, own))
+        self.regress_slopes(own, contributors, columns, rows, partial(slopes_of, self, own))
 
     def sections(self, terms: Mapping[str, Mapping[str, PooledTerms]], published: Published) -> Mapping[str, Any]:
         """Efficiencies and torques of the set, where friction or a spring is given; see System."""

@@ -25,9 +25,9 @@ from tol3d.planetary.exact.shown import Made, placed_gears
 from tol3d.planetary.model.deviated import Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.trials import PlanetaryMethod, SetTrials
+from tol3d.reducers.trials import Witnesses
 from tol3d.solids import FlankStrips, PulledStrip
 from tol3d.solids.distance import NearestPoints, Surface, mesh_surface, put
-from tol3d.system.measure import Measure
 
 BESIDE: Final = (-1, 0, 1)
 """Pairs of teeth that are asked, from the one at the pitch point on; no more than three can touch at once."""
@@ -237,12 +237,8 @@ class StripContact:
         return at, STALLED, -1, 0.0
 
 
-MOST_POSITIONS: Final = 24
-"""Largest number of positions of a measure that a witness reads: a turn of 360 would take it ten seconds a trial."""
-
-
 @dataclass(frozen=True)
-class PlanetaryWitness(PlanetaryMethod):
+class PlanetaryWitness(Witnesses, PlanetaryMethod):
     """Implements WitnessMethod.
 
     Args:
@@ -256,19 +252,12 @@ class PlanetaryWitness(PlanetaryMethod):
         """See Method."""
         return max(own.chord_error for own in self.strips.values())
 
-    def reads(self, measure: Measure) -> bool:
-        """See WitnessMethod."""
-        return measure.positions.in_a_trial <= MOST_POSITIONS
-
-    def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessMethod: by chords of both flanks of a gap, and by all else."""
-        system = self.system
-        chords = [
-            self.strips[mesh.central.name].chord_error + self.strips[mesh.planet.name].chord_error
-            for mesh in system.own.meshes
-        ]
-        others = [ALLOWANCE * mesh.central.module for mesh in system.own.meshes]
-        return system.gap_bound(measure, chords), system.gap_bound(measure, others)
+    @property
+    def errors(self) -> tuple[list[float], list[float]]:
+        """See Witnesses: by chords of both flanks of each mesh, and by all else."""
+        meshes = self.system.own.meshes
+        chords = [sum(self.strips[gear.name].chord_error for gear in (mesh.central, mesh.planet)) for mesh in meshes]
+        return chords, [ALLOWANCE * mesh.central.module for mesh in meshes]
 
 
 def witness(system: SetTrials, made: Made, strips: Mapping[str, FlankStrips]) -> PlanetaryWitness:

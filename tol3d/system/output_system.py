@@ -13,6 +13,7 @@ from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.plain import PlainSystem
 from tol3d.system.positions import Positions
+from tol3d.system.stated import component_slices
 from tol3d.system.system import Columns, StreamKey
 from tol3d.system.taken import ROWS_AT_ONCE
 from tol3d.system.trials import Trials
@@ -62,6 +63,12 @@ class OutputSystem(PlainSystem):
             return trials.positions[self.own.name][:, None]
         return np.array([positions.fixed]) / (2 * np.pi)
 
+    def trials_again(self, columns: Columns) -> Trials:
+        """Trials from columns of their results."""
+        deviations = np.concatenate([component_values(own, columns) for own in self.contributors], axis=1)
+        turns = np.asarray(columns[self.position_column], dtype=np.float64) / 360.0
+        return Trials(deviations, {self.own.name: turns})
+
     @cached_property
     def read(self) -> Mapping[str, Any]:
         """The system's own measures by their names."""
@@ -85,19 +92,17 @@ class OutputSystem(PlainSystem):
             measure, contributors, columns, rows: see System.regress.
             parts: of some trials.
         """
-        values = {own.name: component_values(own, columns) for own in self.contributors}
-        deviations = np.concatenate([values[own.name] for own in self.contributors], axis=1)
-        turns = np.asarray(columns[self.position_column], dtype=np.float64) / 360.0
+        trials, slices = self.trials_again(columns), component_slices(self)
         at_once = max(1, ROWS_AT_ONCE // measure.positions.in_a_trial)
         for own in contributors:
             rows[own.name][...] = 0.0
-        for first in range(0, len(deviations), at_once):
-            piece = slice(first, first + at_once)
-            part_of = parts(Trials(deviations[piece], {self.own.name: turns[piece]}))
+        for first in range(0, len(trials), at_once):
+            piece = trials.part(first, first + at_once)
+            part_of = parts(piece)
             for own in contributors:
                 turning = self.turns_at_random(own, measure.positions)
-                off = values[own.name][piece] - np.array(own.draw.mean(turning=turning))
-                rows[own.name][0, piece] = measure.per_internal * part_of(own, off)
+                off = piece.deviations[:, slices[own.name]] - np.array(own.draw.mean(turning=turning))
+                rows[own.name][0, first : first + at_once] = measure.per_internal * part_of(own, off)
 
 
 def component_values(contributor: Contributor, columns: Columns) -> Array:

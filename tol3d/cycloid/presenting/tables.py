@@ -7,13 +7,13 @@ from typing import Annotated, Final
 
 from tol3d.cycloid.model.limits import largest_pin_radius
 from tol3d.cycloid.presenting.formulas import stage_blocks
-from tol3d.cycloid.reducer.deviated import Acts
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.system import RVSystem
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
+from tol3d.reducers.deviations import Acts
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Table, line
 from tol3d.report.system_check import system_blocks

@@ -1,6 +1,5 @@
 """Effects of contributors on an RV reducer: deviations of its cycloid stage, and of the gears before it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -8,10 +7,9 @@ import numpy as np
 
 from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
-from tol3d.numerics.trial_arrays import TrialArrays
+from tol3d.reducers.deviations import Acts, Along, Deviations, shaped
 
 Effect = Literal[
     "pin circle", "pin ring", "pin outwards", "pin round", "pin place", "pin radius", "lobe pitch", "lobe profile",
@@ -19,26 +17,11 @@ Effect = Literal[
     "crank phase", "carrier hole", "carrier circle", "carrier offset", "sun thickness", "planet thickness",
     "sun offset", "planet offset",
 ]  # fmt: skip
-Along = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
-class Acts:
-    """Effect of a contributor on the reducer, and its factor.
-
-    Args:
-        factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
-        over: how teeth are measured, where the scene says so.
-    """
-
-    effect: Effect
-    factor: float = 1.0
-    over: ToothMeasure | None = None
-
-
-@dataclass(frozen=True)
-class RVDeviated(TrialArrays):
-    """Deviations of an RV reducer (trials, ...), or derivatives by each deviation.
+class RVDeviated(Deviations):
+    """Deviations of an RV reducer; see Deviations.
 
     Args:
         stage: of pins, discs, cranks and carrier.
@@ -74,62 +57,40 @@ class RVDeviated(TrialArrays):
             np.zeros((trials, own.cranks)),
         )
 
-    def add(self, acts: Acts, components: Array) -> None:
-        """Add the effect of a contributor.
-
-        Args:
-            components: of the contributor (trials, components) [mm or rad].
-        """
-        into, along = self._reached(acts.effect)
-        into += acts.factor * along(components)
-
-    def term(self, acts: Acts, components: Array) -> Array:
-        """Change due to a contributor (trials,), where this is the change per deviation.
-
-        Args: as of `add`.
-        """
-        rates, along = self._reached(acts.effect)
-        return np.asarray(acts.factor * (rates * along(components)).reshape(len(rates), -1).sum(axis=1))
-
-    def _reached(self, effect: Effect) -> tuple[Array, Along]:
-        """The array that an effect reaches, and the part of it that a contributor's components are."""
+    def reached(self, own: RVSet, acts: Acts) -> tuple[Array, Along]:
+        """See Deviations."""
         stage = self.stage
-        reached: dict[Effect, tuple[Array, Along]] = {
+        reached: dict[str, tuple[Array, Along]] = {
             "pin circle": (stage.pins[..., 0], _alike),
-            "pin ring": (stage.pins, _ring_moved(stage.pins.shape[1])),
-            "pin outwards": (stage.pins[..., 0], _shaped(stage.pins[0, :, 0])),
-            "pin round": (stage.pins[..., 1], _shaped(stage.pins[0, :, 1])),
-            "pin place": (stage.pins, _shaped(stage.pins[0])),
-            "pin radius": (stage.pin_radii, _shaped(stage.pin_radii[0])),
-            "lobe pitch": (stage.lobe_pitch, _shaped(stage.lobe_pitch[0])),
-            "lobe profile": (stage.lobe_profile, _shaped(stage.lobe_profile[0])),
-            "disc offset": (stage.disc_offsets, _shaped(stage.disc_offsets[0])),
-            "disc hole": (stage.disc_holes, _shaped(stage.disc_holes[0])),
-            "disc tilt": (self.disc_tilts, _shaped(self.disc_tilts[0])),
-            "disc play": (self.disc_play, _shaped(self.disc_play[0])),
-            "carrier play": (self.carrier_play, _shaped(self.carrier_play[0])),
-            "crank throw": (stage.crank_errors, _shaped(stage.crank_errors[0])),
-            "crank throw of a disc": (stage.crank_errors, _shaped(stage.crank_errors[0, :1])),
-            "crank phase": (stage.crank_phases, _shaped(stage.crank_phases[0])),
-            "carrier hole": (stage.carrier_holes, _shaped(stage.carrier_holes[0])),
-            "carrier circle": (stage.carrier_holes, _shaped(stage.carrier_holes[0, :1])),
-            "carrier offset": (stage.carrier_offsets, _shaped(stage.carrier_offsets[0])),
+            "pin ring": (stage.pins, _ring_moved(own.profile.pins)),
+            "pin outwards": (stage.pins[..., 0], shaped(stage.pins[..., 0])),
+            "pin round": (stage.pins[..., 1], shaped(stage.pins[..., 1])),
+            "pin place": (stage.pins, shaped(stage.pins)),
+            "pin radius": (stage.pin_radii, shaped(stage.pin_radii)),
+            "lobe pitch": (stage.lobe_pitch, shaped(stage.lobe_pitch)),
+            "lobe profile": (stage.lobe_profile, shaped(stage.lobe_profile)),
+            "disc offset": (stage.disc_offsets, shaped(stage.disc_offsets)),
+            "disc hole": (stage.disc_holes, shaped(stage.disc_holes)),
+            "disc tilt": (self.disc_tilts, shaped(self.disc_tilts)),
+            "disc play": (self.disc_play, shaped(self.disc_play)),
+            "carrier play": (self.carrier_play, shaped(self.carrier_play)),
+            "crank throw": (stage.crank_errors, shaped(stage.crank_errors)),
+            "crank throw of a disc": (stage.crank_errors, shaped(stage.crank_errors[:, :1])),
+            "crank phase": (stage.crank_phases, shaped(stage.crank_phases)),
+            "carrier hole": (stage.carrier_holes, shaped(stage.carrier_holes)),
+            "carrier circle": (stage.carrier_holes, shaped(stage.carrier_holes[:, :1])),
+            "carrier offset": (stage.carrier_offsets, shaped(stage.carrier_offsets)),
             "sun thickness": (self.sun_thickness, lambda own: own[:, 0]),
-            "planet thickness": (self.planet_thickness, _shaped(self.planet_thickness[0])),
-            "sun offset": (self.sun_offset, _shaped(self.sun_offset[0])),
-            "planet offset": (self.planet_offset, _shaped(self.planet_offset[0])),
+            "planet thickness": (self.planet_thickness, shaped(self.planet_thickness)),
+            "sun offset": (self.sun_offset, shaped(self.sun_offset)),
+            "planet offset": (self.planet_offset, shaped(self.planet_offset)),
         }
-        return reached[effect]
+        return reached[acts.effect]
 
 
 def _alike(components: Array) -> Array:
     """One deviation (trials, 1) of all."""
     return components
-
-
-def _shaped(like: Array) -> Along:
-    """Components one after the other, in the form of an array of one trial."""
-    return lambda components: components.reshape(len(components), *like.shape)
 
 
 def _ring_moved(pins: int) -> Along:

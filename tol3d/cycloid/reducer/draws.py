@@ -19,17 +19,16 @@ from tol3d.cycloid.grammar.tolerances import (
     PinRadiusSpec,
     PinRingOffsetSpec,
 )
-from tol3d.cycloid.reducer.deviated import Acts, Effect
+from tol3d.cycloid.reducer.deviated import Effect
 from tol3d.cycloid.reducer.rv_set import RVSet
-from tol3d.files import Files
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
 from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
+from tol3d.reducers.contributors import drawn, law_of, numbered
+from tol3d.reducers.deviations import Acts
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
-from tol3d.system.draw import Draw, Each, Planar, Scalar
-from tol3d.system.each_planar import EachPlanar
+from tol3d.system.draw import Draw
 
 OF_THE_STAGE: dict[type, Effect] = {
     PinCircleSpec: "pin circle",
@@ -66,7 +65,7 @@ def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
     if isinstance(spec, CarrierHoleSpec):
         return Acts("carrier hole" if spec.each == "hole" else "carrier circle")
     if isinstance(spec, BearingPlaySpec):
-        return Acts("disc play" if spec.of == own.disc else "carrier play")
+        return Acts("disc play" if spec.of == own.disc else "carrier play", least=0.0)
     if isinstance(spec, OF_GEARS):
         return _of_a_gear(scene, own, name, spec)
     words = ", ".join(str(kind_of(kind)) for kind in (*OF_THE_STAGE, *OF_A_CHOICE, *OF_GEARS))
@@ -82,55 +81,42 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | T
         if isinstance(spec.direction, At):
             words = "expected random: how a gear's teeth are turned on its shaft is not stated, got {at: ...}"
             raise scene.refuse(("tolerances", name, "direction"), words)
-        return Acts("sun offset" if of_sun else "planet offset")
+        return Acts("sun offset" if of_sun else "planet offset", spec.of)
     counted = 1 / math.cos(first.pair.pinion.pressure_angle) if spec.is_normal else 1.0
-    return Acts("sun thickness" if of_sun else "planet thickness", counted, spec.over)
+    return Acts("sun thickness" if of_sun else "planet thickness", spec.of, counted, spec.over)
 
 
-def draw_of(own: RVSet, acts: Acts, spec: Any, files: Files) -> Draw:
-    """Draw of the components of a tolerance; `files` holds what its law reads."""
-    if isinstance(spec, GearToleranceSpec) and own.first is not None:
-        law = spec.law_on(own.first.gear(spec.of), files)
-    else:
-        law = spec.distribution.resolve(files)
-    discs = _numbered("disc", own.discs)
-    pins, cranks = _numbered("pin", own.profile.pins), _numbered("crank", own.cranks)
-    names: dict[Effect, tuple[str, ...]] = {
+def draw_of(scene: Scene, own: RVSet, acts: Acts, spec: Any) -> Draw:
+    """Draw of the components of a tolerance."""
+    discs = numbered("disc", own.discs)
+    pins, cranks = numbered("pin", own.profile.pins), numbered("crank", own.cranks)
+    names: dict[str, tuple[str, ...]] = {
         "pin outwards": pins,
         "pin round": pins,
         "pin place": pins,
         "pin radius": pins,
-        "lobe pitch": _of_each(discs, _numbered("lobe", own.profile.lobes)),
-        "lobe profile": _of_each(discs, _numbered("lobe", own.profile.lobes)),
+        "lobe pitch": _of_each(discs, numbered("lobe", own.profile.lobes)),
+        "lobe profile": _of_each(discs, numbered("lobe", own.profile.lobes)),
         "disc offset": discs,
         "disc tilt": discs,
-        "disc hole": _of_each(discs, _numbered("hole", own.cranks)),
+        "disc hole": _of_each(discs, numbered("hole", own.cranks)),
         "crank throw": _of_each(cranks, discs),
         "crank throw of a disc": discs,
         "crank phase": cranks,
-        "carrier hole": _numbered("hole", own.cranks),
-        "disc play": _of_each(discs, _numbered("hole", own.cranks)),
-        "carrier play": _numbered("hole", own.cranks),
-        "planet thickness": _numbered("planet", own.cranks),
-        "planet offset": _numbered("planet", own.cranks),
+        "carrier hole": numbered("hole", own.cranks),
+        "disc play": _of_each(discs, numbered("hole", own.cranks)),
+        "carrier play": numbered("hole", own.cranks),
+        "planet thickness": numbered("planet", own.cranks),
+        "planet offset": numbered("planet", own.cranks),
     }
-    planar = acts.effect in PLANAR
-    if acts.effect not in names:
-        return Planar(law, None) if planar else Scalar(law)
-    return EachPlanar(law, names[acts.effect], None) if planar else Each(law, names[acts.effect])
+    return drawn(law_of(scene, spec), names.get(acts.effect, ()), planar=acts.effect in PLANAR)
 
 
-NOT_NEGATIVE: tuple[Effect, ...] = ("disc play", "carrier play")
-"""Effects of a clearance."""
 PLANAR: tuple[Effect, ...] = (
     "pin ring", "pin place", "disc offset", "disc tilt", "disc hole", "crank throw", "crank throw of a disc",
     "carrier hole", "carrier circle", "carrier offset", "sun offset", "planet offset",
 )  # fmt: skip
 """Effects of a length, or a tilt, in a random direction."""
-
-
-def _numbered(word: str, count: int) -> tuple[str, ...]:
-    return tuple(f"{word} {k + 1}" for k in range(count))
 
 
 def _of_each(outer: tuple[str, ...], inner: tuple[str, ...]) -> tuple[str, ...]:

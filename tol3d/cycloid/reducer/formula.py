@@ -16,10 +16,10 @@ from scipy.optimize import brentq
 from scipy.special import erf
 
 from tol3d.cycloid.model.profile import DiscProfile
-from tol3d.cycloid.reducer.deviated import Acts
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.summary_types import CycloidStageSummary, FormulaTotals, SourceByFormula, StageTotals
 from tol3d.numerics.arrays import Array
+from tol3d.reducers.deviations import Acts
 from tol3d.runs.summary.values import made
 from tol3d.system.contributor import Contributor
 

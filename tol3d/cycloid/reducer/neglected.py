@@ -17,10 +17,11 @@ import numpy as np
 
 from tol3d.cycloid.first_order.linear import LinearStage, NominalPins, PlacedDisc, Sense, picked
 from tol3d.cycloid.model.stage import Deviated
-from tol3d.cycloid.reducer.trials import RVMeasure, RVMethod, RVTrials
+from tol3d.cycloid.reducer.trials import RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning, led_angles
 from tol3d.numerics.arrays import Array, Places
 from tol3d.numerics.plane import as_complex
+from tol3d.reducers.trials import ReducerMeasure
 from tol3d.system.taken import taken
 from tol3d.system.trials import Trials
 
@@ -80,7 +81,7 @@ class BentTurning(LinearTurning):
         return led_angles(self.own, turns, beta)
 
 
-def neglected(system: RVTrials, measure: RVMeasure, trials: Trials) -> Mapping[str, Array]:
+def neglected(system: RVTrials, measure: ReducerMeasure, trials: Trials) -> Mapping[str, Array]:
     """Effect of the neglected terms on a measure, in its unit: (trials,) by its words; of a curve nothing."""
     if measure.take == "curve" or system.own.plays:
         return {}
@@ -88,5 +89,5 @@ def neglected(system: RVTrials, measure: RVMeasure, trials: Trials) -> Mapping[s
     return {BEND: measure.per_internal * np.abs(bent - straight)}
 
 
-def _taken(system: RVTrials, measure: RVMeasure, trials: Trials, turning: Turning) -> Array:
+def _taken(system: RVTrials, measure: ReducerMeasure, trials: Trials, turning: Turning) -> Array:
     return taken(measure, RVMethod(system, turning).answers(trials, (measure,)).values[measure.name])

@@ -6,9 +6,9 @@ from typing import Final
 import numpy as np
 
 from tol3d.cycloid.model.limits import LEAST_GAP, least_gap
-from tol3d.cycloid.reducer.deviated import Acts, RVDeviated
-from tol3d.cycloid.reducer.draws import NOT_NEGATIVE
+from tol3d.cycloid.reducer.deviated import RVDeviated
 from tol3d.cycloid.reducer.rv_set import RVSet
+from tol3d.reducers.deviations import Acts
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
 
@@ -23,7 +23,7 @@ def problems_at(
     """
     for contributor in contributors:
         mean = contributor.draw.mean(turning=False)[0]
-        if acts[contributor.name].effect in NOT_NEGATIVE and mean < 0.0:
+        if acts[contributor.name].least is not None and mean < 0.0:
             yield (
                 ("tolerances", contributor.name, "distribution"),
                 f"expected a mean clearance of at least 0 um, got {1e3 * mean:g} um: a preloaded "

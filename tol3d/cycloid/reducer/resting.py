@@ -199,3 +199,8 @@ def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, fou
     turning = LinearTurning(own)
     touching = found or turning.turned(deviated, turns[:, None], sense)
     return turning.rates(deviated.disc_tilts, turns, touching, sense)
+
+
+def lost_motion_rates(own: RVSet, deviated: RVDeviated, turns: Array) -> RVDeviated:
+    """The same of the free turn between both ends."""
+    return linear_rates(own, deviated, turns, 1).plus(linear_rates(own, deviated, turns, -1), -1.0)

@@ -79,6 +79,16 @@ class RVSet:
         return self.crankshaft if self.first is None else self.first.sun
 
     @property
+    def output(self) -> str:
+        """The part that is driven."""
+        return self.carrier
+
+    @property
+    def held(self) -> str:
+        """The part that is fixed."""
+        return self.ring
+
+    @property
     def pair(self) -> SpurPair:
         """Sun and planet of its first stage, which it must have."""
         assert self.first is not None

@@ -30,8 +30,8 @@ from tol3d.cycloid.reducer.trials import RVMethod, RVTrials
 from tol3d.cycloid.reducer.turning import Turned, led_angles, output_turns
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
+from tol3d.reducers.trials import Witnesses
 from tol3d.solids.distance import NearestPoints, Surface, cylinder, mesh_surface, put, sphere
-from tol3d.system.measure import Measure
 
 SLACK: Final = 0.05  # mm; overlaps up to it are measured
 LAST_STEP: Final = 1e-7  # mm over the pitch radius
@@ -162,8 +162,6 @@ def about_z(angle: float) -> Array:
     return np.asarray(Rotation.from_rotvec([0.0, 0.0, angle]).as_matrix())
 
 
-MOST_POSITIONS: Final = 24
-"""Largest number of positions of a measure that a witness reads: a turn of 200 would take it a second a trial."""
 ALLOWANCE: Final = 1.5e-5  # mm; what a gap may be off besides chords: FCL's cylinders by 8e-6, the solid by 1e-6
 
 
@@ -186,7 +184,7 @@ class StripTurning:
 
 
 @dataclass(frozen=True)
-class RVWitness(RVMethod):
+class RVWitness(Witnesses, RVMethod):
     """Implements WitnessMethod."""
 
     strips: LobeStrips
@@ -196,14 +194,10 @@ class RVWitness(RVMethod):
         """See Method."""
         return self.strips.chord_error
 
-    def reads(self, measure: Measure) -> bool:
-        """See WitnessMethod: all but counts of pins near contact."""
-        own = self.system.read[measure.name]
-        return not own.counts and measure.positions.in_a_trial <= MOST_POSITIONS
-
-    def bounds(self, measure: Measure) -> tuple[float, float]:
-        """See WitnessMethod: by chords, and by all else."""
-        return self.system.gap_bound(measure, self.chord_error), self.system.gap_bound(measure, ALLOWANCE)
+    @property
+    def errors(self) -> tuple[float, float]:
+        """See Witnesses."""
+        return self.chord_error, ALLOWANCE
 
 
 def witness(system: RVTrials, strips: LobeStrips) -> RVWitness:

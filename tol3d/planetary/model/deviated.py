@@ -2,40 +2,18 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.gears.tooth_measures import ToothMeasure
 from tol3d.numerics.arrays import Array, Places
-from tol3d.numerics.trial_arrays import TrialArrays
 from tol3d.planetary.model.planetary_set import PlanetarySet
-
-Effect = Literal["thickness", "offset", "clocking", "pin"]
-
-
-@dataclass(frozen=True)
-class Acts:
-    """Effect of a contributor on the set, and its factor.
-
-    Args:
-        effect: thickness and clocking of a gear, offset of its teeth from its axis, or of pins from their places.
-        gear: the gear's name; "" of pins.
-        direction: of pins, "radial" or "tangential" where the deviation is one of them alone.
-        factor: multiplier of the deviation, such as 1/cos(alpha) for a thickness along the normals.
-        over: how teeth are measured, where the scene says so.
-    """
-
-    effect: Effect
-    gear: str = ""
-    direction: Literal["radial", "tangential", ""] = ""
-    factor: float = 1.0
-    over: ToothMeasure | None = None
+from tol3d.reducers.deviations import Acts, Along, Deviations, shaped
 
 
 @dataclass(frozen=True)
-class Deviated(TrialArrays):
+class Deviated(Deviations):
     """Deviations of a set (trials, ...).
 
     Args:
@@ -73,25 +51,11 @@ class Deviated(TrialArrays):
             np.zeros((trials, centrals, 2)),
         )
 
-    def add(self, own: PlanetarySet, acts: Acts, components: Array) -> None:
-        """Add the effect of a contributor.
-
-        Args:
-            components: of the contributor (trials, components) [mm or rad]; of planets x and y of one after the other,
-                offsets in the gear's own frame, whose x goes through the middle of tooth 0.
-        """
-        into, facing = self._reached(own, acts)
-        into += _turned(acts.factor * components.reshape(into.shape), acts, facing)
-
-    def of(self, own: PlanetarySet, acts: Acts) -> Array:
-        """Values at the place where a contributor acts, a component each (trials, components): of slopes, its own."""
-        found, facing = self._reached(own, acts)
-        return acts.factor * _turned(found, acts, -facing).reshape(len(found), -1)
-
-    def _reached(self, own: PlanetarySet, acts: Acts) -> tuple[Array, float]:
-        """The array that is acted on, and the azimuth of tooth 0 of a central gear [rad]; 0 of planets and pins."""
-        if acts.effect == "pin":
-            return self.pins[:, :, int(acts.direction == "tangential")] if acts.direction else self.pins, 0.0
+    def reached(self, own: PlanetarySet, acts: Acts) -> tuple[Array, Along]:
+        """See Deviations; components of offsets are in the gear's own frame, whose x goes through tooth 0's middle."""
+        pins = {"pin": self.pins, "pin outwards": self.pins[:, :, 0], "pin round": self.pins[:, :, 1]}
+        if acts.effect in pins:
+            return pins[acts.effect], shaped(pins[acts.effect])
         centrals = [mesh.central.name for mesh in own.meshes]
         of_planets = acts.gear not in centrals
         place = [gear.name for gear in own.gears].index(acts.gear) if of_planets else centrals.index(acts.gear)
@@ -100,17 +64,15 @@ class Deviated(TrialArrays):
             "offset": (self.central_offset, self.planet_offset),
             "clocking": (self.central_clocking, self.planet_clocking),
         }
-        return arrays[acts.effect][of_planets][:, place], 0.0 if of_planets else own.meshes[place].facing
+        into = arrays[acts.effect][of_planets][:, place]
+        facing = 0.0 if of_planets else own.meshes[place].facing
+        return into, partial(_turned, facing) if acts.effect == "offset" and facing else shaped(into)
 
 
-def _turned(components: Array, acts: Acts, angle: float) -> Array:
-    """Offsets of a central gear (trials, 2) turned by an angle [rad]; other arrays unchanged."""
-    if acts.effect != "offset" or not angle:
-        return components
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.stack(
-        [cos * components[:, 0] - sin * components[:, 1], sin * components[:, 0] + cos * components[:, 1]], -1
-    )
+def _turned(facing: float, offsets: Array) -> Array:
+    """Offsets of a central gear (trials, 2) from the frame of its tooth 0, which stands at an azimuth [rad]."""
+    cos, sin = math.cos(facing), math.sin(facing)
+    return np.stack([cos * offsets[:, 0] - sin * offsets[:, 1], sin * offsets[:, 0] + cos * offsets[:, 1]], -1)
 
 
 @dataclass(frozen=True)

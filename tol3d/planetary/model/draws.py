@@ -14,18 +14,17 @@ from tol3d.assembly.zones.zone_draw import ZoneDraw
 from tol3d.distributions import DeviationLaw, Distribution
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
-from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
-from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
-from tol3d.gearing.model.pairs import cylindrical_gear
+from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpec, ToothThicknessSpec
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
-from tol3d.planetary.model.deviated import Acts
 from tol3d.planetary.model.planetary_set import PlanetarySet
+from tol3d.reducers.contributors import drawn, law_of, numbered
+from tol3d.reducers.deviations import Acts
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
-from tol3d.system.draw import Draw, Each, Planar, Scalar
-from tol3d.system.each_planar import EachOwn, EachPlanar, parts_of
+from tol3d.system.draw import Draw
+from tol3d.system.each_planar import EachOwn, parts_of
 from tol3d.system.steepest import Values, steepest_ends
 
 
@@ -109,27 +108,21 @@ KINDS: Final = (ToothThicknessSpec, EccentricitySpec, ToothRunOutSpec, ClockingS
 """Tolerances of planetary sets; those of gears are shared with trains."""
 
 
-def refuse_other_tolerance(scene: Scene, name: str) -> None:
-    """Refuse a tolerance of a set that no set has.
+def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
+    """Effect of a tolerance on the set.
 
     Raises:
-        SceneError: with those that it has.
+        SceneError: it acts on nothing of a set, or of this one.
     """
-    spec = scene.tolerances[name]
     if not isinstance(spec, KINDS):
         words = ", ".join(str(kind_of(kind)) for kind in KINDS)
         sentence = f"expected of planetary sets {words}, got {kind_of(type(spec))}"
         raise scene.refuse(("tolerances", name, "kind"), sentence)
-
-
-def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
-    """Effect of a tolerance on the set."""
     if isinstance(spec, PlanetPinSpec | BorePositionSpec):
         if spec.of != own.carrier:
             raise scene.refuse(("tolerances", name, "of"), f"expected {own.carrier!r}, got {spec.of!r}")
-        if isinstance(spec, BorePositionSpec) or spec.direction == "random":
-            return Acts("pin")
-        return Acts("pin", direction=spec.direction)
+        effects = {"radial": "pin outwards", "tangential": "pin round"}
+        return Acts("pin" if isinstance(spec, BorePositionSpec) else effects.get(spec.direction, "pin"))
     known = [mesh.central.name for mesh in own.meshes] + [gear.name for gear in own.gears]
     if spec.of not in known:
         raise scene.refuse(("tolerances", name, "of"), f"expected a gear of {own.name!r}, got {spec.of!r}")
@@ -138,40 +131,18 @@ def acts_of(scene: Scene, own: PlanetarySet, name: str, spec: Any) -> Acts:
         assert isinstance(part, GearSpec)
         counted = 1 / math.cos(part.pressure_angle.internal) if spec.is_normal else 1.0
         factor = spec.sign_in(ring=isinstance(part, InternalGearSpec)) * counted
-        return Acts("thickness", spec.of, factor=factor, over=spec.over)
+        return Acts("thickness", spec.of, factor, spec.over)
     return Acts("clocking" if isinstance(spec, ClockingSpec) else "offset", spec.of)
 
 
-def draw_of(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
+def draw_of(scene: Scene, own: PlanetarySet, acts: Acts, spec: Any) -> Draw:
     """Draw of the components: independent ones for each planet, pin and bore."""
-    return _bores(scene, own, spec) if isinstance(spec, BorePositionSpec) else _of_distribution(scene, own, spec)
-
-
-def _bores(scene: Scene, own: PlanetarySet, spec: BorePositionSpec) -> Draw:
-    """Each bore in its zone, its axis parallel to the set's."""
-    zone = axis_section(spec.zone.diameter.internal)
-    draw = drawn_by(spec.law, zone, scene.files)
-    names = planet_names(own)
-    return EachJudgedZone(draw, names) if isinstance(draw, Process) else EachZone(draw, names)
-
-
-def planet_names(own: PlanetarySet) -> tuple[str, ...]:
-    """Names of columns, counted from 1."""
-    return tuple(f"planet {planet + 1}" for planet in range(own.planets))
-
-
-def _of_distribution(scene: Scene, own: PlanetarySet, spec: Any) -> Draw:
-    names = planet_names(own)
-    of_a_gear = isinstance(spec, GearToleranceSpec)
-    law = (
-        spec.law_on(cylindrical_gear(scene, spec.of), scene.files)
-        if of_a_gear
-        else spec.distribution.resolve(scene.files)
-    )
-    of_planets = isinstance(spec, PlanetPinSpec) or spec.of in {gear.name for gear in own.gears}
-    if isinstance(spec, TeethOffAxisSpec):
-        direction = spec.direction.at.internal if isinstance(spec.direction, At) else None
-        return EachPlanar(law, names, direction) if of_planets else Planar(law, direction)
-    if isinstance(spec, PlanetPinSpec) and spec.direction == "random":
-        return EachPlanar(law, names, None)
-    return Each(law, names) if of_planets else Scalar(law)
+    planets = numbered("planet", own.planets)
+    if isinstance(spec, BorePositionSpec):  # its axis parallel to the set's
+        draw = drawn_by(spec.law, axis_section(spec.zone.diameter.internal), scene.files)
+        return EachJudgedZone(draw, planets) if isinstance(draw, Process) else EachZone(draw, planets)
+    of_planets = not acts.gear or acts.gear in {gear.name for gear in own.gears}
+    at = getattr(spec, "direction", None)
+    direction = at.at.internal if isinstance(at, At) else None
+    planar = acts.effect in ("offset", "pin")
+    return drawn(law_of(scene, spec), planets if of_planets else (), planar=planar, direction=direction)

@@ -250,6 +250,15 @@ class PlanetarySet:
         wanted = np.ascontiguousarray(self.wanted(stands, shaft)[end])
         return self.objective(stands, shaft), wanted, self.begun(stands)
 
+    @property
+    def sense(self) -> float:
+        """1 where the output turns counter-clockwise while the input does, else -1."""
+        return 1.0 if self.ratio > 0 else -1.0
+
+    def end(self, load: int) -> int:
+        """End of its free turn at which the output rests, the lower (0) or the upper one (1), by its load's sense."""
+        return int(load * self.sense > 0.0)
+
     def opposite(self, shaft: str) -> str:
         """Shaft that stands while another one is turned: the input, for the input the output."""
         return self.output if shaft == self.input else self.input

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from tol3d.gearing.links import StatedLink
 from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
 from tol3d.planetary.exact.shown import Made
-from tol3d.planetary.model.deviated import Acts
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.model.set_mesh import SetMesh
 from tol3d.planetary.presenting.efficiencies import set_blocks
@@ -13,6 +12,7 @@ from tol3d.planetary.sections import set_sections
 from tol3d.planetary.set_link import SetLink
 from tol3d.planetary.summary_types import PlanetarySetSummary
 from tol3d.planetary.system import PlanetarySystem
+from tol3d.reducers.deviations import Acts
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, line
 from tol3d.report.system_check import system_blocks

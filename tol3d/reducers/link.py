@@ -1,0 +1,176 @@
+"""Reducers between two shafts of a train, whose play is the lost motion at their output."""
+
+import math
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tol3d.gearing.links import FreeTurn, LinkTrials, StatedLink
+from tol3d.gearing.model.brought import Brought, BroughtLink, shaft_of
+from tol3d.gearing.model.contributor import Contributor
+from tol3d.numerics.arrays import Array
+from tol3d.reducers.deviations import Acts, Deviations
+from tol3d.scene import Scene
+from tol3d.scene.part import PartSpec
+from tol3d.system.taken import ROWS_AT_ONCE
+
+Lost = tuple[Array, Array, NDArray[np.bool_]]
+"""Free turn and its middle [rad], and where the reducer jams, (trials,) each."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReducerLink(StatedLink):
+    """A reducer whose input and output turn with shafts of a train, its third shaft held in the world.
+
+    It is modelled by itself, its output at 0 with the driver at 0, and read at the driver's nominal position: the small
+    extra turn by the play of earlier stages has no effect.
+
+    Args:
+        own: its model: names, ratio, and period in turns of the output.
+        height: of its middle along the driver's z [mm].
+        actions: what each contributor acts on, by its name.
+    """
+
+    has_middle: ClassVar[bool] = True
+    compares: ClassVar[bool] = True
+    housed: ClassVar[bool] = False
+
+    made_of: ClassVar[type[Deviations]]
+    """Deviations of its parts."""
+
+    own: Any
+    height: float
+    actions: tuple[tuple[str, Acts], ...]
+
+    @property
+    def turns(self) -> Fraction:
+        """Turns of the input until all parts meet again as before."""
+        return Fraction(self.own.period * abs(self.own.ratio))
+
+    @cached_property
+    def acts(self) -> Mapping[str, Acts]:
+        """Effect of each contributor."""
+        return dict(self.actions)
+
+    def output_turns(self, seen: LinkTrials) -> Array:
+        """Turns of the output (trials, positions) at the driver's nominal positions."""
+        return np.ascontiguousarray(seen.angles / (2 * math.pi) * float(self.rate))
+
+    @property
+    def held(self) -> str:
+        """See StatedLink."""
+        return str(self.own.held)
+
+    # its play ---------------------------------------------------------------------------------------
+
+    def free_turn(self, turning: Any, seen: LinkTrials) -> FreeTurn:
+        """The free turn of the output by one method, position by position as a measure of the reducer reads it."""
+        found = [self.lost(turning, self.deviated(seen, turns), turns) for turns in self.output_turns(seen).T]
+        play, middle, jams = (np.stack(own, axis=1) for own in zip(*found, strict=True))
+        return FreeTurn(play, np.where(jams, 0.0, middle), jams.astype(bool))
+
+    @abstractmethod
+    def lost(self, turning: Any, deviated: Any, turns: Array) -> Lost:
+        """The free turn at turns of the output (trials,), by a method's turning."""
+
+    @abstractmethod
+    def deviated(self, seen: LinkTrials, turns: Array) -> Any:
+        """Deviations of its parts at turns of the output (trials,)."""
+
+    def drawn(self, seen: LinkTrials) -> Any:
+        """Deviations of its parts by its own contributors."""
+        drawn = ((each.name, seen.deviations[each.name]) for each in seen.contributors)
+        return self.made_of.drawn(self.own, self.acts, drawn, len(seen))
+
+    # what acts on it --------------------------------------------------------------------------------
+
+    @abstractmethod
+    def slopes_at(self, deviated: Any, turns: Array) -> Any:
+        """Change of the play by each deviation, with the contacts at turns of the output (trials,)."""
+
+    def slopes(self, seen: LinkTrials) -> Iterator[tuple[LinkTrials, Array, Any]]:
+        """The same at the first position, piece by piece of the trials, with turns of the output (trials,)."""
+        for first in range(0, len(seen), ROWS_AT_ONCE):
+            piece = seen.part(first, first + ROWS_AT_ONCE)
+            turns = self.output_turns(piece)[:, 0]
+            yield piece, turns, self.slopes_at(self.deviated(piece, turns), turns)
+
+    def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
+        """By the contacts of each trial, to first order; see StatedLink, and regressors.py of the reducer."""
+        found = [
+            {name: slopes.term(self.own, acts, piece.deviations[name] - means[name]) for name, acts in self.actions}
+            for piece, _, slopes in self.slopes(seen)
+        ]
+        return {name: np.concatenate([each[name] for each in found]) for name in self.acts}
+
+    @property
+    @abstractmethod
+    def offsets(self) -> Mapping[str, Acts]:
+        """Parts that a shaft with run-out moves, and the effect of that."""
+
+    def offset_by(self, contributor: str, part: str) -> Self | None:
+        """See StatedLink."""
+        acts = self.offsets.get(part)
+        return None if acts is None else replace(self, actions=(*self.actions, (contributor, acts)))
+
+
+# from scenes ------------------------------------------------------------------------------------------
+
+
+class Ends(NamedTuple):
+    """Shafts of a train that turn with a reducer's input and output, and the reducer's place between them [mm].
+
+    Args:
+        driver, driven: the shafts.
+        offset, height: see StatedLink and ReducerLink.
+    """
+
+    driver: str
+    driven: str
+    offset: float
+    height: float
+
+
+def ends_of(scene: Scene, own: Any, heights: Mapping[str, float]) -> Ends:
+    """The ends of a reducer, whose input and output lie at heights over its middle [mm]."""
+    (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
+    height = first - heights[own.input]
+    return Ends(driver, driven, height - (last - heights[own.output]), height)
+
+
+def brought_by(
+    links: Iterable[ReducerLink],
+    parts: Mapping[str, frozenset[str]],
+    contributors: Mapping[str, Contributor],
+    warnings: Iterable[str],
+) -> Brought:
+    """Links of reducers with their parts, by name, and what acts on them."""
+    made = (BroughtLink(link, parts[link.name], (link.own.input, link.own.output)) for link in links)
+    return Brought(tuple(made), contributors, tuple(warnings))
+
+
+def refuse_alone(scene: Scene, kind: type, reducers: Mapping[str, Any], words: str) -> None:
+    """Refuse measures of a reducer alone, which trains read."""
+    for name, measure in scene.measures.items():
+        if isinstance(measure, kind):
+            spec: Any = measure
+            own = reducers[spec.of]
+            raise scene.refuse(
+                ("measures", name, "kind"),
+                f"expected a measure of trains, for {spec.of!r} is a stage of one, got {spec.kind}; take lost_motion "
+                f"of a train whose output turns with {own.output!r}, and of the {words} alone one whose held shaft "
+                f"turns with {own.input!r}",
+            )
+
+
+def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Mapping[str, Any], words: str) -> None:
+    """Refuse parts of reducers that no move names."""
+    for name, part in scene.parts.items():
+        if isinstance(part, kinds) and name not in used:
+            raise scene.refuse(("parts", name), f"{name!r} is used by no move; name it in {words} or take it out")
