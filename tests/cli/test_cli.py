@@ -19,7 +19,8 @@ from places import SCENES
 from ruamel.yaml import YAML
 from schemas import validate
 
-from tol3d import Overrides, Scene, cli, load_scene, run_scene
+from tol3d import Overrides, Scene, load_scene, run_scene
+from tol3d.cli import studies
 from tol3d.errors import InputError
 from tol3d.gearing.model import model_from_scene
 from tol3d.gearing.system import strips_of
@@ -152,7 +153,7 @@ def test_a_wrong_option_gets_one_message_and_exit_code_2(tol3d: Command, tmp_pat
     ],
 )
 def test_a_long_study_is_announced_by_its_engines_speed(engine: str, trials: int, said: str) -> None:
-    assert cli.studies.long_study(simulation_of(load(SPUR), Overrides(trials=trials, engine=engine))) == said
+    assert studies.long_study(simulation_of(load(SPUR), Overrides(trials=trials, engine=engine))) == said
 
 
 @pytest.mark.parametrize(
@@ -193,7 +194,7 @@ def test_an_interrupted_command_ends_nobody_who_called_it(
 ) -> None:
     ended: list[int] = []
     monkeypatch.setattr(os, "_exit", ended.append)
-    monkeypatch.setattr(cli.studies, "PATIENCE", 0.2)
+    monkeypatch.setattr(studies, "PATIENCE", 0.2)
     monkeypatch.setattr("tol3d.simulate.run_blocks", lambda *_, **__: signal.raise_signal(signal.SIGINT))
     out = tmp_path / "run"
     code, _, err = tol3d("run", SPUR, "--trials", "30", "--engine", "analytic", "--out", str(out))

@@ -2,7 +2,7 @@
 
 from tol3d.gears.bevel_gear import BevelGear, pitch_angles
 from tol3d.gears.bevel_pair import BevelPair
-from tol3d.gears.flank import LEFT, RIGHT, Flank
+from tol3d.gears.flank import LEFT, RIGHT, Flank, opposite
 from tol3d.gears.internal_gear import InternalGear
 from tol3d.gears.internal_pair import InternalPair
 from tol3d.gears.involute import inverse_involute, involute
@@ -11,9 +11,11 @@ from tol3d.gears.pair import Displaced, Gear, GearPair
 from tol3d.gears.spherical_involute import inverse_spherical_involute, spherical_involute
 from tol3d.gears.spur_gear import SpurGear
 from tol3d.gears.spur_pair import SpurPair
+from tol3d.gears.undercut import RACK_ADDENDUM
 
 __all__ = [
     "LEFT",
+    "RACK_ADDENDUM",
     "RIGHT",
     "BevelGear",
     "BevelPair",
@@ -31,6 +33,7 @@ __all__ = [
     "involute",
     "one_tooth_acts",
     "one_tooth_share",
+    "opposite",
     "pitch_angles",
     "spherical_involute",
 ]

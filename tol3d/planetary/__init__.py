@@ -4,6 +4,29 @@
 `model/efficiency.py` has their efficiencies; `tol3d.apps.design` finds sets.
 """
 
+from tol3d.planetary.model.efficiency import (
+    Drive,
+    MeshEfficiencies,
+    Sharing,
+    efficiency,
+    published_efficiencies,
+    shared_sliding_factor,
+    sliding_factor,
+)
 from tol3d.planetary.model.tooth_set import CARRIER, CentralMesh, ToothSet, compound, simple, wolfrom
 
-__all__ = ["CARRIER", "CentralMesh", "ToothSet", "compound", "simple", "wolfrom"]
+__all__ = [
+    "CARRIER",
+    "CentralMesh",
+    "Drive",
+    "MeshEfficiencies",
+    "Sharing",
+    "ToothSet",
+    "compound",
+    "efficiency",
+    "published_efficiencies",
+    "shared_sliding_factor",
+    "simple",
+    "sliding_factor",
+    "wolfrom",
+]

@@ -8,11 +8,28 @@ from typing import TYPE_CHECKING
 from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
-    from tol3d.scene.grammar import Grammar, Kinds, Vocabulary
-    from tol3d.scene.load import read_scene, scene_from_python
+    from tol3d.scene.edit import (
+        tolerance_lines,
+        with_tolerances,
+        write_scene,
+    )
+    from tol3d.scene.grammar import (
+        Grammar,
+        Kinds,
+        Vocabulary,
+    )
+    from tol3d.scene.load import (
+        read_scene,
+        scene_from_python,
+    )
+    from tol3d.scene.measure import MeasureEntry
     from tol3d.scene.move import MoveSpec
     from tol3d.scene.name import Name
-    from tol3d.scene.part import Length, PartSpec
+    from tol3d.scene.nearest import hint
+    from tol3d.scene.part import (
+        Length,
+        PartSpec,
+    )
     from tol3d.scene.reference import Reference
     from tol3d.scene.schema import Scene
     from tol3d.scene.tolerance import ToleranceSpec
@@ -21,6 +38,7 @@ _HOMES = {
     "Grammar": "tol3d.scene.grammar",
     "Kinds": "tol3d.scene.grammar",
     "Length": "tol3d.scene.part",
+    "MeasureEntry": "tol3d.scene.measure",
     "MoveSpec": "tol3d.scene.move",
     "Name": "tol3d.scene.name",
     "PartSpec": "tol3d.scene.part",
@@ -28,14 +46,19 @@ _HOMES = {
     "Scene": "tol3d.scene.schema",
     "ToleranceSpec": "tol3d.scene.tolerance",
     "Vocabulary": "tol3d.scene.grammar",
+    "hint": "tol3d.scene.nearest",
     "read_scene": "tol3d.scene.load",
     "scene_from_python": "tol3d.scene.load",
+    "tolerance_lines": "tol3d.scene.edit",
+    "with_tolerances": "tol3d.scene.edit",
+    "write_scene": "tol3d.scene.edit",
 }
 
 __all__ = [
     "Grammar",
     "Kinds",
     "Length",
+    "MeasureEntry",
     "MoveSpec",
     "Name",
     "PartSpec",
@@ -43,8 +66,12 @@ __all__ = [
     "Scene",
     "ToleranceSpec",
     "Vocabulary",
+    "hint",
     "read_scene",
     "scene_from_python",
+    "tolerance_lines",
+    "with_tolerances",
+    "write_scene",
 ]
 
 __getattr__ = lazy_names(__name__, _HOMES)

@@ -1,1 +1,21 @@
 """Study of a system: its settings, draws, tallies, stopping and findings."""
+
+from typing import TYPE_CHECKING
+
+from tol3d.import_path import lazy_names
+
+if TYPE_CHECKING:
+    from tol3d.study.draws import drawn
+    from tol3d.study.simulation import Simulation
+
+_HOMES = {
+    "Simulation": "tol3d.study.simulation",
+    "drawn": "tol3d.study.draws",
+}
+
+__all__ = [
+    "Simulation",
+    "drawn",
+]
+
+__getattr__ = lazy_names(__name__, _HOMES)

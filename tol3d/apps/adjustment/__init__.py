@@ -24,15 +24,12 @@ _HOMES = {
 }
 
 __all__ = [
-    "Compensation",
-    "CompensationQuestion",
     "Pieces",
     "ShimPlan",
     "ShimQuestion",
     "Shimmed",
     "Step",
     "Stock",
-    "compensation",
     "find_shims",
     "length_of",
     "shim_plan",

@@ -9,8 +9,7 @@ from tol3d.apps.adjustment.shim_choice import Minimum
 from tol3d.apps.adjustment.shim_table import shim_report
 from tol3d.apps.adjustment.stock import length_of, stock_of
 from tol3d.report.printed import Report
-from tol3d.scene import Scene
-from tol3d.scene.edit import tolerance_lines
+from tol3d.scene import Scene, tolerance_lines
 from tol3d.simulate import Overrides, load
 from tol3d.study.overrides import AS_WRITTEN
 

@@ -52,7 +52,7 @@ def shim(
     """Find the thickness of shims with which a bevel pair has a wanted minimum of backlash."""
     from tol3d.apps.adjustment import ShimQuestion, length_of, shim_plan, stock_of
     from tol3d.apps.adjustment.shim_table import shim_report
-    from tol3d.scene.edit import tolerance_lines, write_scene
+    from tol3d.scene import tolerance_lines, write_scene
     from tol3d.simulate import Overrides, load
 
     names = tuple(name.strip() for name in shims.split(",") if name.strip())

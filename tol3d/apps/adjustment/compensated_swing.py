@@ -15,12 +15,10 @@ from tol3d.gearing.model.train_measures import load_changes, over_swing
 from tol3d.gearing.model.trains import gravity_torque, loaded_flank
 from tol3d.gearing.stack_up import first_order
 from tol3d.gearing.system import gear_model
-from tol3d.gears import Flank
-from tol3d.gears.flank import opposite
+from tol3d.gears import Flank, opposite
 from tol3d.numerics.arrays import Array
+from tol3d.study import Simulation, drawn
 from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
 from tol3d.system.method import Method
 from tol3d.system.outcome import value_column
 from tol3d.units import ARCMIN

@@ -28,11 +28,10 @@ from tol3d.gearing.stack_up import closed_form
 from tol3d.gearing.system import GearSystem, gear_model
 from tol3d.machine.system import MachineSystem
 from tol3d.numerics.arrays import Array
-from tol3d.scene import Scene
-from tol3d.scene.nearest import hint
+from tol3d.scene import Scene, hint
 from tol3d.simulate import Overrides, simulation_of
+from tol3d.study import Simulation
 from tol3d.study.overrides import AS_WRITTEN
-from tol3d.study.simulation import Simulation
 from tol3d.study.task import materials_of, method_of
 from tol3d.system.closed_form import ClosedForm, Share
 from tol3d.units import ARCMIN

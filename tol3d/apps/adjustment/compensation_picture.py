@@ -12,11 +12,10 @@ from tol3d.apps.adjustment.compensation import Compensation, Unit
 from tol3d.apps.adjustment.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS, Spread
 from tol3d.apps.adjustment.robots import STATES, State
 from tol3d.numerics.arrays import Array
+from tol3d.report import charts_figure, given_text, short_text, tip_mm
 from tol3d.report.bars import Bars
 from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Band, Chart, Filled, Line, Mark, Panel, Points, Role, Series, Sign, Stroke
-from tol3d.report.chart_figure import charts_figure
-from tol3d.report.number import given_text, short_text, tip_mm
 
 SIGNS: Final[Mapping[str, Sign]] = {"mean": "diamond", "low_3sigma": "left", "high_3sigma": "right"}
 ROLES: Final[Mapping[State, Role]] = {"before": "series-5", "batch": "series-0", "robot": "series-2"}

@@ -15,7 +15,7 @@ from tol3d.apps.adjustment.robots import STATES, State
 from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY
 from tol3d.gears import LEFT, Flank
 from tol3d.numerics.arrays import Array
-from tol3d.report.number import NOTHING, given_text, tip_mm, value_text
+from tol3d.report import NOTHING, given_text, tip_mm, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page
 from tol3d.statistics import Moments
 

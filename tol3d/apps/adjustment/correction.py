@@ -17,8 +17,8 @@ from tol3d.gearing.summary.train_sections import train_sections
 from tol3d.gearing.summary.types import Ends
 from tol3d.gearing.system import gear_model
 from tol3d.runs.summary.values import made
+from tol3d.study import Simulation
 from tol3d.study.breakdowns import pooled_terms
-from tol3d.study.simulation import Simulation
 from tol3d.units import ARCMIN
 
 CLOSED_FORM: Final = "closed form"

@@ -19,14 +19,13 @@ from tol3d.gearing.model.measure import AnyStage
 from tol3d.gearing.system import gear_model
 from tol3d.numerics.arrays import Array
 from tol3d.samplers import MonteCarlo, Stream
+from tol3d.study import Simulation, drawn
 from tol3d.study.columns import columns_of
-from tol3d.study.draws import drawn
-from tol3d.study.simulation import Simulation
+from tol3d.system import Trials
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.method import Method
 from tol3d.system.outcome import METHODS, SEATED, Columns, status_column, value_column
 from tol3d.system.taken import ROWS_AT_ONCE
-from tol3d.system.trials import Trials
 
 State = Literal["before", "batch", "robot"]
 

@@ -27,11 +27,10 @@ from tol3d.apps.adjustment.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, ne
 from tol3d.errors import InputError, SceneError
 from tol3d.gearing.model import Model
 from tol3d.gearing.system import gear_model
-from tol3d.scene import Scene
-from tol3d.scene.tolerance import ToleranceSpec
+from tol3d.scene import Scene, ToleranceSpec
 from tol3d.simulate import Execution, Overrides, run_scene, simulation_of, workers_for
+from tol3d.study import Simulation
 from tol3d.study.overrides import AS_WRITTEN
-from tol3d.study.simulation import Simulation
 
 Rounding = Literal["down", "nearest"]
 Tell = Callable[[str], None]

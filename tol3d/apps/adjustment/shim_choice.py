@@ -20,12 +20,8 @@ from tol3d.gearing.grammar.measures import NormalBacklashSpec
 from tol3d.gearing.grammar.moves import BevelMeshSpec
 from tol3d.gearing.grammar.tolerances.gears import ShimSpec
 from tol3d.gearing.model import Mesh
-from tol3d.runs.summary.measure import MeasureSummary
-from tol3d.runs.summary.sample import Sample
-from tol3d.scene import Scene
-from tol3d.scene.edit import with_tolerances
-from tol3d.scene.measure import MeasureEntry
-from tol3d.scene.nearest import hint
+from tol3d.runs import MeasureSummary, Sample
+from tol3d.scene import MeasureEntry, Scene, hint, with_tolerances
 from tol3d.units import FACTORS, Quantity
 
 MOVED_FIELDS: Final[Mapping[type[DistributionSpec], tuple[str, ...]]] = {

@@ -10,7 +10,8 @@ from tol3d.apps.design.optimum import Goal
 from tol3d.apps.design.search import Candidate, Found, Wish, in_order, teeth_text
 from tol3d.apps.design.shifted_set import step_name
 from tol3d.apps.design.working_mesh import WorkingMesh, mesh_efficiency
-from tol3d.planetary.model.efficiency import (
+from tol3d.planetary import (
+    CARRIER,
     MeshEfficiencies,
     Sharing,
     efficiency,
@@ -18,10 +19,9 @@ from tol3d.planetary.model.efficiency import (
     shared_sliding_factor,
     sliding_factor,
 )
-from tol3d.planetary.model.tooth_set import CARRIER
-from tol3d.report.declared import declared_table, side_by_side
+from tol3d.report import declared_table, side_by_side
 from tol3d.report.page import BLANK, Line, Page, PageItem, Table, note, page, title
-from tol3d.runs.summary.shows import Computed, Shows
+from tol3d.runs import Computed, Shows
 from tol3d.units import Quantity
 
 FACE_WIDTH: Final = 10.0  # modules, until the user says otherwise

@@ -81,7 +81,7 @@ def design(
     from tol3d.apps.design.working_mesh import BasicRack
     from tol3d.errors import InputError
     from tol3d.quantity import stated
-    from tol3d.runs.atomic_write import write_texts
+    from tol3d.runs import write_texts
 
     wish = Wish(
         family=FAMILIES[family],

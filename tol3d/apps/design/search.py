@@ -9,7 +9,7 @@ from tol3d.apps.design.optimum import Goal, LimitsNotKeptError, Task, best_shift
 from tol3d.apps.design.shifted_set import PLANET_GAP, Limits, ShiftedSet, refuse_interference, step_name
 from tol3d.apps.design.working_mesh import BasicRack
 from tol3d.errors import GeometryError
-from tol3d.planetary.model.tooth_set import ToothSet
+from tol3d.planetary import ToothSet
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,8 @@ from typing import NamedTuple
 
 from tol3d.apps.design.working_mesh import BasicRack, WorkingMesh, mesh_efficiency, shift_sum
 from tol3d.errors import GeometryError
-from tol3d.gears.internal_gear import InternalGear
-from tol3d.gears.internal_pair import InternalPair
-from tol3d.gears.spur_gear import SpurGear
-from tol3d.gears.spur_pair import SpurPair
-from tol3d.gears.undercut import RACK_ADDENDUM
-from tol3d.planetary.model.efficiency import Sharing
-from tol3d.planetary.model.tooth_set import ToothSet
+from tol3d.gears import RACK_ADDENDUM, InternalGear, InternalPair, SpurGear, SpurPair
+from tol3d.planetary import Sharing, ToothSet
 
 
 def tip_gap(centre_distance: float, planets: int, largest_tip_radius: float) -> float:

@@ -7,9 +7,7 @@ from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.features import Group
 from tol3d.apps.drafting.words import comment, length, scalar
 from tol3d.apps.drafting.zones import SQUARE
-from tol3d.step.dimension import Dimension
-from tol3d.step.found import FoundFeature
-from tol3d.step.refused import StepError
+from tol3d.step import Dimension, FoundFeature, StepError
 
 
 def sized(drawing: Drawn, dimension: Dimension) -> list[FoundFeature]:

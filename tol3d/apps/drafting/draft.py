@@ -13,9 +13,8 @@ from tol3d.apps.drafting.touching import ALONE, between, moves
 from tol3d.apps.drafting.words import Names, cleaned, comment, length, scalar
 from tol3d.errors import InputError, SceneError
 from tol3d.files import FileContent
-from tol3d.scene.nearest import hint
-from tol3d.step.found import FoundFeature
-from tol3d.step.refused import StepError, shown
+from tol3d.scene import hint
+from tol3d.step import FoundFeature, StepError, shown
 
 LAW: Final = "{kind: normal}"
 GUESS: Final = 0.1  # mm; zones where no file states any

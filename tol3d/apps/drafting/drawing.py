@@ -14,14 +14,20 @@ from tol3d.apps.drafting.features import USABLE, Group
 from tol3d.apps.drafting.words import comment, direction, length, scalar
 from tol3d.apps.drafting.zones import FORMS, SMALLEST_ZONE, SQUARE, modifier_of, piece, zone
 from tol3d.numerics.arrays import Array
-from tol3d.step.dimension import Dimension
-from tol3d.step.faces import extent
-from tol3d.step.found import FoundFeature, Triple
-from tol3d.step.frame import frame
-from tol3d.step.meaning import LOCATIONS, MATERIAL, ORIENTATIONS, Meaning
-from tol3d.step.refused import StepError
-from tol3d.step.shape import shape_of
-from tol3d.step.tolerance import Tolerance
+from tol3d.step import (
+    LOCATIONS,
+    MATERIAL,
+    ORIENTATIONS,
+    Dimension,
+    FoundFeature,
+    Meaning,
+    StepError,
+    Tolerance,
+    Triple,
+    extent,
+    frame,
+    shape_of,
+)
 
 INSPECTED: Final = frozenset(("inspected_position", "inspected_orientation"))
 NOTHING: Final = "left out"

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 from tol3d.apps.drafting.entry import Entry
 from tol3d.apps.drafting.features import Features
 from tol3d.apps.drafting.words import Names, scalar
-from tol3d.step.meaning import Meanings
-from tol3d.step.outline import StepText
+from tol3d.step import Meanings, StepText
 
 
 @dataclass

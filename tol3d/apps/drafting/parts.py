@@ -12,11 +12,17 @@ from tol3d.apps.drafting.features import Features
 from tol3d.apps.drafting.words import Names, across, comment, direction, place, scalar
 from tol3d.files import FileContent
 from tol3d.numerics.arrays import Array
-from tol3d.step.found import FoundFeature
-from tol3d.step.meaning import Meanings, surfaces_of
-from tol3d.step.outline import StepText, read_step_text
-from tol3d.step.reading import StepFile, Use, read_step
-from tol3d.step.refused import StepError
+from tol3d.step import (
+    FoundFeature,
+    Meanings,
+    StepError,
+    StepFile,
+    StepText,
+    Use,
+    read_step,
+    read_step_text,
+    surfaces_of,
+)
 
 STILL: Final = 1e-12
 MOST_PARTS: Final = 200  # of one scene that a person reads

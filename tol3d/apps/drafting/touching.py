@@ -9,10 +9,9 @@ import numpy as np
 from tol3d.apps.drafting.entry import Entry, Wording
 from tol3d.apps.drafting.parts import DraftedPart
 from tol3d.apps.drafting.words import Names, across, direction, length, number, scalar
-from tol3d.assembly.model import Cone
-from tol3d.assembly.model.cone_seat import cone_seat, unfit_cones
+from tol3d.assembly import Cone, cone_seat, unfit_cones
 from tol3d.numerics.arrays import Array
-from tol3d.step.found import FoundFeature
+from tol3d.step import FoundFeature
 
 TOUCHING: Final = 1e-3  # mm; what models are drawn to
 PARALLEL: Final = 1e-6  # sine, cosine

@@ -7,9 +7,7 @@ import numpy as np
 from tol3d.apps.drafting.features import Group
 from tol3d.apps.drafting.words import direction, length
 from tol3d.numerics.arrays import Array
-from tol3d.step.meaning import MATERIAL, ORIENTATIONS, Meanings
-from tol3d.step.refused import StepError
-from tol3d.step.tolerance import Tolerance
+from tol3d.step import MATERIAL, ORIENTATIONS, Meanings, StepError, Tolerance
 
 SMALLEST_ZONE: Final = 1e-6  # mm; a zone of 0 at MMC is written so
 SQUARE: Final = 1e-6  # cosine between directions that are square

@@ -12,7 +12,7 @@ from tol3d.cli.console import err_console, out_console, tell, warn
 if TYPE_CHECKING:
     from tol3d.apps.records.pair import Specimen, Unit
     from tol3d.quantity import Kind
-    from tol3d.study.simulation import Simulation
+    from tol3d.study import Simulation
 
 
 SceneOption = Annotated[
@@ -202,7 +202,7 @@ def plan_rig(
     from tol3d.apps.records.rig import Rig
     from tol3d.apps.records.tables import plan_report, plan_table
     from tol3d.quantity import numbers, stated
-    from tol3d.runs.atomic_write import write_texts
+    from tol3d.runs import write_texts
 
     own = Rig(
         samples=samples,

@@ -25,7 +25,7 @@ from tol3d.numerics.arrays import Array
 
 if TYPE_CHECKING:
     from tol3d.gears import SpurGear, SpurPair
-    from tol3d.system.system import System
+    from tol3d.system import System
 
 
 DIGITS: Final = 15  # of numbers in a written scene

@@ -12,9 +12,8 @@ from tol3d.apps.records.fit import Fit
 from tol3d.apps.records.pair import ARCSEC, TURN, Side
 from tol3d.apps.records.spectrum import with_tooth_mesh
 from tol3d.numerics.arrays import Array
+from tol3d.report import save_charts, spanned
 from tol3d.report.chart import Axis, Band, Chart, Charts, Line, Mark, Panel, Points, Role, Series
-from tol3d.report.chart_figure import save_charts
-from tol3d.report.measure_charts import spanned
 from tol3d.runs.csv_text import csv_text
 
 

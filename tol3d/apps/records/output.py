@@ -12,7 +12,7 @@ from tol3d.apps.records.scene_mesh import SceneMesh
 from tol3d.apps.records.summary import IdentifiedSummary, summary_of
 from tol3d.errors import InputError
 from tol3d.report.page import Page
-from tol3d.runs.atomic_write import write_texts
+from tol3d.runs import write_texts
 
 NAMES: Final = ("identified.json", "identified.csv", "backlash.csv", "identified.yaml", "backlash.png", "residual.png")
 

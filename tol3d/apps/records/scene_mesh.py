@@ -14,14 +14,14 @@ from tol3d.gearing.engines import OK, STATUS_TEXT
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.model.measure import Reading
 from tol3d.numerics.arrays import Array
-from tol3d.study.draws import drawn
-from tol3d.system.trials import Trials
+from tol3d.study import drawn
+from tol3d.system import Trials
 
 if TYPE_CHECKING:
     from tol3d.gearing.builds.build import Build
     from tol3d.gearing.engines import ReadingEngine
     from tol3d.gearing.model import Mesh, Model
-    from tol3d.study.simulation import Simulation
+    from tol3d.study import Simulation
 
 POSITIONS_AT_ONCE: Final = 2**15  # of which each takes 100 bytes of readings
 READING: Final = Reading()
