@@ -6,7 +6,7 @@ from typing import cast
 import pytest
 from rv_250 import TOLERANCES, rv_250
 
-from tol3d.cycloid.presenting import CycloidPresenter
+from tol3d.cycloid.presenting import PRESENTER
 from tol3d.cycloid.presenting.formulas import stage_blocks
 from tol3d.cycloid.reducer.formula import SOURCES, PaperSources, Source, sigma_of, stage_by_formula, sun_held_factor
 from tol3d.report.page import Page
@@ -68,7 +68,7 @@ def test_a_lost_motion_below_zero_is_said_to_be_no_play(analytic: float | None, 
         "play": SimpleNamespace(kind="cycloid_lost_motion", **methods),
         "error": SimpleNamespace(kind="cycloid_transmission_error", **methods),
     }
-    presenter = CycloidPresenter()
+    presenter = PRESENTER
     assert isinstance(presenter, ShowsNotes)  # on the first screen too
     said = [str(line) for line in presenter.first_notes(cast(RunSummary, SimpleNamespace(measures=measures)))]
     assert [line.strip().startswith("play: negative where pins press on both sides") for line in said] == [True] * noted

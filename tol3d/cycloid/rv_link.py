@@ -207,15 +207,15 @@ def _link(scene: Scene, own: RVSet, actions: tuple[tuple[str, Acts], ...]) -> RV
     disc = scene.of(CycloidDiscSpec)[own.disc]
     hole = None if disc.hole is None else disc.hole.internal
     sun_level = ShownReducer(own, RVDeviated.nothing(own, 1), 0.0, own.width, hole).shapes.sun_level
-    ends = ends_of(scene, own, {own.input: sun_level, own.output: 0.0})
+    driver, driven, offset, height = ends_of(scene, own, {own.input: sun_level, own.output: 0.0})
     return RVLink(
         name=own.name,
-        driver=ends.driver,
-        driven=ends.driven,
+        driver=driver,
+        driven=driven,
         rate=1 / own.ratio,
-        offset=ends.offset,
+        offset=offset,
         own=own,
-        height=ends.height,
+        height=height,
         sun_level=sun_level,
         actions=actions,
         crank_hole=hole,

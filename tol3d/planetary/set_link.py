@@ -77,9 +77,7 @@ class SetLink(ReducerLink):
         """See ReducerLink; a set that jams lacks room at both ends."""
         own = self.own
         free = turning.free(deviated, turns, own.output, own.opposite(own.output))
-        jams = np.asarray(free.status == NO_ROOM)
-        play = np.where(jams, -2 * free.lacking / own.arm(own.output), free.ends[:, 1] - free.ends[:, 0])
-        return play, free.ends.mean(axis=-1), jams
+        return free.play(own.arm(own.output)), free.ends.mean(axis=1), np.asarray(free.status == NO_ROOM)
 
     def deviated(self, seen: LinkTrials, turns: Array) -> Deviated:
         """See ReducerLink: of the set's gears and pins."""
@@ -107,13 +105,7 @@ class SetLink(ReducerLink):
 
     def slopes_at(self, deviated: Deviated, turns: Array) -> Deviated:
         """See ReducerLink: by the contacts that are met."""
-        own, method = self.own, StackUp(self.own)
-        senses = ((end, np.full((len(turns), 1), 2.0 * end - 1.0)) for end in range(2))
-        low, high = (
-            method.slopes(deviated, turns[:, None], own.output, own.opposite(own.output), end, sign)
-            for end, sign in senses
-        )
-        return low.plus(high)
+        return StackUp(self.own).lost_motion_slopes(deviated, turns, self.own.output)
 
     @property
     def levels(self) -> Mapping[str, float]:
@@ -178,16 +170,16 @@ def sets_as_links(scene: Scene) -> Brought:
 def _link(scene: Scene, own: PlanetarySet, spec: PlanetarySpec, actions: tuple[tuple[str, Acts], ...]) -> SetLink:
     """A set as a link of the shafts that turn with its input and its output."""
     made = made_gears(scene, own)
-    ends = ends_of(scene, own, heights_of(own, made))
+    driver, driven, offset, height = ends_of(scene, own, heights_of(own, made))
     return SetLink(
         name=own.name,
-        driver=ends.driver,
-        driven=ends.driven,
+        driver=driver,
+        driven=driven,
         rate=1 / own.ratio,
-        offset=ends.offset,
+        offset=offset,
         own=own,
         made=made,
-        height=ends.height,
+        height=height,
         actions=actions,
         friction=spec.friction,
     )

@@ -6,18 +6,21 @@ from functools import cached_property, partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
+import numpy as np
+
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.programme import ranges
 from tol3d.planetary.exact.contact import Contact
 from tol3d.planetary.exact.contact_kernel import seated_ranges
 from tol3d.planetary.exact.shown import Made, ShownSet, shown_set
 from tol3d.planetary.first_order.stack_up import StackUp
+from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.problems import problems_at
-from tol3d.planetary.regressors import slopes_of
 from tol3d.planetary.sections import set_sections, spring_summary
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.summary_types import PlanetarySetSummary
 from tol3d.planetary.trials import STATUSES, PlanetaryMethod, SetTrials
+from tol3d.reducers.trials import ReducerMeasure
 from tol3d.solids import measuring_strips
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
@@ -26,6 +29,7 @@ from tol3d.system.pooled import PooledTerms
 from tol3d.system.stated import mean_build
 from tol3d.system.statuses import Statuses
 from tol3d.system.system import Columns, KeyPath, Published
+from tol3d.system.taken import weights_taken
 from tol3d.system.trials import Trials
 
 FCL: Final = "fcl"
@@ -113,3 +117,22 @@ class PlanetarySystem(SetTrials):
     def display(self, trials: Trials, method: Method) -> ShownSet:
         """Its gears in the first trial, see System."""
         return shown_set(self.own, self.made, self.deviated(trials), float(trials.positions[self.own.name][0]))
+
+
+def slopes_of(system: SetTrials, measure: ReducerMeasure, trials: Trials) -> Deviated:
+    """Change of a measure [rad] by a unit of each deviation in each trial, while contacts that are met stay the same.
+
+    The multipliers of first-order gaps times what deviations do to these; zeros of trials that jam.
+    """
+    own, deviated, shaft = system.own, system.deviated(trials), measure.shaft
+    method, stands = StackUp(own), own.opposite(measure.shaft)
+    if measure.is_free_turn:
+        at = system.turns_at(measure, trials)
+        slopes = method.lost_motion_slopes(deviated, at, shaft)
+        if measure.reading == "lost motion":
+            return slopes
+        return StackUp(system.overcome).lost_motion_slopes(deviated, at, shaft).plus(slopes, -1.0)
+    turns = np.array(measure.positions.fixed) / (2 * np.pi)
+    ends = method.followed(deviated, turns, shaft, stands, own.end(measure.load)).ends
+    coefficients = own.sense * weights_taken(measure, own.sense * ends)
+    return method.slopes(deviated, turns, shaft, stands, own.end(measure.load), np.ascontiguousarray(coefficients))

@@ -91,7 +91,7 @@ class PlanetaryMethod(ReducerMethod):
     def read(self, measure: ReducerMeasure, deviated: Deviated, trials: Trials, known: dict[Hashable, Any]) -> Read:
         """See ReducerMethod."""
         if measure.is_free_turn:
-            turns = np.broadcast_to(self.system.turns(measure.positions, trials), (len(trials), 1))[:, 0]
+            turns = self.system.turns_at(measure, trials)
             values, found = self._lost(measure, deviated, turns)
         else:
             if measure.curve_key not in known:
@@ -109,8 +109,7 @@ class PlanetaryMethod(ReducerMethod):
         """
         own = self.system.own
         free = self.turning.free(deviated, turns, measure.shaft, own.opposite(measure.shaft))
-        jams = -2 * free.lacking / own.arm(measure.shaft)
-        lost = np.where(free.status == NO_ROOM, jams, free.ends[:, 1] - free.ends[:, 0])
+        lost = free.play(own.arm(measure.shaft))
         lost[free.status == STALLED] = np.nan
         if measure.reading == "lost motion":
             return lost[:, None], free

@@ -2,11 +2,11 @@
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +102,7 @@ class ReducerLink(StatedLink):
             yield piece, turns, self.slopes_at(self.deviated(piece, turns), turns)
 
     def parts(self, seen: LinkTrials, means: Mapping[str, Array]) -> Mapping[str, Array]:
-        """By the contacts of each trial, to first order; see StatedLink, and regressors.py of the reducer."""
+        """By the contacts of each trial, to first order; see StatedLink, and ReducerTrials.regress_slopes."""
         found = [
             {name: slopes.term(self.own, acts, piece.deviations[name] - means[name]) for name, acts in self.actions}
             for piece, _, slopes in self.slopes(seen)
@@ -123,29 +123,20 @@ class ReducerLink(StatedLink):
 # from scenes ------------------------------------------------------------------------------------------
 
 
-class Ends(NamedTuple):
-    """Shafts of a train that turn with a reducer's input and output, and the reducer's place between them [mm].
+def ends_of(scene: Scene, own: Any, heights: Mapping[str, float]) -> tuple[str, str, float, float]:
+    """Driver, driven, offset and height [mm] of the link of a reducer.
 
     Args:
-        driver, driven: the shafts.
-        offset, height: see StatedLink and ReducerLink.
+        scene, own: the scene, and the reducer.
+        heights: of its input and its output over its middle [mm].
     """
-
-    driver: str
-    driven: str
-    offset: float
-    height: float
-
-
-def ends_of(scene: Scene, own: Any, heights: Mapping[str, float]) -> Ends:
-    """The ends of a reducer, whose input and output lie at heights over its middle [mm]."""
     (driver, first), (driven, last) = (shaft_of(scene, part) for part in (own.input, own.output))
     height = first - heights[own.input]
-    return Ends(driver, driven, height - (last - heights[own.output]), height)
+    return driver, driven, height - (last - heights[own.output]), height
 
 
 def brought_by(
-    links: Iterable[ReducerLink],
+    links: Sequence[ReducerLink],
     parts: Mapping[str, frozenset[str]],
     contributors: Mapping[str, Contributor],
     warnings: Iterable[str],

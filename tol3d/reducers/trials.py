@@ -112,6 +112,10 @@ class ReducerTrials(OutputSystem):
         drawn = ((name, trials.deviations[:, own]) for name, own in component_slices(self).items())
         return self.made_of.drawn(self.own, self.acts, drawn, len(trials))
 
+    def turns_at(self, measure: Measure, trials: Trials) -> Array:
+        """Turns of the output (trials,) at the only position of a measure."""
+        return np.broadcast_to(self.turns(measure.positions, trials), (len(trials), 1))[:, 0]
+
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """See System."""
         own: ReducerMeasure = self.read[measure.name]

@@ -20,8 +20,9 @@ from tol3d.gearing.presenting.whole_trains import gear_body
 from tol3d.gearing.shown.display import magnified_of
 from tol3d.gearing.shown.placed import PlacedGear
 from tol3d.numerics.arrays import Array
+from tol3d.reducers.shown import from_front, world_from_middle
 from tol3d.report.body import Body, Surface, World, built_body
-from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
+from tol3d.report.motion import FRONT, Frame, Look, Mark, Motion, Shot
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.solids import PosedGear, PosedPart, PosedShape
@@ -32,7 +33,6 @@ MOTIONS: Final = (TURN, SWING)
 FRAMES: Final[Mapping[str, int]] = {TURN: 48, SWING: 16}
 TOUCHES: Final = "first contact"
 MARK_COLOURS: Final = {TOUCHES: "#B0127B"}
-FRONT, UP = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 CLOSE: Final = 2.5  # pin radii from the contact to the upper edge of the picture
 
 
@@ -77,8 +77,7 @@ def touching_words(state: SeatedReducer, angle: float) -> str:
 
 def _shots(shown: ShownReducer, world: World, states: Sequence[SeatedReducer]) -> Iterator[Shot]:
     """Each disc among the pins with its cranks; then the contacts, close up."""
-    points = np.concatenate([body.mesh[0] for body in world.bodies])
-    everything = around(points, np.zeros(3), FRONT, UP)
+    everything = from_front(world)
     cranks = tuple(f"crank {number + 1}" for number in range(shown.own.cranks))
     discs = tuple(f"disc {number + 1}" for number in range(shown.own.discs))
     for disc in discs:
@@ -180,8 +179,7 @@ def _body(part: PosedPart) -> Body:
 def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
     """A reducer in the world of its train, its load turning the output back; see ShowsLinks."""
     assert isinstance(link, RVLink)
-    shown, note, above = link.shown(seen), "", np.eye(4)
-    above[2, 3] = link.height
+    shown, note = link.shown(seen), ""
     try:
         places = shown.seated.places
     except InputError:
@@ -189,7 +187,7 @@ def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> 
         places = StagePlaces(
             shown.own.contact, shown.deviated.stage, float(shown.own.crank_angles(np.array(shown.turns)))
         )
-    into, names = world_from_driver @ above, _names(shown.own)
+    into, names = world_from_middle(link, world_from_driver), _names(shown.own)
     placed = (replace(part, world_from_part=into @ part.world_from_part) for part in shown.shapes.placed(places))
     named = [(body.name, replace(body, name=names(body.name))) for body in map(_body, placed)]
     pins = [body for name, body in named if _is_pin(name)]

@@ -12,8 +12,8 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.rv_link import RVLink
 from tol3d.cycloid.system import RVSystem
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
 from tol3d.reducers.deviations import Acts
+from tol3d.reducers.shown import gear_sizes
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, Table, line
 from tol3d.report.system_check import system_blocks
@@ -39,20 +39,9 @@ def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequen
 
 def _nominal(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
     formulas = stage_blocks(stages_by_formula(own, acts, contributors))
-    return (*map(line, _words(own)), *_sizes(own, acts, contributors), _levers(own), *formulas)
-
-
-def _sizes(own: RVSet, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    """Workshop measures of the gears of the first stage."""
-    if own.first is None:
-        return ()
-    names = {"sun thickness": own.first.sun, "planet thickness": own.first.planet}
-    stated = (
-        (names[act.effect], Thickness(each.draw.distribution, act.factor, act.over))
-        for each in contributors
-        if (act := acts.get(each.name)) is not None and act.effect in names
-    )
-    return sizes_table({name: own.first.gear(name) for name in names.values()}, stated)
+    first = own.first
+    gears = {} if first is None else {name: first.gear(name) for name in (first.sun, first.planet)}
+    return (*map(line, _words(own)), *gear_sizes(gears, acts, contributors), _levers(own), *formulas)
 
 
 def _words(own: RVSet) -> list[str]:

@@ -27,7 +27,7 @@ def regress_touching(
 ) -> None:
     """Write contributors' rows (regressors, trials) of a measure at one position, see System.regress."""
     trials = system.trials_again(columns)
-    turns = np.broadcast_to(system.turns(measure.positions, trials), (len(trials), 1))[:, 0]
+    turns = system.turns_at(measure, trials)
     slopes = slopes_at(system, measure, system.deviated(trials), turns)
     for own in contributors:
         values, acts = component_values(own, columns), system.acts[own.name]

@@ -78,6 +78,15 @@ class StackUp:
         _, slopes = self._run(deviated, turns, shaft, stands, end, coefficients)
         return self._by_deviation(*slopes)
 
+    def lost_motion_slopes(self, deviated: Deviated, turns: Array, shaft: str) -> Deviated:
+        """The same of a shaft's free turn at turns (trials,) of the output, the opposite shaft standing."""
+        stands, ones = self.own.opposite(shaft), np.ones((len(turns), 1))
+        low, high = (
+            self.slopes(deviated, turns[:, None], shaft, stands, end, sign * ones)
+            for end, sign in ((0, -1.0), (1, 1.0))
+        )
+        return low.plus(high)
+
     def _run(
         self, deviated: Deviated, turns: Array, shaft: str, stands: str, end: int, coefficients: Array
     ) -> tuple[Free, tuple[Array, Array, Array]]:

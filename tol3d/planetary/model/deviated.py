@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array, Places
+from tol3d.numerics.programme import NO_ROOM
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.reducers.deviations import Acts, Along, Deviations, shaped
 
@@ -98,6 +99,10 @@ class Free:
         return cls(
             np.zeros((trials, positions)), np.empty(trials, np.int8), np.empty(trials, np.int64), np.empty(trials)
         )
+
+    def play(self, arm: float) -> Array:
+        """From end to end (trials,) [rad]; of a set that jams its shortfall at an arm [mm], negative."""
+        return np.where(self.status == NO_ROOM, -2 * self.lacking / arm, self.ends[:, 1] - self.ends[:, 0])
 
     @property
     def written(self) -> tuple[Array, NDArray[np.int8], Places, Array]:

@@ -18,7 +18,7 @@ NEGLECTED: Final = (
 )
 
 
-def section_blocks(summary: RunSummary) -> Sequence[PageItem]:
+def link_sections(summary: RunSummary) -> Sequence[PageItem]:
     """Tables of each set of a run whose friction or spring is given."""
     return set_blocks((summary.planetary_sets or {}) if isinstance(summary, PlanetaryOfRun) else {})
 

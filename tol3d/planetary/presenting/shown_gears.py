@@ -20,8 +20,9 @@ from tol3d.planetary.exact.flank_gaps import flank_gaps
 from tol3d.planetary.exact.shown import MovedSet, ShownSet, opened, shaft_turn, swung, turned
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.set_link import SetLink
+from tol3d.reducers.shown import from_front, world_from_middle
 from tol3d.report.body import Body, World
-from tol3d.report.motion import Frame, Look, Mark, Motion, Shot, around
+from tol3d.report.motion import FRONT, Frame, Look, Mark, Motion, Shot
 from tol3d.report.presenter import View, Which
 from tol3d.runs.run import Run
 from tol3d.solids import PosedBody
@@ -66,7 +67,6 @@ FRAMES: Final[Mapping[str, int]] = {TURN: 72, SWING: 16, OPENING: 24}
 AHEAD, BEHIND = "touches ahead, counter-clockwise", "touches behind, clockwise"
 COLOURS: Final = {AHEAD: "#B0127B", BEHIND: "#101060"}
 TOUCHING: Final = 1e-6  # mm; contacts are found to some 1e-9
-FRONT, UP = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 TEETH_HIGH: Final = 2.4  # modules from the middle of the teeth in mesh to the upper edge
 MOST_CLOSE_UPS: Final = 3
 
@@ -131,7 +131,7 @@ def _ends(own: PlanetarySet) -> tuple[str, str]:
 
 def _steps(shown: ShownSet, world: World) -> Iterator[Shot]:
     """All gears from the front, then the meshes of each gear of the planets."""
-    everything = _front(world)
+    everything = from_front(world)
     yield Shot("from the front", (everything,))
     own = shown.own
     if len(own.gears) > 1:
@@ -143,7 +143,7 @@ def _steps(shown: ShownSet, world: World) -> Iterator[Shot]:
 
 def _close_ups(shown: ShownSet, world: World) -> Iterator[Shot]:
     """All gears from the front, then the teeth of the last mesh of neighbouring planets, upwards what is outwards."""
-    yield Shot("from the front", (_front(world),))
+    yield Shot("from the front", (from_front(world),))
     own = shown.own
     found = [gap for gap in flank_gaps(own, shown.gears) if gap.mesh == len(own.meshes) - 1]
     for k in range(min(own.planets, MOST_CLOSE_UPS if own.planets > 2 else own.planets)):
@@ -152,10 +152,6 @@ def _close_ups(shown: ShownSet, world: World) -> Iterator[Shot]:
         radial = np.array([*middle[:2], 0.0]) / np.hypot(*middle[:2])
         look = Look(middle, TEETH_HIGH * own.meshes[-1].central.module, FRONT, radial)
         yield Shot(f"{both[0].bodies[0]} and {both[0].bodies[1]}", (look,), both[0].bodies)
-
-
-def _front(world: World) -> Look:
-    return around(np.concatenate([body.mesh[0] for body in world.bodies]), np.zeros(3), FRONT, UP)
 
 
 CENTRALS, FORWARD, BACKWARD, PLANETS = "#E69F00", "#4682B4", "#009E73", "#4682B4"
@@ -206,9 +202,7 @@ def bodies_of(shown: ShownSet) -> tuple[Body, ...]:
 def shown_link(link: StatedLink, seen: LinkTrials, world_from_driver: Array) -> ShownLink:
     """A set in the world of its train; see ShowsLinks."""
     assert isinstance(link, SetLink)
-    shown, above = link.shown(seen), np.eye(4)
-    above[2, 3] = link.height
-    into = world_from_driver @ above
+    shown, into = link.shown(seen), world_from_middle(link, world_from_driver)
     gears = tuple(replace(gear, world_from_gear=into @ gear.world_from_gear) for gear in shown.gears)
     note = f"{link.name} jams; shown where no backlash would have its gears" if shown.status else ""
     return ShownLink(bodies_of(replace(shown, gears=gears)), note)

@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 from tol3d.gearing.links import StatedLink
-from tol3d.gearing.presenting.drawing_sizes import Thickness, sizes_table
-from tol3d.planetary.exact.shown import Made
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.model.set_mesh import SetMesh
 from tol3d.planetary.presenting.efficiencies import set_blocks
@@ -12,7 +10,7 @@ from tol3d.planetary.sections import set_sections
 from tol3d.planetary.set_link import SetLink
 from tol3d.planetary.summary_types import PlanetarySetSummary
 from tol3d.planetary.system import PlanetarySystem
-from tol3d.reducers.deviations import Acts
+from tol3d.reducers.shown import gear_sizes
 from tol3d.report.declared import declared_table
 from tol3d.report.page import PageItem, line
 from tol3d.report.system_check import system_blocks
@@ -25,24 +23,15 @@ def check_blocks(simulation: Simulation) -> Sequence[PageItem]:
     """Ratio and meshes of the set, then the items of any system."""
     system = simulation.system
     assert isinstance(system, PlanetarySystem)
-    sizes = _sizes(system.made, system.acts, system.contributors)
+    sizes = gear_sizes(system.made, system.acts, system.contributors)
     return (*_nominal(system.own, system.summaries), *sizes, *system_blocks(simulation))
 
 
 def link_blocks(link: StatedLink, contributors: Sequence[Contributor]) -> Sequence[PageItem]:
     """Ratio and meshes of a set in a train, and what shops measure of its gears."""
     assert isinstance(link, SetLink)
-    sizes = _sizes(link.made, link.acts, contributors)
+    sizes = gear_sizes(link.made, link.acts, contributors)
     return (*_nominal(link.own, set_sections(link.own, link.friction)), *sizes)
-
-
-def _sizes(made: Made, acts: Mapping[str, Acts], contributors: Sequence[Contributor]) -> Sequence[PageItem]:
-    stated = (
-        (own.gear, Thickness(each.draw.distribution, own.factor, own.over))
-        for each in contributors
-        if (own := acts.get(each.name)) is not None and own.effect == "thickness"
-    )
-    return sizes_table(made, stated)
 
 
 class MeshRow(RowOf[SetMesh]):
