@@ -16,13 +16,14 @@ from records.rigged import LARGEST, LEAST, PAIR, REFERENCE, scene_in
 from tol3d import load_scene, run_scene
 from tol3d.apps.records import csv_file
 from tol3d.apps.records.findings import Settings
-from tol3d.apps.records.from_scene import mean_row, mesh_of, scene_text, specimen_of_build
+from tol3d.apps.records.from_scene import scene_text
 from tol3d.apps.records.identification import identify
 from tol3d.apps.records.pair import ARCSEC, RigPair, Side, Specimen, transmission_error
 from tol3d.apps.records.rig import Rig, measured, write_readings
+from tol3d.apps.records.scene_mesh import SceneMesh
 from tol3d.apps.records.summary import IdentifiedSummary
 from tol3d.errors import InputError
-from tol3d.gearing.model import model_from_scene
+from tol3d.simulate import simulation_of
 
 SIDES: tuple[Side, ...] = ("drive", "back")
 SHORT = Rig(turns=2, samples=90)
@@ -79,12 +80,10 @@ def test_files_of_others_are_not_replaced(tol3d: Command, tmp_path: Path) -> Non
 @pytest.mark.parametrize("flank", ["left", "right"])
 def test_a_scene_of_constants_is_read_as_the_rig_counts_and_written_back(tmp_path: Path, flank: str) -> None:
     """theta1 = -sigma psi1, theta2 = sigma (psi2 + pi + pi/z2) - j_c/2: there and back again."""
-    model = model_from_scene(load_scene(scene_in(tmp_path, flank)))
-    mesh = mesh_of(model, None)
+    mesh = SceneMesh.of(simulation_of(load_scene(scene_in(tmp_path, flank))), None).mesh
     path = tmp_path / "identified.yaml"
     path.write_text(scene_text(REFERENCE, mesh, "again"), encoding="utf-8")
-    again = model_from_scene(load_scene(path))
-    found = specimen_of_build(again, mesh_of(again, None), mean_row(again))
+    found = SceneMesh.of(simulation_of(load_scene(path)), None).specimen()
     assert found.e1 == pytest.approx(REFERENCE.e1, abs=1e-12)
     assert found.normal_backlash == pytest.approx(REFERENCE.normal_backlash, abs=1e-12)
     for angle, own in ((found.theta1, REFERENCE.theta1), (found.theta2, REFERENCE.theta2)):
@@ -120,8 +119,7 @@ def test_the_identified_scene_simulated_lies_over_the_true_curve(tol3d: Command,
 
 def test_the_mean_build_of_any_scene_is_the_specimen(tmp_path: Path) -> None:
     """-60 um of tooth thickness, all of it on one gear: j_n = 60 um cos 20 deg; no eccentricity in the mean."""
-    model = model_from_scene(load_scene(scene_in(tmp_path)))
-    found = specimen_of_build(model, mesh_of(model, None), mean_row(model))
+    found = SceneMesh.of(simulation_of(load_scene(scene_in(tmp_path))), None).specimen()
     assert found.normal_backlash == pytest.approx(0.060 * math.cos(math.radians(20)), abs=1e-12)
     assert (found.e1, found.e2) == (0.0, 0.0)
     assert found.pair.centre_distance == pytest.approx(75.0, abs=1e-12)
@@ -130,8 +128,7 @@ def test_the_mean_build_of_any_scene_is_the_specimen(tmp_path: Path) -> None:
 
 def test_the_bundled_scene_means_the_reference_pair() -> None:
     """Its author derived the wheel's direction from the paper's theta2 by himself, to 0.001 deg."""
-    model = model_from_scene(load_scene("two_sided_te"))
-    found = specimen_of_build(model, mesh_of(model, None), mean_row(model))
+    found = SceneMesh.of(simulation_of(load_scene("two_sided_te")), None).specimen()
     assert found.e1 == pytest.approx(REFERENCE.e1, abs=1e-12)
     assert found.e2 == pytest.approx(REFERENCE.e2, abs=1e-12)
     assert math.degrees(math.remainder(found.theta1 - REFERENCE.theta1, 2 * math.pi)) == pytest.approx(0.0, abs=1e-9)

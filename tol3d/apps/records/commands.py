@@ -237,7 +237,7 @@ def _unit(
     from tol3d.errors import InputError
 
     if engine is RigEngine.CLOSED_FORM:
-        if SceneMesh.of(simulation, mesh).teeth_deviate:
+        if SceneMesh.of(simulation, mesh).builds.flanks_deviate:
             warn("single teeth deviate, which the closed form leaves out; --engine exact has them")
         return _specimen(simulation, mesh, trial, options)
     if given := [f"--{name}" for name, text in options._asdict().items() if text is not None]:

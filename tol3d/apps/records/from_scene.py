@@ -1,4 +1,4 @@
-"""Between scenes and rigs: a mesh's nominal numbers, the build at all means, and a scene of the identified pair.
+"""Between scenes and rigs: a mesh's nominal numbers, a build, and a scene of the identified pair.
 
 A rig counts each gear in its own sense of rotation; tol3d counts about +z. The driver turns counter-clockwise about +z
 where its left flank works (sigma = -1) and clockwise where its right one does (sigma = +1), so its azimuth is
@@ -11,54 +11,36 @@ its gear's frame, and the driven gear lagging by half the constant part j_c of t
 
 import json
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final, cast
-
-import numpy as np
 
 from tol3d.apps.records.pair import RigPair, Specimen
 from tol3d.errors import InputError
-from tol3d.gearing.builds.build import build
-from tol3d.gearing.model import Model
-from tol3d.gearing.shafts import Mesh
-from tol3d.gearing.system import GearSystem
-from tol3d.numerics.arrays import Array
+from tol3d.gearing import Mesh, MeshBuild
 
 if TYPE_CHECKING:
     from tol3d.gears import SpurGear, SpurPair
-    from tol3d.system import System
 
 
 DIGITS: Final = 15  # of numbers in a written scene
 POSITIONS: Final = 72  # a turn of the driver, in a written scene
 
 
-def gears_of(system: "System") -> Model:
-    """The gears of a system, in a housing or not.
-
-    Raises:
-        InputError: it has none.
-    """
-    found = getattr(system, "gears", system)
-    if not isinstance(found, GearSystem) or not hasattr(system, "seen_by_gears"):
-        raise InputError("expected a scene whose moves are meshes of gears, got one of another system")
-    return found.model
-
-
-def mean_row(system: "System | Model") -> Array:
-    """Every contributor at its mean (1, components); random directions have none."""
-    return np.array([[mean for own in system.contributors for mean in own.draw.mean(turning=False)]])
-
-
-def mesh_of(model: Model, name: str | None) -> Mesh:
+def mesh_of(meshes: Mapping[str, Mesh], scene: str, name: str | None) -> Mesh:
     """The mesh of that name, or the only one, of two external spur gears.
+
+    Args:
+        meshes: those of the scene, by name.
+        scene: its name.
+        name: of the mesh, if stated.
 
     Raises:
         InputError: there is none, or several and no name, or other gears.
     """
-    spur = {mesh.name: mesh for mesh in model.meshes if _is_external(mesh)}
+    spur = {own: mesh for own, mesh in meshes.items() if _is_external(mesh)}
     names = ", ".join(repr(own) for own in spur)
     if not spur:
-        raise InputError(f"{model.name}: expected a mesh of two external spur gears, got none")
+        raise InputError(f"{scene}: expected a mesh of two external spur gears, got none")
     if name is None and len(spur) > 1:
         raise InputError(f"--mesh: which of {names} was on the rig?")
     if name is not None and name not in spur:
@@ -70,27 +52,16 @@ def _is_external(mesh: Mesh) -> bool:
     return mesh.pair.arm_spread == 0.0 and mesh.driven_flank == mesh.working_flank
 
 
-def specimen_of_build(model: Model, mesh: Mesh, deviations: Array) -> Specimen:
+def specimen_of(build: MeshBuild) -> Specimen:
     """The pair of one build, its axes as far apart as there.
 
     Axes' tilts, temperatures and deviations of single flanks are left out.
-
-    Args:
-        model, mesh: which gears.
-        deviations: (1, components) [mm, rad, K].
     """
-    made = build(model, deviations)
-    seats = [model.seat_index[mesh.name, gear] for gear in (mesh.driver, mesh.driven)]
-    origins = [made.world_from_shaft[0, seat, :2, 3] for seat in seats]
-    pair = rig_pair(mesh, float(np.hypot(*(origins[1] - origins[0]))))
+    mesh, pair = build.mesh, rig_pair(build.mesh, build.centre_distance)
     spur = _spur(mesh)
     flat = math.tan(pair.working_angle) - pair.working_angle
-    thicker = sum(
-        2 * gear.base_radius * float(made.flank_turn[0, seat]) + 2 * float(made.flank_offset[0, seat])
-        for gear, seat in zip((spur.pinion, spur.wheel), seats, strict=True)
-    )
-    backlash = 2 * pair.base_radii * (flat - spur.zero_backlash_involute) - thicker
-    (x1, y1), (x2, y2) = (made.centre[0, seat] for seat in seats)
+    backlash = 2 * pair.base_radii * (flat - spur.zero_backlash_involute) - build.thickening
+    (x1, y1), (x2, y2) = build.eccentricities
     theta1 = -mesh.working_flank * math.atan2(y1, x1)
     constant = backlash / pair.driven_base_radius
     theta2 = mesh.working_flank * (math.atan2(y2, x2) + math.pi + math.pi / spur.wheel.teeth) - constant / 2

@@ -53,7 +53,7 @@ def write_identified(found: Identified, report: Page, own: SceneMesh, folder: Pa
         "identified.json": summary_of(found, own).model_dump_json(indent=2) + "\n",
         "identified.csv": report.csv(),
         "backlash.csv": curve.csv(),
-        "identified.yaml": scene_text(found.specimen, own.mesh, f"{own.model.name}, as identified"),
+        "identified.yaml": scene_text(found.specimen, own.mesh, f"{own.scene}, as identified"),
     }
     written = write_texts(texts, folder)
     pictures = folder / "backlash.png", folder / "residual.png"

@@ -1,30 +1,18 @@
 """A mesh of a scene that is on a rig: its builds, by closed form and by the exact engine."""
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tol3d.apps.records.from_scene import gears_of, mean_row, mesh_of, specimen_of_build
+from tol3d.apps.records.from_scene import mesh_of, specimen_of
 from tol3d.apps.records.pair import RigPair, Side, Specimen
 from tol3d.errors import InputError
-from tol3d.gearing.builds.flank_offsets import deviates
-from tol3d.gearing.engines import OK, STATUS_TEXT
-from tol3d.gearing.engines.gaps import exact_engine
-from tol3d.gearing.model.measure import Reading
+from tol3d.gearing import Mesh, MeshBuild, MeshBuilds, meshes_of
 from tol3d.numerics.arrays import Array
-from tol3d.study import drawn
-from tol3d.system import Trials
 
 if TYPE_CHECKING:
-    from tol3d.gearing.builds.build import Build
-    from tol3d.gearing.engines import ReadingEngine
-    from tol3d.gearing.model import Mesh, Model
     from tol3d.study import Simulation
-
-POSITIONS_AT_ONCE: Final = 2**15  # of which each takes 100 bytes of readings
-READING: Final = Reading()
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +25,11 @@ class SimulatedUnit:
 
     Args:
         specimen: the same by closed form, as far as that goes.
-        mesh: its gears.
-        build: one build.
-        engine: the exact one.
+        build: its gears.
     """
 
     specimen: Specimen
-    mesh: "Mesh"
-    build: "Build"
-    engine: "ReadingEngine"
+    build: MeshBuild
 
     @property
     def pair(self) -> RigPair:
@@ -62,23 +46,21 @@ class SimulatedUnit:
             InputError: the build jams, or its flanks are not found.
         """
         flat = phi1.ravel()
-        pieces = [flat[first : first + POSITIONS_AT_ONCE] for first in range(0, len(flat), POSITIONS_AT_ONCE)]
-        turned = np.concatenate([self._beside(own, side) for own in pieces]) if pieces else flat
-        return (self.pair.rate * flat + turned + self.specimen.constant_part / 2).reshape(phi1.shape)
+        return (self.pair.rate * flat + self._beside(flat, side) + self.specimen.constant_part / 2).reshape(phi1.shape)
 
     def _beside(self, phi1: Array, side: Side) -> Array:
         """Angle of the driven gear ahead of its nominal one, in the sense in which it is driven [rad]."""
-        sense = float(self.mesh.working_flank)
+        mesh = self.build.mesh
+        sense = float(mesh.working_flank)
         angles = -sense * phi1
-        both = self.engine.rests(self.build, self.mesh, READING, angles)
-        own = both[0 if side == "drive" else 1]
-        if (own.status != OK).any():
-            at = int(np.flatnonzero(own.status.ravel() != OK)[0])
+        own = self.build.rests(angles, side)
+        if own.failures:
+            at, why = next(iter(own.failures.items()))
             raise InputError(
-                f"{self.mesh.name}: this build cannot be turned: {STATUS_TEXT[int(own.status.ravel()[at])]} at phi1 = "
-                f"{np.degrees(phi1[at]):.2f} deg; take another --trial, or give the gears more play"
+                f"{mesh.name}: this build cannot be turned: {why} at phi1 = {np.degrees(phi1[at]):.2f} deg; take "
+                "another --trial, or give the gears more play"
             )
-        return np.asarray(sense * (own.driven_angle.ravel() - self.mesh.pair.driven_angle(angles)))
+        return np.asarray(sense * (own.driven_angle - mesh.pair.driven_angle(angles)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,14 +68,10 @@ class SceneMesh:
     """Two spur gears of a scene, in a housing or not.
 
     Args:
-        simulation: of the scene.
-        model: its gears.
-        mesh: which of them.
+        builds: of the scene's trials.
     """
 
-    simulation: "Simulation"
-    model: "Model"
-    mesh: "Mesh"
+    builds: MeshBuilds
 
     @classmethod
     def of(cls, simulation: "Simulation", name: str | None) -> "SceneMesh":
@@ -102,25 +80,17 @@ class SceneMesh:
         Raises:
             InputError: there is none, or several and no name.
         """
-        model = gears_of(simulation.system)
-        return cls(simulation, model, mesh_of(model, name))
-
-    @cached_property
-    def in_bores(self) -> tuple[str, ...]:
-        """Its shafts that lie in the bores of a housing."""
-        holding: Any = self.simulation.system
-        _, held = holding.seen_by_gears(Trials(mean_row(self.simulation.system), {}))
-        return tuple(shaft for shaft in self._shafts if shaft in held)
+        return cls(MeshBuilds(simulation, mesh_of(meshes_of(simulation.system), simulation.system.name, name)))
 
     @property
-    def teeth_deviate(self) -> bool:
-        """True if single flanks of its gears deviate, which the closed form does not know."""
-        return deviates(self.model, self.mesh)
+    def scene(self) -> str:
+        """Name of the scene."""
+        return self.builds.simulation.system.name
 
     @property
-    def _shafts(self) -> tuple[str, ...]:
-        carrying = self.model.layout.carrying
-        return tuple(carrying[gear][0] for gear in (self.mesh.driver, self.mesh.driven))
+    def mesh(self) -> Mesh:
+        """The gears."""
+        return self.builds.mesh
 
     def specimen(self, trial: int | None = None) -> Specimen:
         """A build by closed form: eccentricities, tooth thickness and the distance of the axes.
@@ -131,7 +101,7 @@ class SceneMesh:
         Raises:
             InputError: there is no such trial, or its shafts' bores cannot be placed.
         """
-        return specimen_of_build(self.model, self.mesh, self._deviations(trial))
+        return specimen_of(self._build(trial))
 
     def unit(self, trial: int | None = None) -> SimulatedUnit:
         """The same build by the exact engine, with all that the scene's tolerances do.
@@ -139,20 +109,11 @@ class SceneMesh:
         Raises:
             InputError: see specimen.
         """
-        deviations, engine = self._deviations(trial), exact_engine(self.model)
-        specimen = specimen_of_build(self.model, self.mesh, deviations)
-        return SimulatedUnit(specimen, self.mesh, engine.build(deviations), engine)
+        build = self._build(trial)
+        return SimulatedUnit(specimen_of(build), build)
 
-    def _deviations(self, trial: int | None) -> Array:
-        """Deviations of the gears (1, components) [mm, rad, K]."""
-        system, trials = self.simulation.system, self.simulation.study.trials
+    def _build(self, trial: int | None) -> MeshBuild:
+        trials = self.builds.simulation.study.trials
         if trial is not None and not 0 <= trial < trials:
             raise InputError(f"--trial: expected 0 … {trials - 1}, which the scene's study has, got {trial}")
-        made = Trials(mean_row(system), {}) if trial is None else drawn(self.simulation, trial, 1)
-        holding: Any = system
-        seen, held = holding.seen_by_gears(made)
-        for shaft in self._shafts:
-            if shaft in held and held[shaft][0] != OK:
-                text = system.statuses.by_code[held[shaft][0]]
-                raise InputError(f"{self.mesh.name}: the bores of {shaft!r} cannot be placed in this build: {text}")
-        return np.asarray(seen.deviations)
+        return self.builds.build(trial)

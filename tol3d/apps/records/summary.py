@@ -130,14 +130,14 @@ def summary_of(found: Identified, own: SceneMesh) -> IdentifiedSummary:
     pair = found.pair
     return IdentifiedSummary(
         pair=PairSummary(
-            scene=own.model.name,
+            scene=own.scene,
             mesh=own.mesh.name,
             driver_teeth=pair.driver_teeth,
             driven_teeth=pair.driven_teeth,
             centre_distance_mm=pair.centre_distance,
             working_pressure_angle_deg=math.degrees(pair.working_angle),
             long_period_turns=pair.long_period_turns,
-            in_bores=list(own.in_bores),
+            in_bores=list(own.builds.in_bores),
         ),
         encoder_senses=[found.senses.driver, found.senses.driven],
         figures={name: figure_summary(name, own) for name, own in found.figures.items()},

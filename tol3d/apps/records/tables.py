@@ -38,7 +38,7 @@ PLAN_DIGITS: Final = 3  # significant ones; a half-width known better says nothi
 
 def identified_report(found: Identified, own: SceneMesh) -> Page:
     """Figures, encoders, values held as in the scene, residual, warnings."""
-    title = _title(found, own.model.name, own.mesh.name)
+    title = _title(found, own.scene, own.mesh.name)
     blocks: list[PageItem] = [title, *_read_lines(found), BLANK, _figures(found)]
     blocks += [
         *map(note, [*_notes(found), *_held(found, own)]),
@@ -125,9 +125,9 @@ def _held(found: Identified, own: SceneMesh) -> Iterator[str]:
         f"held as the scene has it: base radii, axes parallel and {pair.centre_distance:.4f} mm apart, which makes a "
         f"working angle of {math.degrees(pair.working_angle):.3f}°"
     )
-    if own.in_bores:
+    if shafts := own.builds.in_bores:
         yield (
-            f"{', '.join(own.in_bores)}: in bores, which are held at the means of their tolerances; how far apart they "
+            f"{', '.join(shafts)}: in bores, which are held at the means of their tolerances; how far apart they "
             "lie in this unit is read as constant backlash"
         )
 
