@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from tol3d.assembly.at_rest import at_rest
 from tol3d.assembly.clearances.prepared import clearances_of, reader_of, solid_pairs, with_facing, witness_of
 from tol3d.assembly.from_scene import Meant, Understood, meant, understood
 from tol3d.assembly.from_scene.datums import place_of
@@ -21,10 +22,9 @@ from tol3d.assembly.methods import PlacingMethod, TorsorMethod
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, STATUSES, WITH_CLEARANCES
 from tol3d.assembly.moments import moments_of, widely
-from tol3d.assembly.nominal_relations import misses
 from tol3d.assembly.placing import method as placing
 from tol3d.assembly.placing.plan import planned
-from tol3d.assembly.placing.world import SolidReader
+from tol3d.assembly.placing.poses import Codes
 from tol3d.assembly.torsors import method as torsors
 from tol3d.assembly.torsors.first_order import Slopes
 from tol3d.assembly.witnessed import reads
@@ -94,9 +94,9 @@ class AssemblySystem(PlainSystem):
         return self.idle
 
     @property
-    def solids(self) -> SolidReader | None:
-        """Reads clearances, in this process; None where there are none."""
-        return None
+    def _exact_at_rest(self) -> Mapping[str, tuple[Array, Codes]]:
+        """Values and codes (1,) of all measures without deviations, by the exact method."""
+        return at_rest(self.assembly).exact
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Its kind, its features, and the laws of deviations in the zones that act on it."""
@@ -106,10 +106,7 @@ class AssemblySystem(PlainSystem):
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """Measures of the nominal assembly that the methods read differently, or not at all."""
-        rest = np.zeros((1, self.assembly.width))
-        names = [measure.name for measure in self.measures]
-        exact = placing.values(self.assembly, rest, names, self.solids)
-        linear = torsors.values(self.assembly, rest, names)
+        exact, linear = self._exact_at_rest, at_rest(self.assembly).linear
         for measure in self.measures:
             (value,), (code,) = exact[measure.name]
             if code != OK:
@@ -206,8 +203,10 @@ class AssemblySystem(PlainSystem):
 
         A form within the envelope of a size goes with the size, so that their variances do not add up.
         """
-        if self.slopes_of(measure.name).bends:
+        if torsors.is_bent(self.assembly, measure.name):
             return False
+        if not any(isinstance(own.draw, EnvelopedForm) for own in self.contributors):
+            return True
         return not any(isinstance(own.draw, EnvelopedForm) for own in self.acting(measure))
 
     def slopes_of(self, name: str) -> Slopes:
@@ -264,9 +263,9 @@ class ClearanceSystem(WitnessedSystem):
         return PlacingMethod(self.assembly, reader_of(materials), error)
 
     @property
-    def solids(self) -> SolidReader | None:
-        reader: SolidReader = reader_of(solid_pairs(self.assembly))
-        return reader
+    def _exact_at_rest(self) -> Mapping[str, tuple[Array, Codes]]:
+        rest, names = np.zeros((1, self.assembly.width)), list(self.assembly.measures)
+        return placing.values(self.assembly, rest, names, reader_of(solid_pairs(self.assembly)))
 
     def describe(self, measure: Measure) -> Mapping[str, Any]:
         """Also the chord error of a clearance that is stated, and that of its meshes."""
@@ -295,18 +294,16 @@ def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = N
     """
     pose = pose or next(iter(pose_names(scene)), "")
     placed = _asked(scene, lambda: _settled(scene, pose, meaning or understood(scene)))
-    for miss in misses(placed.assembly):
+    for miss in at_rest(placed.assembly).misses:
         raise scene.refuse(("moves", miss.move, "relations", miss.number), miss.sentence)
     kind = _kind_of(placed.assembly)
-    assembly = _asked(scene, lambda: _faced(placed))
+    assembly = at_rest(_asked(scene, lambda: _faced(placed))).assembly
     idle = tuple(idle_forms(Drawing(scene)))
     made = kind(
         scene.scene, placed.contributors, placed.measures, assembly, placed.named, idle, _components(scene),
         placed.second_order,
     )  # fmt: skip
-    _asked(
-        scene, lambda: torsors.values(made.assembly, np.zeros((1, made.assembly.width)), list(made.assembly.measures))
-    )
+    _asked(scene, lambda: at_rest(assembly).linear)
     measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
     return replace(made, measures=measures)
 
@@ -345,8 +342,7 @@ def _settled(scene: Scene, pose: str, meaning: Understood) -> Meant:
     poses = poses_of(scene)
     made = drawn = meant(meaning, poses, pose)
     for n in range(SETTLINGS):
-        found = placing.placed(made.assembly, np.zeros((1, made.assembly.width)))
-        settled = {name: np.asarray(pose[0]) for name, pose in found.items() if np.isfinite(pose[0]).all()}
+        settled = at_rest(made.assembly).poses
         off = max((float(np.abs(pose - poses[name]).max()) for name, pose in settled.items()), default=0.0)
         if off <= (SETTLED if n else 0.0):
             break  # the first with its cached properties

@@ -18,6 +18,7 @@ from tol3d.linkage.frames import joint_frames, stacked
 from tol3d.linkage.joint_equations import equations, forward, rows_of
 from tol3d.linkage.joint_kinds import BALL, ON_AXES_KINDS, ROLLING, SCREW, SWING
 from tol3d.linkage.structure import FREEDOMS, ROOT, Structure
+from tol3d.numerics.values import Valued
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ ROUNDS: Final = 60
 
 
 @dataclass(frozen=True, eq=False)
-class Position:
+class Position(Valued):
     """Position of a loop without deviations.
 
     Args:
@@ -79,7 +80,7 @@ class UnreachedError(Exception):
 
 
 @dataclass(frozen=True, eq=False)
-class Kinematics:
+class Kinematics(Valued):
     """A loop whose other parts lie at some poses.
 
     Args:

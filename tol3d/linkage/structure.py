@@ -27,6 +27,7 @@ from tol3d.linkage.joint_kinds import (
     SWING,
     UNIVERSAL,
 )
+from tol3d.numerics.values import Valued
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -129,7 +130,7 @@ class Output:
 
 
 @dataclass(frozen=True, eq=False)
-class Structure:
+class Structure(Valued):
     """A loop.
 
     Args:

@@ -10,13 +10,14 @@ from tol3d.assembly.model.feature import Feature
 from tol3d.assembly.model.measures import Measured
 from tol3d.assembly.model.move import Move
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.values import Valued
 
 if TYPE_CHECKING:
     from tol3d.solids.built_shape import BuiltShape
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class Part(Valued):
     """A rigid part.
 
     Args:
@@ -35,7 +36,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Assembly:
+class Assembly(Valued):
     """An assembly.
 
     Args:

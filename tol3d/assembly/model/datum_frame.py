@@ -6,6 +6,7 @@ from typing import Literal
 from tol3d.assembly.model.feature import Contribution
 from tol3d.assembly.model.play import Floating
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.values import Valued
 
 Modifier = Literal["mmc", "lmc"]
 """Maximum or least material condition: the size without bonus."""
@@ -80,7 +81,7 @@ class Gauges:
 
 
 @dataclass(frozen=True, eq=False)
-class DatumFrame:
+class DatumFrame(Valued):
     """Datums in order: each takes only freedoms left by earlier ones; those taken by none stay the part's.
 
     What each asks, in this order: a plane, its normal, then its height (with targets, the heights of its points one by

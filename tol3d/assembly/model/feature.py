@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.values import Valued
 
 
 @dataclass(frozen=True)
@@ -178,7 +179,7 @@ def nominal_size(shape: Shape) -> float | None:
 
 
 @dataclass(frozen=True, eq=False)
-class Contribution:
+class Contribution(Valued):
     """Effect of a contributor on its target, such as the components of a feature.
 
     Args:
@@ -193,7 +194,7 @@ class Contribution:
 
 
 @dataclass(frozen=True, eq=False)
-class Feature:
+class Feature(Valued):
     """A feature of a part, and of no other. In a trial: T_feature = T_parent(trial) T_parent(nominal)^-1 frame delta.
 
     Args:

@@ -7,6 +7,7 @@ from typing import Final, Literal
 from tol3d.assembly.model.datum_frame import GaugeRoom, MaterialBonus
 from tol3d.import_path import is_named
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.values import Valued
 from tol3d.system.measure import Worse
 
 
@@ -80,7 +81,7 @@ OverPlay = Literal["least", "largest"]
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(Valued):
     """One measure of the model.
 
     Args:

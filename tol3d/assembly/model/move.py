@@ -3,9 +3,11 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
-from tol3d.import_path import is_named
+from tol3d.import_path import is_named, named
+from tol3d.numerics.values import Valued
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class Acts:
 
 
 @dataclass(frozen=True, eq=False)
-class Move(ABC):
+class Move(Valued, ABC):
     """A step that places one body or several at once against bodies that are placed, or joins some. It pickles.
 
     A body is a part and what is welded to it.
@@ -57,6 +59,19 @@ class Move(ABC):
     acts: ClassVar[Acts]
 
     name: str
+
+    @cached_property
+    def methods(self) -> tuple[object, ...]:
+        """Both methods that carry it out, as they are defined now: a move by others is another one."""
+        return named(self.acts.placing), named(self.acts.torsors)
+
+    @property
+    def beside(self) -> bytes:
+        """See Valued: its methods, which it holds so that no other takes the place of one."""
+        return repr([id(own) for own in self.methods]).encode()
+
+    def __getstate__(self) -> dict[str, object]:
+        return {name: own for name, own in super().__getstate__().items() if name != "methods"}
 
     @property
     @abstractmethod

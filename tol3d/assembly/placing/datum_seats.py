@@ -238,8 +238,8 @@ class PartFeatures:
         """True if a part, perhaps at another pose, has these very features and datum frames."""
         return (
             len(part.features) == len(self._features)
-            and all(own is self._features.get(own.name) for own in part.features)
-            and all(own is other for own, other in zip(part.datum_frames, self._part.datum_frames, strict=True))
+            and all(own == self._features.get(own.name) for own in part.features)
+            and all(own == other for own, other in zip(part.datum_frames, self._part.datum_frames, strict=True))
         )
 
     def feature(self, name: str) -> ActualFeature:

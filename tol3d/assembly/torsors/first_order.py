@@ -96,6 +96,10 @@ class FirstOrder:
             found[:, first : first + TOGETHER] = ordered_product(rows, self._columns(piece, terms, rows.shape[1]))
         return dict(zip(names, found, strict=True))
 
+    def is_bent(self, name: str) -> bool:
+        """True if a measure reads a term."""
+        return bool(self._read_by(self.rows[name][None]))
+
     def slopes(self, name: str, means: Array, sigmas: Array) -> Slopes:
         """Slopes of a measure for each column, at the means of the deviations.
 

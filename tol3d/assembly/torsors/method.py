@@ -35,6 +35,11 @@ def slopes(assembly: Assembly, name: str, means: Array, sigmas: Array) -> Slopes
     return _first_order(assembly).slopes(name, means, sigmas)
 
 
+def is_bent(assembly: Assembly, name: str) -> bool:
+    """True if a measure is not linear in the deviations."""
+    return _first_order(assembly).is_bent(name)
+
+
 def displacements(assembly: Assembly, part: str, after: int, deviations: Array) -> Array:
     """Torsors (trials, 6) of a part, seen at the world's origin [mm, rad].
 
