@@ -19,14 +19,13 @@ from tol3d.cycloid.reducer.rv_set import FirstStage, RVSet
 from tol3d.cycloid.system import PlayingSystem, RVSystem
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.measures import GearStudyOptions
-from tol3d.gearing.grammar.parts import GearSpec
 from tol3d.gearing.model.from_scene import implausible_teeth
 from tol3d.gearing.model.pairs import cylindrical_gear
 from tol3d.gears import SpurGear, SpurPair
-from tol3d.gears.pair import SAME_LENGTH
-from tol3d.reducers.contributors import contributors_of
+from tol3d.reducers.from_scene import contributors_of, only_reducer, refuse_unused, unlike
 from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
+from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
 
 
@@ -36,14 +35,8 @@ def rv_set(scene: Scene) -> RVSet:
     Raises:
         SceneError: not one reducer and nothing else, or one that cannot be put together.
     """
-    reducers = scene.of(RVReducerSpec)
-    if len(reducers) != 1:
-        words = f"expected one RV reducer and no other move, got {len(scene.moves)} moves; several make a train"
-        raise scene.refuse(("moves", list(reducers)[-1]), f"{words}, which a move of kind train names")
-    ((name, spec),) = reducers.items()
-    for part in scene.parts:
-        if part not in parts_of(spec):
-            raise scene.refuse(("parts", part), f"{part!r} is used by no move; name it in {name!r} or take it out")
+    name, spec = only_reducer(scene, RVReducerSpec)
+    refuse_unused(scene, (PartSpec,), parts_of(spec), repr(name))
     return reducer_of(scene, name, spec)
 
 
@@ -140,7 +133,10 @@ def _first_stage(scene: Scene, name: str, spec: RVReducerSpec, distance: float) 
     sun, planet = (cylindrical_gear(scene, gear) for gear in (spec.sun, spec.planet))
     assert isinstance(sun, SpurGear)
     assert isinstance(planet, SpurGear)
-    _refuse_unlike(scene, spec)
+    if (found := unlike(scene, spec.sun, spec.planet)) is not None:
+        field, own, mate = found
+        words = f"expected {own} as of {spec.sun!r}, its mate, got {mate}"
+        raise scene.refuse(("parts", spec.planet, field), words)
     try:
         pair = SpurPair(sun, planet, distance)
         pair.refuse_interference()
@@ -168,16 +164,6 @@ def implausible_stage(scene: Scene, own: RVSet) -> tuple[str, ...]:
         return ()
     gears = {name: own.first.gear(name) for name in (own.first.sun, own.first.planet)}
     return tuple(implausible_teeth(scene, gears))
-
-
-def _refuse_unlike(scene: Scene, spec: RVReducerSpec) -> None:
-    """Refuse gears that do not roll on each other."""
-    gears = [scene.parts[str(gear)] for gear in (spec.sun, spec.planet)]
-    for field in ("module", "pressure_angle"):
-        one, other = (getattr(gear, field) for gear in gears if isinstance(gear, GearSpec))
-        if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
-            words = f"expected {one} as of {spec.sun!r}, its mate, got {other}"
-            raise scene.refuse(("parts", str(spec.planet), field), words)
 
 
 def rv_system(scene: Scene) -> RVSystem:

@@ -29,9 +29,9 @@ from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.numerics.plane import turned
-from tol3d.reducers.contributors import contributors_in_trains
 from tol3d.reducers.deviations import Acts
-from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone, refuse_unused
+from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
+from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath

@@ -23,7 +23,7 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.refusals import planetary_set
 from tol3d.planetary.spring_curve import LeafSpring
 from tol3d.planetary.system import PlanetarySystem
-from tol3d.reducers.contributors import contributors_of
+from tol3d.reducers.from_scene import contributors_of
 from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
 from tol3d.scene.implausible import Implausible, larger_end, warned

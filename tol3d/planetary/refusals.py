@@ -7,12 +7,13 @@ from typing import Any
 from tol3d.errors import GeometryError
 from tol3d.gearing.grammar.parts import GearSpec, InternalGearSpec
 from tol3d.gearing.model.pairs import cylindrical_gear, cylindrical_pair
-from tol3d.gears.pair import SAME_LENGTH
 from tol3d.planetary.grammar.moves import PlanetarySpec
 from tol3d.planetary.grammar.parts import FlexibleCarrierSpec, PlanetSpec
 from tol3d.planetary.model.planetary_set import PlanetarySet, Spring
 from tol3d.planetary.model.set_mesh import SetGear, SetMesh
+from tol3d.reducers.from_scene import only_reducer, refuse_unused, unlike
 from tol3d.scene import Scene
+from tol3d.scene.part import PartSpec
 
 
 def planetary_set(scene: Scene) -> PlanetarySet:
@@ -21,18 +22,9 @@ def planetary_set(scene: Scene) -> PlanetarySet:
     Raises:
         SceneError: not one set and nothing else, or one that cannot be put together.
     """
-    sets = scene.of(PlanetarySpec)
-    others = [name for name in scene.moves if name not in sets]
-    if len(sets) != 1 or others:
-        name = [*others, *sets][-1 if not others else 0]
-        raise scene.refuse(
-            ("moves", name), f"expected one planetary set and no other move, got {len(scene.moves)} moves"
-        )
-    ((name, spec),) = sets.items()
+    name, spec = only_reducer(scene, PlanetarySpec)
     own = set_of(scene, name, spec)
-    for part in scene.parts:
-        if part not in parts_of(own, spec):
-            raise scene.refuse(("parts", part), f"{part!r} is used by no move; name it in {name!r} or take it out")
+    refuse_unused(scene, (PartSpec,), parts_of(own, spec), repr(name))
     return own
 
 
@@ -120,12 +112,9 @@ def _refuse_misnamed(scene: Scene, name: str, spec: PlanetarySpec, planet: Plane
 
 def _refuse_unlike(scene: Scene, name: str, central: SetGear, own: SetGear) -> None:
     """Refuse a mesh of gears that do not roll on each other."""
-    for field in ("module", "pressure_angle"):
-        one, other = (getattr(scene.parts[gear.name], field) for gear in (central, own))
-        if not math.isclose(one.internal, other.internal, rel_tol=SAME_LENGTH):
-            raise scene.refuse(
-                ("moves", name, "meshes", central.name), f"expected gears of the same {field}, got {one} and {other}"
-            )
+    if (found := unlike(scene, central.name, own.name)) is not None:
+        words = "expected gears of the same {}, got {} and {}".format(*found)
+        raise scene.refuse(("moves", name, "meshes", central.name), words)
 
 
 def _springs(scene: Scene, spec: PlanetarySpec) -> tuple[Spring, ...]:

@@ -25,9 +25,9 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
-from tol3d.reducers.contributors import contributors_in_trains
 from tol3d.reducers.deviations import Acts
-from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone, refuse_unused
+from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
+from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath

@@ -17,7 +17,6 @@ from tol3d.gearing.model.contributor import Contributor
 from tol3d.numerics.arrays import Array
 from tol3d.reducers.deviations import Acts, Deviations
 from tol3d.scene import Scene
-from tol3d.scene.part import PartSpec
 from tol3d.system.taken import ROWS_AT_ONCE
 
 Lost = tuple[Array, Array, NDArray[np.bool_]]
@@ -158,10 +157,3 @@ def refuse_alone(scene: Scene, kind: type, reducers: Mapping[str, Any], words: s
                 f"of a train whose output turns with {own.output!r}, and of the {words} alone one whose held shaft "
                 f"turns with {own.input!r}",
             )
-
-
-def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Mapping[str, Any], words: str) -> None:
-    """Refuse parts of reducers that no move names."""
-    for name, part in scene.parts.items():
-        if isinstance(part, kinds) and name not in used:
-            raise scene.refuse(("parts", name), f"{name!r} is used by no move; name it in {words} or take it out")

@@ -23,8 +23,8 @@ from tol3d.cycloid.reducer.deviated import Effect
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
 from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
-from tol3d.reducers.contributors import drawn, law_of, numbered
 from tol3d.reducers.deviations import Acts
+from tol3d.reducers.from_scene import drawn, law_of, numbered
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of

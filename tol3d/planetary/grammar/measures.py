@@ -1,15 +1,15 @@
 """Kinds of measure of planetary sets."""
 
-from typing import ClassVar, Literal, Self
+from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from tol3d.planetary.grammar.moves import PlanetarySpec
+from tol3d.reducers.grammar import Flank, FreeTurnSpec, HarmonicOrder, OverTurnSpec
 from tol3d.scene.direction import RandomOrFixed
 from tol3d.scene.measure import AngleSpec
 from tol3d.scene.name import Name
 from tol3d.scene.reference import Reference
-from tol3d.strict import refused
 
 
 class PlanetaryMeasureSpec(AngleSpec):
@@ -22,11 +22,8 @@ class PlanetaryMeasureSpec(AngleSpec):
         return (Reference(("of",), self.of, (PlanetarySpec,)),)
 
 
-class PlanetaryFreeTurnSpec(PlanetaryMeasureSpec):
+class PlanetaryFreeTurnSpec(PlanetaryMeasureSpec, FreeTurnSpec):
     """A free turn of a shaft at one position, or a part of it."""
-
-    gives_curve: ClassVar[bool] = False
-    several_positions: ClassVar[bool] = False
 
     at: Literal["output", "input"] = Field(default="output", description="the shaft that turns: output or input")
     over: RandomOrFixed = Field(default="random", description="position of the output: random or {at: angle}")
@@ -51,16 +48,14 @@ class PlanetaryLowStiffnessSpec(PlanetaryFreeTurnSpec):
     kind: Literal["planetary_low_stiffness"]
 
 
-class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
+class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec, OverTurnSpec):
     """An angle: lead of the output over its nominal position while a load on it keeps the meshes on one side.
 
     Counted in the sense in which the output turns, 0 at the first position.
     """
 
     kind: Literal["planetary_transmission_error"]
-    flank: Literal["drive", "back"] = Field(
-        default="drive", description="drive: the load resists the output; back: it drives it on"
-    )
+    flank: Flank = "drive"
     over: Literal["turn", "long_period"] = Field(
         default="turn",
         description="positions of the output: turn (one of it) or long_period (until the same teeth meet again)",
@@ -69,29 +64,7 @@ class PlanetaryTransmissionErrorSpec(PlanetaryMeasureSpec):
         default="range",
         description="min, max, range (peak to peak), harmonic (one sine, peak to peak) or curve of these positions",
     )
-    order: int | None = Field(
-        default=None, ge=1, description="of the harmonic: cycles a turn of the output; default: 1"
-    )
+    order: HarmonicOrder = None
     positions: int = Field(
         default=2000, ge=24, le=32_000, description="positions a turn of the output; many for each turn of the input"
     )
-
-    @model_validator(mode="after")
-    def _refuse_orders(self) -> Self:
-        if self.order is None:
-            return self
-        if self.take != "harmonic":
-            raise refused("order", f"none beside take: {self.take}; only a harmonic has an order", self.order)
-        if self.order > (highest := (self.positions - 1) // 2):
-            raise refused("order", f"at most {highest}, which {self.positions} positions resolve", self.order)
-        return self
-
-    @property
-    def gives_curve(self) -> bool:
-        """True if a trial gives a value at every position instead of one."""
-        return self.take == "curve"
-
-    @property
-    def several_positions(self) -> bool:
-        """Always."""
-        return True

@@ -18,8 +18,8 @@ from tol3d.gearing.grammar.tolerances.gears import ClockingSpec, EccentricitySpe
 from tol3d.numerics.arrays import Array
 from tol3d.planetary.grammar.tolerances import BorePositionSpec, PlanetPinSpec
 from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.reducers.contributors import drawn, law_of, numbered
 from tol3d.reducers.deviations import Acts
+from tol3d.reducers.from_scene import drawn, law_of, numbered
 from tol3d.scene import Scene
 from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of

@@ -1,22 +1,27 @@
-"""Contributors of a reducer from a scene, alone and in a train: the effect of each tolerance, and its draw.
+"""Reducers from scenes, alone and in trains: their moves and parts, and of each tolerance its effect and its draw.
 
 What a tolerance does to a reducer its model says, by two functions: `acts_of` and `draw_of`.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any
+import math
+from collections.abc import Callable, Container, Mapping
+from typing import Any, TypeVar
 
 from tol3d.distributions import Distribution
 from tol3d.gearing.grammar.tolerances.gearing_tolerance import GearToleranceSpec
 from tol3d.gearing.model.brought import acting_in, tolerances_of
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.gearing.model.pairs import cylindrical_gear
+from tol3d.gears.pair import SAME_LENGTH
 from tol3d.reducers.deviations import Acts
 from tol3d.scene import Scene
+from tol3d.scene.move import MoveSpec
+from tol3d.scene.part import PartSpec
 from tol3d.scene.tolerance import ToleranceSpec
 from tol3d.system.draw import Draw, Each, Planar, Scalar
 from tol3d.system.each_planar import EachPlanar
 from tol3d.system.plain import UNITS, PlainContributor
+from tol3d.units import Quantity
 
 ActsOf = Callable[[Scene, Any, str, Any], Acts]
 """Effect of a tolerance on a reducer, from the scene, the reducer, its name and the tolerance.
@@ -25,7 +30,40 @@ Raises a SceneError where it has none.
 """
 DrawOf = Callable[[Scene, Any, Acts, Any], Draw]
 """Draw of its components, from the scene, the reducer, its effect and the tolerance."""
+Move = TypeVar("Move", bound=MoveSpec)
 Actions = Mapping[str, list[tuple[str, Acts]]]
+
+
+def only_reducer(scene: Scene, kind: type[Move]) -> tuple[str, Move]:
+    """The reducer of a scene that has nothing else, and its name.
+
+    Raises:
+        SceneError: several moves.
+    """
+    reducers = scene.of(kind)
+    others = [name for name in scene.moves if name not in reducers]
+    if others or len(reducers) != 1:
+        words = f"expected one {kind.words.split(maxsplit=1)[1]} and no other move, got {len(scene.moves)} moves"
+        train = "" if others else "; several make a train, which a move of kind train names"
+        raise scene.refuse(("moves", (others or list(reducers)[-1:])[0]), words + train)
+    ((name, spec),) = reducers.items()
+    return str(name), spec
+
+
+def refuse_unused(scene: Scene, kinds: tuple[type[PartSpec], ...], used: Container[str], words: str) -> None:
+    """Refuse parts of some kinds that no move names, which `words` of the scene would have."""
+    for name, part in scene.parts.items():
+        if isinstance(part, kinds) and name not in used:
+            raise scene.refuse(("parts", name), f"{name!r} is used by no move; name it in {words} or take it out")
+
+
+def unlike(scene: Scene, one: str, other: str) -> tuple[str, Quantity, Quantity] | None:
+    """The field in which two gears differ that therefore do not roll on each other, and its values; None if alike."""
+    for field in ("module", "pressure_angle"):
+        own, mate = (getattr(scene.parts[gear], field) for gear in (one, other))
+        if not math.isclose(own.internal, mate.internal, rel_tol=SAME_LENGTH):
+            return field, own, mate
+    return None
 
 
 def contributors_of(
