@@ -27,7 +27,7 @@ from scipy.optimize import linprog
 from tol3d.errors import InputError
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.hysteresis import hysteresis
-from tol3d.planetary.hysteresis_picture import draw_hysteresis
+from tol3d.planetary.hysteresis_picture import draw_curve
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.spring_curve import LeafSpring, breakaway, turns_under
@@ -216,7 +216,7 @@ def test_a_spring_makes_room_where_pins_of_a_rigid_carrier_would_jam(tmp_path: P
     assert loop.rigid is None
     there = hysteresis(own, thinned(*3 * (CLEARANCE,)), "sun", spring, 15.0)
     np.testing.assert_allclose(loop.turns, there.turns, rtol=0, atol=1e-8)
-    draw_hysteresis(loop, tmp_path / "loop.png")
+    draw_curve(loop.curve, tmp_path / "loop.png")
 
 
 WRONG = {

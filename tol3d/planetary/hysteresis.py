@@ -11,9 +11,11 @@ from tol3d.numerics.arrays import Array
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.spring_curve import DisplacedEnds, LeafSpring, breakaway, displaced_ends, turns_under
+from tol3d.planetary.summary_types import TorqueCurve
+from tol3d.runs.summary.values import made
+from tol3d.units import RAD_PER_ARCMIN
 
 LEVEL: Final = 1e-6  # rad/mm; of slopes of 0.1 rad/mm and more, what is left of a level piece by rounding
-ARCMIN: Final = math.radians(1 / 60)
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,21 @@ class Hysteresis:
         return "\n".join(["torque [N mm],turn [arcmin]", *rows, ""])
 
     @property
+    def curve(self) -> TorqueCurve:
+        """The same as summary.json has it."""
+        return made(
+            TorqueCurve,
+            shaft=self.shaft,
+            torque_n_mm=[float(torque) for torque in self.torques],
+            turn_arcmin=self.minutes,
+            breakaway_n_mm=list(self.breakaway),
+            rigid_arcmin=None if self.rigid is None else [end / RAD_PER_ARCMIN for end in self.rigid],
+        )
+
+    @property
     def minutes(self) -> list[float]:
         """Turns [arcmin]."""
-        return [float(turn) for turn in self.turns / ARCMIN]
+        return [float(turn) for turn in self.turns / RAD_PER_ARCMIN]
 
 
 def crossing(ends: DisplacedEnds, spring: LeafSpring) -> float:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Final
 
-from tol3d.planetary.hysteresis import ARCMIN, crossing, hysteresis
+from tol3d.planetary.hysteresis import crossing, hysteresis
 from tol3d.planetary.model.deviated import Deviated
 from tol3d.planetary.model.efficiency import (
     Drive,
@@ -20,7 +20,7 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.model.set_mesh import SetGear, SetMesh
 from tol3d.planetary.model.tooth_set import CARRIER, ToothSet
 from tol3d.planetary.spring_curve import LeafSpring, breakaway, displaced_ends
-from tol3d.planetary.summary_types import EfficiencySummary, PlanetarySetSummary, SpringSummary, TorqueCurve
+from tol3d.planetary.summary_types import EfficiencySummary, PlanetarySetSummary, SpringSummary
 from tol3d.runs.summary.values import made
 from tol3d.units import RAD_PER_ARCMIN
 
@@ -107,7 +107,7 @@ def spring_summary(own: PlanetarySet, mean: Deviated, spring: LeafSpring) -> Spr
         per_force = torques[shaft] / (spring.force + spring.friction)  # mm/rad, of the planets' displacement
         stiffness[shaft] = spring.stiffness * per_force**2 * RAD_PER_ARCMIN
     peak = BEYOND * crossing(displaced_ends(own, mean, own.output), spring)
-    curve = hysteresis(own, mean, own.output, spring, peak, STEPS)
+    curve = hysteresis(own, mean, own.output, spring, peak, STEPS).curve
     return made(
         SpringSummary,
         force_n=spring.force,
@@ -115,14 +115,7 @@ def spring_summary(own: PlanetarySet, mean: Deviated, spring: LeafSpring) -> Spr
         friction_n=spring.friction,
         breakaway_n_mm=torques,
         low_stiffness_n_mm_per_arcmin=stiffness,
-        curve=made(
-            TorqueCurve,
-            shaft=curve.shaft,
-            torque_n_mm=[float(torque) for torque in curve.torques],
-            turn_arcmin=curve.minutes,
-            breakaway_n_mm=list(curve.breakaway),
-            rigid_arcmin=None if curve.rigid is None else [end / ARCMIN for end in curve.rigid],
-        ),
+        curve=curve,
     )
 
 
