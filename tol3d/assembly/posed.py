@@ -7,13 +7,12 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from tol3d.assembly.from_scene import understood
 from tol3d.assembly.grammar.checks import paths_of, pose_names, read_at
 from tol3d.assembly.grammar.measures.assembly_measure import TimedSpec
 from tol3d.assembly.methods import PlacingMethod
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, WITH_LOOPS
-from tol3d.assembly.system import AssemblySystem, assembly_system
+from tol3d.assembly.system import AssemblySystem, assembly_system, meaning_of
 from tol3d.scene import Scene
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -66,7 +65,7 @@ class PosedSystem(AssemblySystem):
         found = {}
         for pose in poses:
             if pose not in self.poses and scene is not None:
-                meaning = meaning or understood(scene)
+                meaning = meaning or meaning_of(scene)
                 found[pose] = assembly_system(scene, pose, meaning)
             else:
                 found[pose] = self.poses[pose]
@@ -259,7 +258,7 @@ def system_of(scene: Scene) -> AssemblySystem:
         return assembly_system(scene)
     at = {name: read_at(scene, name) for name in scene.measures}
     poses = dict.fromkeys((*names[:1], *(pose for own in at.values() for pose in own)))
-    meaning = understood(scene)
+    meaning = meaning_of(scene)
     systems = {pose: assembly_system(scene, pose, meaning) for pose in poses}
     first = next(iter(systems.values()))
     known = {name: _measure(scene, name, systems[own[0]], len(own)) for name, own in at.items()}

@@ -293,7 +293,8 @@ def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = N
         SceneError: the scene is inconsistent, such as moves that leave a part free.
     """
     pose = pose or next(iter(pose_names(scene)), "")
-    placed = _asked(scene, lambda: _settled(scene, pose, meaning or understood(scene)))
+    known = meaning or meaning_of(scene)
+    placed = _asked(scene, lambda: _settled(scene, pose, known))
     for miss in at_rest(placed.assembly).misses:
         raise scene.refuse(("moves", miss.move, "relations", miss.number), miss.sentence)
     kind = _kind_of(placed.assembly)
@@ -306,6 +307,15 @@ def assembly_system(scene: Scene, pose: str = "", meaning: Understood | None = N
     _asked(scene, lambda: at_rest(assembly).linear)
     measures = _asked(scene, lambda: tuple(replace(own, adds_up=made.is_linear(own)) for own in made.measures))
     return replace(made, measures=measures)
+
+
+def meaning_of(scene: Scene) -> Understood:
+    """Drawings and measures of a scene of an assembly.
+
+    Raises:
+        SceneError: see `understood`.
+    """
+    return _asked(scene, lambda: understood(scene))
 
 
 def _components(scene: Scene) -> Mapping[str, str]:

@@ -1,7 +1,9 @@
 """Loops of a scene: their structure, positions in a pose, draws."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from weakref import WeakKeyDictionary
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, partial
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +34,7 @@ from tol3d.linkage.kinematics import Kinematics, Position, UnreachedError, rotat
 from tol3d.linkage.loop import ClosedLoop, InputDeviation, LoopInput
 from tol3d.linkage.play import InBall, JointPlay
 from tol3d.linkage.structure import FREEDOMS, KINDS, Joint, Output, Structure, structured
+from tol3d.numerics.values import Valued
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.system.draw import Ball, Scalar
@@ -40,6 +43,11 @@ from tol3d.units import Quantity
 
 Array = NDArray[np.float64]
 
+LOOPS: Final = 32
+"""Loops that are kept: of the scenes read last."""
+POSITIONS: Final = 1024
+PATHS: Final = 8
+"""Positions of loops that are kept, each some kB: in poses, and of whole paths."""
 FLOAT = "float"
 TINY = 1e-6
 """Motion of a feature, as a share of the largest, that is none."""
@@ -87,15 +95,44 @@ def _drawn(spec: CloseLoopSpec, scene: Scene) -> Iterator[PlainContributor]:
             yield PlainContributor(deviation_name(key, of), "input", law, unit_of, per, each.description, nominal="")
 
 
-class _Known:
-    """Known data of the loops of a scene: kinematics by the places of other parts, positions by pose."""
+@dataclass(frozen=True, eq=False)
+class PosedLoop(Valued):
+    """A loop with the poses that its scene names.
 
-    def __init__(self) -> None:
-        self.kinematics: dict[tuple[str, bytes], Kinematics] = {}
-        self.positions: dict[tuple[str, bytes, str], Position] = {}
+    Args:
+        kinematics: with other parts where they lie.
+        poses: in words, of which it is told from others.
+        inputs: by name.
+        spec: its entry.
+    """
+
+    kinematics: Kinematics
+    poses: str
+    inputs: Mapping[str, LoopInput]
+    spec: CloseLoopSpec = field(compare=False)
 
 
-_KNOWN: WeakKeyDictionary[Understood, _Known] = WeakKeyDictionary()
+@dataclass(frozen=True)
+class _Asked:
+    """A loop of a scene, and the places of other parts: their poses (4, 4) as bytes."""
+
+    understood: Understood
+    name: str
+    placed: tuple[tuple[str, bytes], ...]
+    spec: CloseLoopSpec = field(compare=False)
+
+
+class UnfitPoseError(Exception):
+    """A pose that a loop cannot take.
+
+    Args:
+        pose: as the scene names it, a step of a path too.
+        words: why.
+    """
+
+    def __init__(self, pose: str, words: str) -> None:
+        super().__init__(words)
+        self.pose = pose
 
 
 def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
@@ -105,25 +142,41 @@ def loop_of(spec: CloseLoopSpec, name: str, setting: Setting) -> ClosedLoop:
         SceneError: it does not close, is held twice or not at all, or does not reach the pose.
     """
     understood, drawn, pose = setting.understood, setting.drawn, setting.pose
-    plays = {joint: play for joint, own in spec.joints.items() if (play := _play(joint, own.room, drawn)) is not None}
     others = {part_of(feature) for _, feature in spec.targets()} | {
         own.carrier.partition(".")[0] for own in spec.joints.values() if isinstance(own, RollingSpec)
     }
     if spec.output is not None:
         others.add(part_of(spec.output.from_))
-    placed = {part: setting.poses[part] for part in sorted(others - set(spec.bodies))}
-    known = _KNOWN.setdefault(understood, _Known())
-    key = name, b"".join(own.tobytes() for own in placed.values())
-    if key not in known.kinematics:
-        known.kinematics[key] = kinematics_of(spec, name, understood, placed, plays)
-    kinematics = known.kinematics[key]
-    position = _position(spec, name, understood.scene, kinematics, pose, known.positions, key)
-    stations = {
-        each: _position(spec, name, understood.scene, kinematics, each, known.positions, key)
-        for each in spec.pose_names
-    }
-    errors = _deviations(spec, kinematics, position, drawn)
-    return ClosedLoop(name, kinematics, position, inputs_of(spec), stations, plays, errors)
+    placed = tuple((part, setting.poses[part].tobytes()) for part in sorted(others - set(spec.bodies)))
+    loop = _posed(_Asked(understood, name, placed, spec))
+    try:
+        position = _position(loop, pose)
+        stations = {each: _position(loop, each) for each in spec.pose_names}
+    except UnfitPoseError as error:
+        raise setting.scene.refuse(("moves", name, "poses", error.pose.partition(STEP)[0]), str(error)) from None
+    errors = _deviations(spec, loop.kinematics, position, drawn)
+    return ClosedLoop(name, loop.kinematics, position, loop.inputs, stations, _plays(spec, drawn), errors)
+
+
+@lru_cache(maxsize=LOOPS)
+def _posed(asked: _Asked) -> PosedLoop:
+    """A loop of a scene that is read, in all of its poses."""
+    spec, understood = asked.spec, asked.understood
+    placed = {part: np.frombuffer(pose).reshape(4, 4) for part, pose in asked.placed}
+    plays = _plays(spec, understood.effects.drawn.get(asked.name, {}))
+    kinematics = kinematics_of(spec, asked.name, understood, placed, plays)
+    return PosedLoop(kinematics, spec.model_dump_json(include={"poses"}), inputs_of(spec), spec)
+
+
+@lru_cache(maxsize=LOOPS)
+def _kept(kinematics: Kinematics) -> Kinematics:
+    """The first of equal loops, with what is known of it."""
+    return kinematics
+
+
+def _plays(spec: CloseLoopSpec, drawn: Mapping[str, slice]) -> Mapping[str, JointPlay]:
+    found = {joint: _play(joint, own.room, drawn) for joint, own in spec.joints.items()}
+    return {joint: play for joint, play in found.items() if play is not None}
 
 
 def _play(joint: str, room: ClearanceSpec | PlaySpec | None, drawn: Mapping[str, slice]) -> JointPlay | None:
@@ -153,7 +206,7 @@ def kinematics_of(
     try:
         structure = _structure(spec, name, scene, drawing)
         nominal = {joint: play.nominal for joint, play in plays.items() if play.toward is not None}
-        found = Kinematics(structure, placed, nominal)
+        found = _kept(Kinematics(structure, placed, nominal))
         _ = found.drawn
     except InputError as error:
         path, _, words = str(error).partition(": ")
@@ -237,7 +290,7 @@ def _read_turns(spec: CloseLoopSpec, name: str, scene: Scene) -> Iterator[tuple[
 def _refuse_read_idle(spec: CloseLoopSpec, name: str, scene: Scene, drawing: Drawing, kinematics: Kinematics) -> None:
     """Refuse to read a feature moved by a freedom that moves no joint, as its place is undefined."""
     own = kinematics.structure
-    for words, moved in kinematics.idle_freedoms():
+    for words, moved in kinematics.idle_freedoms:
         size = max(np.abs(moved[:, :3]).max() * own.length, np.abs(moved[:, 3:]).max())
         told = f"which it leaves free: {words}"
         for path, feature in _read_features(spec, name, scene):
@@ -258,45 +311,49 @@ def _refuse_read_idle(spec: CloseLoopSpec, name: str, scene: Scene, drawing: Dra
                 raise scene.refuse(path, f"expected a part whose turn the loop holds, got {part!r}, {told}")
 
 
-def _position(
-    spec: CloseLoopSpec,
-    name: str,
-    scene: Scene,
-    kinematics: Kinematics,
-    pose: str,
-    known: dict[tuple[str, bytes, str], Position],
-    key: tuple[str, bytes],
-) -> Position:
-    """Position of a loop in a pose, found from the pose before it on a path, or from the drawn one."""
-    if not pose:
-        return kinematics.drawn
-    if (*key, pose) in known:
-        return known[*key, pose]
-    path, _, number = pose.partition(STEP)
-    own = spec.poses[path]
+@lru_cache(maxsize=POSITIONS)
+def _position(loop: PosedLoop, pose: str) -> Position:
+    """Position of a loop in a pose.
+
+    Raises:
+        UnfitPoseError: the loop does not reach it.
+    """
+    path, is_on_path, number = pose.partition(STEP)
+    if is_on_path:
+        return _along(loop, path)[int(number)]
+    drawn = loop.kinematics.drawn
+    return _reaching(loop, pose, lambda: _reached(loop.spec, loop.kinematics, pose, drawn)) if pose else drawn
+
+
+@lru_cache(maxsize=PATHS)
+def _along(loop: PosedLoop, path: str) -> tuple[Position, ...]:
+    """Positions of a loop along a path, each found from the one before; raises as `_position`."""
+    own, found = loop.spec.poses[path], list[Position]()
+    assert isinstance(own, PathSpec)
+    for k in range(own.steps + 1):
+        first, last, share = _leg(own, k)
+        ends = [_position(loop, each) for each in (first, last)]
+        start = found[-1] if found else ends[0]
+        reach = partial(_between, loop.spec, loop.kinematics, (first, last), ends, share, start)
+        found.append(_reaching(loop, f"{path}{STEP}{k}", reach))
+    return tuple(found)
+
+
+def _reaching(loop: PosedLoop, pose: str, reach: Callable[[], Position]) -> Position:
+    """A position, or the sentence that says why a loop does not reach it, or leaves the range of an input."""
     try:
-        if isinstance(own, PathSpec):
-            k = int(number)
-            first, last, share = _leg(own, k)
-            ends = [_position(spec, name, scene, kinematics, each, known, key) for each in (first, last)]
-            if share in (0.0, 1.0):
-                found = ends[int(share)]
-            else:
-                for before in range(k):  # one by one, for each begins at the one before
-                    if (*key, f"{path}{STEP}{before}") not in known:
-                        _position(spec, name, scene, kinematics, f"{path}{STEP}{before}", known, key)
-                found = _between(spec, kinematics, (first, last), ends, share, known[*key, f"{path}{STEP}{k - 1}"])
-        else:
-            found = _reached(spec, kinematics, pose, kinematics.drawn)
+        found = reach()
     except UnreachedError as error:
         words = f"expected a pose that the loop reaches, got {pose.replace(STEP, ' ')!r}; it gets as far as "
-        at = error.position
-        got = ", ".join(f"{each} {told}" for each, told in _told(spec, kinematics, at).items())
-        raise scene.refuse(
-            ("moves", name, "poses", path), f"{words}{got}, then it is singular or reaches no further"
-        ) from None
-    _refuse_out_of_range(spec, name, scene, kinematics, pose, found)
-    known[*key, pose] = found
+        got = ", ".join(f"{each} {told}" for each, told in _told(loop, error.position).items())
+        raise UnfitPoseError(pose, f"{words}{got}, then it is singular or reaches no further") from None
+    for name, own in loop.inputs.items():
+        value = own.as_placed + loop.kinematics.inputs_at(found)[name]
+        if own.range is not None and not own.range[0] - TINY <= value <= own.range[1] + TINY:
+            low, high = (own.told(limit - own.as_placed) for limit in own.range)
+            words = f"expected {name!r} from {low} to {high}, got {own.told(value - own.as_placed)}"
+            at_position = f", at position {pose.partition(STEP)[2]} of the path" if STEP in pose else ""
+            raise UnfitPoseError(pose, words + at_position)
     return found
 
 
@@ -354,6 +411,8 @@ def _between(
     start: Position,
 ) -> Position:
     """Position between two poses: by the output if both name it, else by the inputs."""
+    if share in (0.0, 1.0):
+        return ends[int(share)]
     first, last = (spec.poses[name] for name in names)
     if isinstance(first, TiltPoseSpec) and isinstance(last, TiltPoseSpec):
         tilts = [kinematics.tilt_at(own) for own in ends]
@@ -383,24 +442,12 @@ def inputs_of(spec: CloseLoopSpec) -> Mapping[str, LoopInput]:
     }
 
 
-def _refuse_out_of_range(
-    spec: CloseLoopSpec, name: str, scene: Scene, kinematics: Kinematics, pose: str, at: Position
-) -> None:
-    for each, own in inputs_of(spec).items():
-        value = own.as_placed + kinematics.inputs_at(at)[each]
-        if own.range is not None and not own.range[0] - TINY <= value <= own.range[1] + TINY:
-            low, high = (own.told(limit - own.as_placed) for limit in own.range)
-            words = f"expected {each!r} from {low} to {high}, got {own.told(value - own.as_placed)}"
-            at_position = f", at position {pose.partition(STEP)[2]} of the path" if STEP in pose else ""
-            raise scene.refuse(("moves", name, "poses", pose.partition(STEP)[0]), words + at_position)
-
-
-def _told(spec: CloseLoopSpec, kinematics: Kinematics, at: Position) -> Mapping[str, str]:
+def _told(loop: PosedLoop, at: Position) -> Mapping[str, str]:
     """Inputs and the output where a loop stands, in words."""
-    values = kinematics.inputs_at(at)
-    found = {name: own.told(values[name]) for name, own in inputs_of(spec).items()}
-    if spec.output is not None and spec.output.tilt is not None:
-        x, y = kinematics.tilt_at(at)
+    values, output = loop.kinematics.inputs_at(at), loop.spec.output
+    found = {name: own.told(values[name]) for name, own in loop.inputs.items()}
+    if output is not None and output.tilt is not None:
+        x, y = loop.kinematics.tilt_at(at)
         found["tilt"] = f"{np.degrees(np.hypot(x, y)):.6g} deg"
         found["azimuth"] = f"{np.degrees(np.arctan2(-x, y)) % 360.0:.6g} deg"
     return found

@@ -301,6 +301,7 @@ class Kinematics(Valued):
         body = int(np.argmax(sizes))
         return motion_in_words(own.bodies[body], moved[body], own.length)
 
+    @cached_property
     def idle_freedoms(self) -> Sequence[tuple[str, Array]]:
         """Freedoms that move no joint: in words, and the motions of all bodies (bodies, 6)."""
         free = self.structure.free(inputs=False)

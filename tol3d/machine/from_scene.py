@@ -11,7 +11,7 @@ from tol3d.assembly.grammar.measures.pose_errors import PositionErrorSpec
 from tol3d.assembly.grammar.moves import AssemblyMoveSpec
 from tol3d.assembly.mechanism import ASSEMBLY
 from tol3d.assembly.placing import method as placing
-from tol3d.assembly.system import AssemblySystem, assembly_system
+from tol3d.assembly.system import AssemblySystem, assembly_system, meaning_of
 from tol3d.distributions.constant import Constant
 from tol3d.gearing.effects import NOTHING, LinkDeviation
 from tol3d.gearing.grammar.checks import off_shaft
@@ -52,7 +52,8 @@ def machine_system(scene: Scene) -> MachineSystem:
         SceneError: one of its parts refuses it, bores do not fit the meshes, or a deviation counts twice.
     """
     parts = _parts_of(scene)
-    poses = {pose: assembly_system(parts, pose) for pose in pose_names(parts) or ("",)}
+    meaning = meaning_of(parts)
+    poses = {pose: assembly_system(parts, pose, meaning) for pose in pose_names(parts) or ("",)}
     drawn = next(iter(poses.values()))
     place = housed(scene, _gears_of(scene), drawn.assembly)
     gears = gear_system(place.scene)

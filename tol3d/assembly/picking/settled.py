@@ -1,6 +1,7 @@
 """A scene completed by numbers from the solids of its parts."""
 
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,7 @@ from tol3d.parts.details import DetailError
 from tol3d.scene import Scene
 from tol3d.scene.place import KeyPath
 from tol3d.scene.references import Problem, refuse
+from tol3d.solids.built_shape import BuiltShape
 from tol3d.solids.cache import picked
 from tol3d.solids.kept_shape import KeptShape
 from tol3d.solids.pick import Pick, PickedFace, PickError, Triple
@@ -75,6 +77,8 @@ def _shown(value: Found) -> str:
     return f"[{', '.join(_shown(own) if isinstance(own, Quantity) else f'{round(own, 9):.9g}' for own in value)}]"
 
 
+SHAPES: Final = 256
+"""Shapes whose faces are kept."""
 NO_FILES: Final[Files] = {}
 
 
@@ -104,6 +108,12 @@ def settle(scene: Scene, *, run_builders: bool, known: Files | None) -> tuple[Sc
     return scene.model_copy(update={"parts": parts}).read_from(scene.origin), files
 
 
+@lru_cache(maxsize=SHAPES)
+def _picked(shape: BuiltShape, picks: tuple[Pick, ...]) -> tuple[PickedFace, ...]:
+    """Faces that picks mean, as they were found before; see tol3d.solids.cache.picked."""
+    return picked(shape, picks)
+
+
 def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: bool) -> tuple[Kept, Files]:
     """Faces of solids from which features are picked.
 
@@ -129,7 +139,7 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
                 files[solid_file(name)] = kept_solid(name, shape)
                 names[name] = shape.faces
             asked = [(path, pick) for path, pick in _picks(name, own)]
-            found = picked(shape, [pick for _, pick in asked])
+            found = _picked(shape, tuple(pick for _, pick in asked))
         except PickError as error:
             path, _ = asked[error.number]
             problems.append(((*path, error.by), str(error)))

@@ -1,6 +1,7 @@
 """Features that a scene selects on parts from STEP files: what their faces are, and the features by numbers."""
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Final
 
 from tol3d.assembly.grammar.features import AxisSpec, ConeSpec, CylinderSpec, FeatureUnion, PlaneSpec, SphereSpec
@@ -14,9 +15,12 @@ from tol3d.files import FileContent
 from tol3d.scene.place import KeyPath
 from tol3d.solids.pick import PickedFace, Triple
 from tol3d.step.found import FoundFeature
-from tol3d.step.reading import StepPart, read_step
+from tol3d.step.reading import StepFile, StepPart, read_step
 from tol3d.step.refused import StepError
 from tol3d.step.selecting import SelectionError, Selector, numbers, selected
+
+FILES: Final = 8
+"""STEP files that are kept as they were read, each some MB."""
 
 Problem = tuple[KeyPath, str]
 
@@ -38,7 +42,7 @@ def looked_up(
 ) -> dict[str, tuple[PickedFace, ...]]:
     """Faces that a part's features select, by feature; errors are added to the problems."""
     try:
-        read = read_step(file)
+        read = _read(file)
     except StepError as error:
         problems.append((("parts", part, "file"), str(error)))
         return {}
@@ -49,6 +53,12 @@ def looked_up(
         problems.append((("parts", part, field), str(error)))
         return {}
     return dict(_each(part, spec, found, problems))
+
+
+@lru_cache(maxsize=FILES)
+def _read(file: FileContent) -> StepFile:
+    """A file as it was read before, by its content."""
+    return read_step(file)
 
 
 def _each(
@@ -106,7 +116,7 @@ def place_in_file(spec: StepSpec, file: FileContent) -> tuple[Triple, Triple, Tr
     """Origin, z and x of a part as its file has them; None where its scene says where it stands."""
     if spec.use is None or "placed" in spec.model_fields_set:
         return None
-    return read_step(file).use(spec.use).frame
+    return _read(file).use(spec.use).frame
 
 
 def placed(place: tuple[Triple, Triple, Triple]) -> Placement:

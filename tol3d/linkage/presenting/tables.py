@@ -77,7 +77,7 @@ def _freedoms(move: ClosedLoop) -> Sequence[PageItem]:
         f"{move.name}: joints", declared_table("", [(step.joint.name, JointRow(move, step)) for step in own.steps])
     )
     free = int(own.free(inputs=False).max(initial=-1)) + 1
-    idle = move.kinematics.idle_freedoms()
+    idle = move.kinematics.idle_freedoms
     told = (
         f"{len(own.bodies)} bodies; joints that place them leave {free + len(own.inputs)} freedoms, inputs give "
         f"{len(own.inputs)}, joints that shut loops take {own.rows}; "
