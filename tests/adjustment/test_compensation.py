@@ -16,13 +16,12 @@ from places import SCENES
 from rich.console import Console
 
 from tol3d import Overrides, load_scene, run_scene
-from tol3d.apps.adjustment import robots as robots_module
 from tol3d.apps.adjustment.compensation import Compensation, CompensationQuestion, compensation
 from tol3d.apps.adjustment.compensation_picture import compensation_figure
 from tol3d.apps.adjustment.compensation_table import Spread, compensation_report
-from tol3d.apps.adjustment.correction import CLOSED_FORM
 from tol3d.apps.adjustment.robots import STATES, left_of_the_mean
 from tol3d.errors import InputError
+from tol3d.gearing import CLOSED_FORM, train_play
 from tol3d.gearing.engines.gaps import exact_engine
 from tol3d.gearing.grammar.tolerances.gears import ShimSpec
 from tol3d.gears.flank import opposite
@@ -123,7 +122,7 @@ def test_a_methods_correction_is_that_of_the_stage_means_of_a_run(tmp_path: Path
 
 def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
     own = of(SHIMMED, 100)
-    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
+    columns = gear_columns(own.play.model, exact_engine(own.play.model), drawn_trials(own.play.model, 1, 0, 100))
     for method, remaining in own.remaining.items():
         assert remaining.angles["before"] == pytest.approx(columns[f"{method}:lost motion"], rel=1e-12)
         assert remaining.tips["before"] == pytest.approx(columns[f"{method}:tip displacement"], rel=1e-12)
@@ -131,7 +130,7 @@ def test_uncompensated_robots_are_the_trials_of_the_study() -> None:
 
 def test_a_scenes_own_swing_is_that_of_its_trials() -> None:
     own = of(SWING, 100)
-    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 1, 0, 100))
+    columns = gear_columns(own.play.model, exact_engine(own.play.model), drawn_trials(own.play.model, 1, 0, 100))
     assert known(own.swing).output == pytest.approx(np.radians(np.linspace(-60, 60, 25)))
     for method, curves in known(own.swing).curves.items():
         assert curves["before"] == pytest.approx(columns[f"{method}:tip error over the swing"], rel=1e-12)
@@ -236,7 +235,7 @@ def test_the_same_seed_gives_the_same_bits_and_another_one_others() -> None:
 def test_a_robot_depends_neither_on_their_number_nor_on_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = of(SHIMMED, 50).remaining["geometric"].angles
     fewer = of(SHIMMED, 20).remaining["geometric"].angles
-    monkeypatch.setattr(robots_module, "ROWS_AT_ONCE", 17 * 7)
+    monkeypatch.setattr(train_play, "ROWS_AT_ONCE", 17 * 7)
     in_pieces = of.__wrapped__(SHIMMED, 50).remaining["geometric"].angles
     for state in ("before", "robot"):
         assert np.array_equal(whole[state][:20], fewer[state])
@@ -282,13 +281,13 @@ def test_the_load_changes_side_where_the_arms_weight_passes_over_the_axis() -> N
 
 def test_the_other_flanks_work_behind_the_jump(tmp_path: Path) -> None:
     own = of(ROBOT, 50)
-    flanks = {mesh.name: (mesh.working_flank, opposite(mesh.working_flank)) for mesh in own.model.meshes}
+    flanks = {mesh.name: (mesh.working_flank, opposite(mesh.working_flank)) for mesh in own.play.model.meshes}
     assert known(own.swing).flanks == flanks  # the model's are those at 0 deg, before the jump at 10.6 deg
     over_the_other_side = changed(tmp_path, ("[83.4 mm, 445.1", "[-83.4 mm, 445.1"), scene=ROBOT)
     mirrored = of(over_the_other_side, 50)  # at 0 deg the jump lies behind
     assert known(mirrored.swing).jumps == pytest.approx([-angle for angle in known(own.swing).jumps], abs=1e-6)
     assert known(mirrored.swing).flanks == known(own.swing).flanks
-    now = {mesh.name: mesh.working_flank for mesh in mirrored.model.meshes}
+    now = {mesh.name: mesh.working_flank for mesh in mirrored.play.model.meshes}
     assert now == {name: behind for name, (_, behind) in flanks.items()}
 
 
@@ -324,7 +323,7 @@ def test_a_train_without_an_arm_is_told_in_angles() -> None:
     assert (own.units, own.lever, own.swing) == (("arcmin",), None, None)
     assert not own.remaining["geometric"].tips
     lost = own.remaining["geometric"].angles["before"]
-    columns = gear_columns(own.model, exact_engine(own.model), drawn_trials(own.model, 5, 0, 100))
+    columns = gear_columns(own.play.model, exact_engine(own.play.model), drawn_trials(own.play.model, 5, 0, 100))
     assert lost == pytest.approx(columns["geometric:lost motion"], rel=1e-12)
     assert [stage.link for stage in own.compensated] == ["gearbox", "first mesh", "second mesh", "third mesh"]
     assert own.corrections["geometric"].motor == pytest.approx(10.4 * lost.mean(), rel=1e-9)

@@ -384,7 +384,8 @@ def test_a_correction_reads_the_train_as_its_measure_does(tmp_path: Path) -> Non
     for tooth in ("driven", "all"):
         measures = f"  lost: {{kind: lost_motion, of: train, read_at: face, tooth: {tooth}}}"
         found = compensation(unequal((30, 31), 0.0, 0.04).scene(measures), overrides=Overrides(trials=50))
-        assert [backlash.reading for _, backlash in found.measure.kind.backlashes] == [Reading("face", "face", tooth)]
+        read = [backlash.reading for _, backlash in found.play.measure.kind.backlashes]
+        assert read == [Reading("face", "face", tooth)]
 
 
 def test_a_correction_at_random_positions_is_refused_where_the_tooth_is_out_of_action() -> None:

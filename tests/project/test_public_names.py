@@ -15,10 +15,7 @@ NAMES = frozenset(re.findall(r"^\.\. auto(?:class|function|data|exception):: (to
 ONLY = dict(re.findall(r"^\.\. automodule:: (tol3d[\w.]*)\n   :members: (\w.*)$", API, re.MULTILINE))
 """Modules of which some members are documented."""
 
-NOT_YET = ("adjustment",)
-APPLICATIONS = sorted(
-    own.parent for own in (ROOT / "tol3d" / "apps").glob("*/__init__.py") if own.parent.name not in NOT_YET
-)
+APPLICATIONS = sorted(own.parent for own in (ROOT / "tol3d" / "apps").glob("*/__init__.py"))
 MODULE_NAMED = re.compile(r"(tol3d(?:\.\w+)+):(\w+)")
 
 

@@ -1,25 +1,32 @@
 """Laws of a deviation: their words in scenes and their meaning, one file each."""
 
-from tol3d.distributions.base import DeviationLaw, Distribution, DistributionSpec
-from tol3d.distributions.constant import Constant
+from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY, DeviationLaw, Distribution, DistributionSpec
+from tol3d.distributions.constant import Constant, ConstantSpec
 from tol3d.distributions.empirical import Empirical
-from tol3d.distributions.normal import Normal
+from tol3d.distributions.normal import Normal, NormalSpec
 from tol3d.distributions.rayleigh import Rayleigh
 from tol3d.distributions.stated import StatedDistribution
-from tol3d.distributions.triangular import Triangular
-from tol3d.distributions.truncated_normal import TruncatedNormal
-from tol3d.distributions.uniform import Uniform
+from tol3d.distributions.triangular import Triangular, TriangularSpec
+from tol3d.distributions.truncated_normal import TruncatedNormal, TruncatedNormalSpec
+from tol3d.distributions.uniform import Uniform, UniformSpec
 
 __all__ = [
+    "HIGH_PROBABILITY",
+    "LOW_PROBABILITY",
     "Constant",
+    "ConstantSpec",
     "DeviationLaw",
     "Distribution",
     "DistributionSpec",
     "Empirical",
     "Normal",
+    "NormalSpec",
     "Rayleigh",
     "StatedDistribution",
     "Triangular",
+    "TriangularSpec",
     "TruncatedNormal",
+    "TruncatedNormalSpec",
     "Uniform",
+    "UniformSpec",
 ]

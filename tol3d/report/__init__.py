@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
+    from tol3d.report.canvas import save_figure
     from tol3d.report.chart_figure import (
         charts_figure,
         save_charts,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from tol3d.report.html.blocks import page_html
     from tol3d.report.html.document import report_html
     from tol3d.report.measure_charts import spanned
+    from tol3d.report.measure_table import CONVERTED_ROWS
     from tol3d.report.number import (
         NOTHING,
         given_text,
@@ -35,11 +37,14 @@ if TYPE_CHECKING:
         tip_mm,
         value_text,
     )
+    from tol3d.report.published import STATISTICS
     from tol3d.report.table import run_report
     from tol3d.report.view import view_run
 
 _HOMES = {
+    "CONVERTED_ROWS": "tol3d.report.measure_table",
     "NOTHING": "tol3d.report.number",
+    "STATISTICS": "tol3d.report.published",
     "charts_figure": "tol3d.report.chart_figure",
     "check_report": "tol3d.report.check",
     "comparison_report": "tol3d.report.compare",
@@ -53,6 +58,7 @@ _HOMES = {
     "report_html": "tol3d.report.html.document",
     "run_report": "tol3d.report.table",
     "save_charts": "tol3d.report.chart_figure",
+    "save_figure": "tol3d.report.canvas",
     "short_text": "tol3d.report.number",
     "side_by_side": "tol3d.report.declared",
     "spanned": "tol3d.report.measure_charts",
@@ -62,7 +68,9 @@ _HOMES = {
 }
 
 __all__ = [
+    "CONVERTED_ROWS",
     "NOTHING",
+    "STATISTICS",
     "charts_figure",
     "check_report",
     "comparison_report",
@@ -76,6 +84,7 @@ __all__ = [
     "report_html",
     "run_report",
     "save_charts",
+    "save_figure",
     "short_text",
     "side_by_side",
     "spanned",

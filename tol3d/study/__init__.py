@@ -6,14 +6,17 @@ from tol3d.import_path import lazy_names
 
 if TYPE_CHECKING:
     from tol3d.study.draws import drawn
+    from tol3d.study.overrides import AS_WRITTEN
     from tol3d.study.simulation import Simulation
 
 _HOMES = {
+    "AS_WRITTEN": "tol3d.study.overrides",
     "Simulation": "tol3d.study.simulation",
     "drawn": "tol3d.study.draws",
 }
 
 __all__ = [
+    "AS_WRITTEN",
     "Simulation",
     "drawn",
 ]

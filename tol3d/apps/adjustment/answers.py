@@ -11,7 +11,7 @@ from tol3d.apps.adjustment.stock import length_of, stock_of
 from tol3d.report.printed import Report
 from tol3d.scene import Scene, tolerance_lines
 from tol3d.simulate import Overrides, load
-from tol3d.study.overrides import AS_WRITTEN
+from tol3d.study import AS_WRITTEN
 
 
 @dataclass(frozen=True, repr=False)

@@ -7,33 +7,22 @@ of which only the maximum is known is left out of it, as in Jiang et al. 2024, s
 Angles here are in minutes of arc and tips in mm, as in columns and in summary.json.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, Literal
 
 import numpy as np
 
-from tol3d.apps.adjustment.compensated_swing import Swing, swing_of, swings_of, tip_error
+from tol3d.apps.adjustment.compensated_swing import Swing, swing_of
 from tol3d.apps.adjustment.correction import Correction, at_shaft, corrections_of
 from tol3d.apps.adjustment.robots import Robots, State, left_of_the_mean, simulated_robots
 from tol3d.errors import InputError
-from tol3d.gearing.model import LostMotion, Measure, Model, Positions, Train
-from tol3d.gearing.model.contributor import Contributor
-from tol3d.gearing.model.measure import AnyStage
-from tol3d.gearing.model.mesh_measures import reader_like, refuse_idle_teeth
-from tol3d.gearing.model.train_measures import lost_motion
-from tol3d.gearing.play.play import stages_of
-from tol3d.gearing.stack_up import closed_form
-from tol3d.gearing.system import GearSystem, gear_model
-from tol3d.machine.system import MachineSystem
+from tol3d.gearing import AnyStage, Train, TrainPlay, gears_alone, shafts_in_bores, trains_of
 from tol3d.numerics.arrays import Array
 from tol3d.scene import Scene, hint
 from tol3d.simulate import Overrides, simulation_of
-from tol3d.study import Simulation
-from tol3d.study.overrides import AS_WRITTEN
-from tol3d.study.task import materials_of, method_of
-from tol3d.system.closed_form import ClosedForm, Share
+from tol3d.study import AS_WRITTEN, Simulation
 from tol3d.units import ARCMIN
 
 Unit = Literal["mm", "arcmin"]
@@ -80,10 +69,7 @@ class Compensation:
 
     Args:
         name: of the scene's file.
-        simulation: the scene's.
-        train: whose motor is corrected.
-        measure: the lost motion that is compensated, at a random position.
-        tip: point that it moves; None without an arm.
+        play: the lost motion that is compensated, of the train whose motor is corrected.
         compensated, left_out: the stages whose mean is known, and those of which only the maximum is.
         positions: number of positions over which a robot's own mean was taken.
         corrections: by column; methods, the closed form and who published.
@@ -94,10 +80,7 @@ class Compensation:
     """
 
     name: str
-    simulation: Simulation
-    train: Train
-    measure: Measure
-    tip: LostMotion | None
+    play: TrainPlay
     compensated: tuple[AnyStage, ...]
     left_out: tuple[AnyStage, ...]
     positions: int
@@ -109,42 +92,20 @@ class Compensation:
     failed: int
 
     @property
-    def model(self) -> Model:
-        """Parts, meshes and measures of the scene."""
-        return gear_model(self.simulation.system)
-
-    @property
     def method(self) -> str:
         """The leading method: the 3D simulation where there is one."""
         return "geometric" if "geometric" in self.remaining else "analytic"
 
     @property
-    def shaft(self) -> str:
-        """The shaft whose lost motion is compensated."""
-        return self.measure.kind.shaft if isinstance(self.measure.kind, LostMotion) else self.train.output
-
-    @property
     def units(self) -> tuple[Unit, ...]:
         """Units in which the error is known: of the tip if there is an arm, and of the turn."""
-        return ("mm", "arcmin") if self.tip else ("arcmin",)
+        return ("mm", "arcmin") if self.play.tip else ("arcmin",)
 
     @property
     def lever(self) -> float | None:
         """Lever arm of the tip [mm]."""
-        return self.tip.tip.lever if self.tip and self.tip.tip else None
-
-    @property
-    def published_tips(self) -> Mapping[str, Mapping[str, float]]:
-        """Published displacements of the tip without compensation [mm]."""
-        own = self.tip and self.tip.tip
-        alike = [
-            measure.name
-            for measure in self.model.measures
-            if own and isinstance(measure.kind, LostMotion) and measure.kind.quantity == "tip_displacement"
-            if measure.kind.train == self.train.name and measure.kind.tip == own
-        ]
-        published = self.simulation.published
-        return {column: own[name].internal for column, own in published.items() for name in alike if name in own}
+        tip = self.play.tip
+        return tip.tip.lever if tip and tip.tip else None
 
 
 def compensation(
@@ -161,30 +122,21 @@ def compensation(
         InputError: no such train, or no link in it.
     """
     simulation = _of_gears(scene, _simulation_of(scene, question, replace(overrides, witness=0)))
-    model = gear_model(simulation.system)
-    train = _train_of(scene, model, question.train)
-    tip = next((kind for _, kind in swings_of(model, train)), None) or _kind(model, train, "tip_displacement")
-    measure = _measure(scene, model, train, tip or _kind(model, train, "lost_motion"))
-    stages = stages_of(measure)
-    compensated = tuple(stage for stage in stages if stage.backlash or _law_of(model, stage))
-    alone = replace(simulation, system=GearSystem(replace(model, measures=(measure,))))
-    method = method_of(alone, materials_of(alone))
-    robots = simulated_robots(alone, method, measure, compensated, question.positions)
-    corrections = dict(corrections_of(simulation, train, measure, compensated, robots))
+    play = _play_of(scene, simulation, _train_of(scene, simulation, question.train))
+    compensated = tuple(stage for stage in play.stages if play.is_drawn(stage))
+    robots = simulated_robots(play, compensated, question.positions)
+    corrections = dict(corrections_of(play, compensated, robots))
     batch = {name: at_shaft(compensated, corrections[name]) for name in robots.lost}
     return Compensation(
         name=Path(scene.source).stem,
-        simulation=simulation,
-        train=train,
-        measure=measure,
-        tip=tip,
+        play=play,
         compensated=compensated,
-        left_out=tuple(stage for stage in stages if stage not in compensated),
+        left_out=tuple(stage for stage in play.stages if stage not in compensated),
         positions=question.positions,
         corrections=corrections,
-        remaining={name: _remaining(robots, name, tip, batch[name]) for name in batch},
-        form_sigmas=_form_sigmas(model, measure, question.positions),
-        swing=swing_of(simulation, method, train, robots, batch),
+        remaining={name: _remaining(play, robots, name, batch[name]) for name in batch},
+        form_sigmas=_form_sigmas(play, question.positions),
+        swing=swing_of(play, robots, batch),
         robots=robots.count,
         failed=int(np.sum(~robots.seated)),
     )
@@ -210,17 +162,14 @@ def _of_gears(scene: Scene, simulation: Simulation) -> Simulation:
     Raises:
         SceneError: the shafts of the gears lie in bores, which deviate too.
     """
-    system = simulation.system
-    if not isinstance(system, MachineSystem):
-        return simulation
-    for own in system.bores.shafts:
-        words = f"expected trains whose shafts lie in no bores, got {own.shaft!r} in those of a part"
-        raise scene.refuse(("moves", own.move), f"{words}: compensation asks the gears alone")
-    return replace(simulation, system=system.gears)
+    for move, shaft in shafts_in_bores(simulation.system):
+        words = f"expected trains whose shafts lie in no bores, got {shaft!r} in those of a part"
+        raise scene.refuse(("moves", move), f"{words}: compensation asks the gears alone")
+    return gears_alone(simulation)
 
 
-def _train_of(scene: Scene, model: Model, name: str | None) -> Train:
-    trains = {train.name: train for train in model.trains}
+def _train_of(scene: Scene, simulation: Simulation, name: str | None) -> Train:
+    trains = trains_of(simulation.system)
     if not trains:
         raise scene.refuse(("moves",), "expected a move of kind train, whose motor is corrected, got none")
     if name is None:
@@ -230,63 +179,33 @@ def _train_of(scene: Scene, model: Model, name: str | None) -> Train:
     return trains[name]
 
 
-def _kind(model: Model, train: Train, quantity: str) -> LostMotion | None:
-    """The train's first measure of a quantity."""
-    kinds = (measure.kind for measure in model.measures)
-    own = (kind for kind in kinds if isinstance(kind, LostMotion) and kind.train == train.name)
-    return next((kind for kind in own if kind.quantity == quantity), None)
-
-
-def _measure(scene: Scene, model: Model, train: Train, like: LostMotion | None) -> Measure:
+def _play_of(scene: Scene, simulation: Simulation, train: Train) -> TrainPlay:
     """The lost motion at a random position, read where and as another measure is, or else at the train's output."""
-    shaft = like.shaft if like else train.output
-    kind = lost_motion(model, train, shaft, "lost_motion", reader_like(like))
-    if not kind.stages:
-        raise scene.refuse(
-            ("moves", train.name), f"nothing to compensate: there is no link between {kind.held!r} and {kind.shaft!r}"
-        )
-    measure = Measure(f"lost motion of {train.name}", kind, Positions("random", 1, 1), "value")
-    refuse_idle_teeth(scene, ("moves", train.name), measure, model)
-    return measure
-
-
-def _law_of(model: Model, stage: AnyStage) -> Contributor | None:
-    """The contributor that draws a reducer's backlash; without one only its maximum is known."""
-    return next((own for own in model.contributors if own.effect.acts_on(stage.link)), None)
+    play = TrainPlay.of(scene, simulation, train)
+    if not play.stages:
+        words = f"nothing to compensate: there is no link between {train.held!r} and {play.shaft!r}"
+        raise scene.refuse(("moves", train.name), words)
+    return play
 
 
 # what is left -------------------------------------------------------------------------------------
 
 
-def _remaining(robots: Robots, method: str, tip: LostMotion | None, batch: float) -> Remaining:
+def _remaining(play: TrainPlay, robots: Robots, method: str, batch: float) -> Remaining:
     angles = robots.errors(method, batch)
-    if tip is None:
+    if play.tip is None:
         return Remaining(angles, {})
-    still = replace(tip, turned=())
-    return Remaining(angles, {state: tip_error(still, method, angle) for state, angle in angles.items()})
+    return Remaining(angles, {state: play.tip_error(method, angle) for state, angle in angles.items()})
 
 
-def _form_sigmas(model: Model, measure: Measure, positions: int) -> Mapping[State, float]:
+def _form_sigmas(play: TrainPlay, positions: int) -> Mapping[State, float]:
     """Sigma of the remaining error by the closed form [arcmin].
 
     A robot's own mean takes away all that stays as it is within a robot. What turns with a gear is left, and the own
     mean's error with it, for P positions do not average it out.
     """
-    form = closed_form(model, measure)
-    if form is None:
+    if play.form is None:
         return {}
-    turning = sum(share.variance * (1 + left_of_the_mean(turns, positions)) for share, turns in _turning(model, form))
-    whole = form.sigma * ARCMIN
+    turning = sum(variance * (1 + left_of_the_mean(turns, positions)) for variance, turns in play.turning_variances())
+    whole = play.form.sigma * ARCMIN
     return {"before": whole, "batch": whole, "robot": float(np.sqrt(turning)) * ARCMIN}
-
-
-def _turning(model: Model, form: ClosedForm) -> Iterator[tuple[Share, float]]:
-    """The shares of errors that turn with a gear, and its turns in the long period."""
-    shares = {share.name: share for share in form.shares}
-    layout = model.layout
-    for contributor in model.contributors:
-        gear = contributor.effect.turns_with
-        if contributor.name in shares and gear is not None:
-            shaft = layout.carrying[gear][0]
-            drive = next(drive for drive in layout.drives if drive.root == layout.root_of[shaft])
-            yield shares[contributor.name], abs(float(layout.shaft_turn[shaft].rate * drive.turns))

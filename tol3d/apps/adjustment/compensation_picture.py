@@ -12,9 +12,8 @@ from tol3d.apps.adjustment.compensation import Compensation, Unit
 from tol3d.apps.adjustment.compensation_table import COLUMN_WORDS, STATE_WORDS, TOLD_OF_TIPS, Spread
 from tol3d.apps.adjustment.robots import STATES, State
 from tol3d.numerics.arrays import Array
-from tol3d.report import charts_figure, given_text, short_text, tip_mm
+from tol3d.report import charts_figure, given_text, save_figure, short_text, tip_mm
 from tol3d.report.bars import Bars
-from tol3d.report.canvas import save_figure
 from tol3d.report.chart import Axis, Band, Chart, Filled, Line, Mark, Panel, Points, Role, Series, Sign, Stroke
 
 SIGNS: Final[Mapping[str, Sign]] = {"mean": "diamond", "low_3sigma": "left", "high_3sigma": "right"}
@@ -104,7 +103,7 @@ def _highs(own: Compensation, unit: Unit) -> Iterator[Mark]:
 
 def _published(own: Compensation, unit: Unit) -> Iterator[Points]:
     """Published displacements of the tip without compensation."""
-    for column, values in own.published_tips.items():
+    for column, values in own.play.published_tips.items():
         for key, word in TOLD_OF_TIPS.items():
             if unit == "mm" and values.get(key) is not None:
                 label = f"{column}, {word}: {given_text(values[key], unit)} mm"
@@ -112,9 +111,9 @@ def _published(own: Compensation, unit: Unit) -> Iterator[Points]:
 
 
 def _label(own: Compensation, unit: Unit) -> str:
-    if own.tip and own.tip.tip and unit == "mm":
-        return f"error of {own.tip.tip.point} of {own.tip.tip.arm}"
-    return f"error of {own.shaft}"
+    if own.play.tip and own.play.tip.tip and unit == "mm":
+        return f"error of {own.play.tip.tip.point} of {own.play.tip.tip.arm}"
+    return f"error of {own.play.shaft}"
 
 
 # over the swing -----------------------------------------------------------------------------------

@@ -10,9 +10,10 @@ import numpy as np
 
 from tol3d.apps.adjustment.compensated_swing import Swing
 from tol3d.apps.adjustment.compensation import Compensation, Unit
-from tol3d.apps.adjustment.correction import CLOSED_FORM, Correction
+from tol3d.apps.adjustment.correction import Correction
 from tol3d.apps.adjustment.robots import STATES, State
-from tol3d.distributions.base import HIGH_PROBABILITY, LOW_PROBABILITY
+from tol3d.distributions import HIGH_PROBABILITY, LOW_PROBABILITY
+from tol3d.gearing import CLOSED_FORM
 from tol3d.gears import LEFT, Flank
 from tol3d.numerics.arrays import Array
 from tol3d.report import NOTHING, given_text, tip_mm, value_text
@@ -118,14 +119,14 @@ def compensation_report(found: Sequence[Compensation]) -> Page:
 
 
 def _title(own: Compensation) -> Line:
-    text = f" · {own.train.name}: the motor's compensation when the load changes side"
+    text = f" · {own.play.train.name}: the motor's compensation when the load changes side"
     return Line(((own.name, "bold"), (text, "")))
 
 
 def _words(own: Compensation) -> str:
     failed = f", {own.failed} of them could not be assembled and are left out" if own.failed else ""
     return (
-        f"{own.robots} robots{failed}, seed {own.simulation.study.seed}; "
+        f"{own.robots} robots{failed}, seed {own.play.simulation.study.seed}; "
         f"each robot's own mean at {own.positions} positions "
         "of its long period, its error at another one"
     )
@@ -230,7 +231,7 @@ def highs_table(found: Sequence[Compensation]) -> Table:
 
 
 def _published_rows(found: Sequence[Compensation]) -> Iterator[Row]:
-    tips = [own.published_tips for own in found]
+    tips = [own.play.published_tips for own in found]
     for column in dict.fromkeys(column for own in tips for column in own):
         for key, word in TOLD_OF_TIPS.items():
             values = [own.get(column, {}).get(key) for own in tips]

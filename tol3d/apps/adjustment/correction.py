@@ -4,24 +4,10 @@ Angles are in minutes of arc, as in columns and in summary.json.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Final
+from dataclasses import dataclass
 
 from tol3d.apps.adjustment.robots import Robots
-from tol3d.gearing.engines.gaps import STATUSES
-from tol3d.gearing.model import Backlash, LostMotion, Measure, Model, Train
-from tol3d.gearing.model.measure import AnyStage, ParallelStage
-from tol3d.gearing.play.play import breakdowns_of, stages_of
-from tol3d.gearing.stack_up import closed_form
-from tol3d.gearing.summary.train_sections import train_sections
-from tol3d.gearing.summary.types import Ends
-from tol3d.gearing.system import gear_model
-from tol3d.runs.summary.values import made
-from tol3d.study import Simulation
-from tol3d.study.breakdowns import pooled_terms
-from tol3d.units import ARCMIN
-
-CLOSED_FORM: Final = "closed form"
+from tol3d.gearing import AnyStage, Ends, TrainPlay
 
 
 @dataclass(frozen=True)
@@ -44,51 +30,18 @@ class Correction:
 
 
 def corrections_of(
-    simulation: Simulation, train: Train, measure: Measure, compensated: Sequence[AnyStage], robots: Robots
+    play: TrainPlay, compensated: Sequence[AnyStage], robots: Robots
 ) -> Iterator[tuple[str, Correction]]:
     """Corrections by the closed form, by each method, and by every publication of all meshes of the train."""
-    model = gear_model(simulation.system)
-    of_meshes = [own for own in model.measures if isinstance(own.kind, Backlash)]  # what others published of them
-    known_of = replace(model, measures=(measure, *of_meshes))
-    breakdowns = breakdowns_of(replace(model, measures=(measure,)))
-    pooled = pooled_terms(breakdowns, STATUSES, robots.columns)
-    summary = train_sections(known_of, pooled, simulation.published)[train.name]
-    forms = {stage.link: _form(model, measure, stage) for stage in stages_of(measure)}
-    known_forms = {link: form for link, form in forms.items() if form is not None}
-    if len(known_forms) == len(forms):
-        yield CLOSED_FORM, _correction(model, train, measure, compensated, known_forms)
-    for method in robots.lost:
-        own = {stage.link: stage.methods.by(method) for stage in summary.stages}
-        yield method, _correction(model, train, measure, compensated, own)
-    meshes = [stage for stage in summary.stages if stage.gears]
-    for column in summary.sums.published:
-        if not all(column in stage.published for stage in meshes):
-            continue
-        known = {stage.link: stage.published.get(column, stage.methods.analytic) for stage in summary.stages}
-        yield column, _correction(model, train, measure, compensated, known)
+    for column, ends in play.ends(robots.played):
+        yield column, _correction(play, compensated, ends)
 
 
-def _form(model: Model, measure: Measure, stage: AnyStage) -> Ends | None:
-    """A stage's own lost motion by the closed form [arcmin]; None where it has none."""
-    form = closed_form(model, _alone(measure, stage))
-    if form is None:
-        return None
-    return made(Ends, mean=form.mean * ARCMIN, high_3sigma=(form.mean + 3 * form.sigma) * ARCMIN)
-
-
-def _alone(measure: Measure, stage: AnyStage) -> Measure:
-    if not isinstance(measure.kind, LostMotion):
-        raise TypeError(f"{measure.name} has no stages")
-    return replace(measure, kind=replace(measure.kind, stages=(replace(stage, factor=1.0),)))
-
-
-def _correction(
-    model: Model, train: Train, measure: Measure, compensated: Sequence[AnyStage], ends: Mapping[str, Ends]
-) -> Correction:
+def _correction(play: TrainPlay, compensated: Sequence[AnyStage], ends: Mapping[str, Ends]) -> Correction:
     means = {stage.link: ends[stage.link].mean for stage in compensated}
-    turns = {stage.link: abs(float(model.layout.ratio(train.driven, _driven(model, stage)))) for stage in compensated}
-    highs = [(stage.factor, ends[stage.link].high_3sigma) for stage in stages_of(measure)]
-    kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in stages_of(measure)]
+    turns = {stage.link: play.motor_turns(stage) for stage in compensated}
+    highs = [(stage.factor, ends[stage.link].high_3sigma) for stage in play.stages]
+    kept = [(stage.factor, 0.0 if stage not in compensated else means[stage.link]) for stage in play.stages]
     before, known = _total(highs), _total(kept)
     return Correction(
         means=means,
@@ -97,12 +50,6 @@ def _correction(
         left=None if before is None or known is None else before - known,
         left_of={link: _total([(1.0, ends[link].high_3sigma), (-1.0, mean)]) for link, mean in means.items()},
     )
-
-
-def _driven(model: Model, stage: AnyStage) -> str:
-    if isinstance(stage, ParallelStage):
-        return stage.last
-    return next(link.driven for link in model.layout.links if link.name == stage.link)
 
 
 def _total(parts: Sequence[tuple[float, float | None]]) -> float | None:

@@ -25,12 +25,10 @@ from tol3d.apps.adjustment.shim_choice import (
 )
 from tol3d.apps.adjustment.stock import NO_SHIM, SAME_THICKNESS, Step, Stock, nearest, thickness_text
 from tol3d.errors import InputError, SceneError
-from tol3d.gearing.model import Model
-from tol3d.gearing.system import gear_model
+from tol3d.gearing import meshes_of, shafts_in_bores
 from tol3d.scene import Scene, ToleranceSpec
 from tol3d.simulate import Execution, Overrides, run_scene, simulation_of, workers_for
-from tol3d.study import Simulation
-from tol3d.study.overrides import AS_WRITTEN
+from tol3d.study import AS_WRITTEN, Simulation
 
 Rounding = Literal["down", "nearest"]
 Tell = Callable[[str], None]
@@ -179,15 +177,18 @@ class _Search:
         """The scene as it stands."""
         return simulation_of(self.scene, self.overrides)
 
-    @property
-    def model(self) -> Model:
-        """Its parts, meshes and measures."""
-        return gear_model(self.simulation.system)
-
     @cached_property
     def shims(self) -> tuple[Shim, ...]:
-        """Whose thickness is looked for."""
-        return shims_of(self.scene, self.model.mesh(mesh_of(self.scene, self.measure)), self.question.shims)
+        """Whose thickness is looked for.
+
+        Raises:
+            SceneError: shafts of the gears lie in bores, which deviate too.
+        """
+        for move, shaft in shafts_in_bores(self.simulation.system):
+            words = f"expected gears whose shafts lie in no bores, got {shaft!r} in those of a part"
+            raise self.scene.refuse(("moves", move), f"{words}: shims are chosen for gears alone")
+        mesh = meshes_of(self.simulation.system)[mesh_of(self.scene, self.measure)]
+        return shims_of(self.scene, mesh, self.question.shims)
 
     @cached_property
     def before(self) -> Shimmed:

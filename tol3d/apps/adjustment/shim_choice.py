@@ -8,18 +8,17 @@ from math import sin
 from typing import Final, Literal, get_args
 
 from tol3d.apps.adjustment.stock import NO_SHIM, tidy
-from tol3d.distributions import DistributionSpec
-from tol3d.distributions.base import LOW_PROBABILITY
-from tol3d.distributions.constant import ConstantSpec
-from tol3d.distributions.normal import NormalSpec
-from tol3d.distributions.triangular import TriangularSpec
-from tol3d.distributions.truncated_normal import TruncatedNormalSpec
-from tol3d.distributions.uniform import UniformSpec
+from tol3d.distributions import (
+    LOW_PROBABILITY,
+    ConstantSpec,
+    DistributionSpec,
+    NormalSpec,
+    TriangularSpec,
+    TruncatedNormalSpec,
+    UniformSpec,
+)
 from tol3d.errors import InputError
-from tol3d.gearing.grammar.measures import NormalBacklashSpec
-from tol3d.gearing.grammar.moves import BevelMeshSpec
-from tol3d.gearing.grammar.tolerances.gears import ShimSpec
-from tol3d.gearing.model import Mesh
+from tol3d.gearing import BevelMeshSpec, Mesh, NormalBacklashSpec, ShimSpec
 from tol3d.runs import MeasureSummary, Sample
 from tol3d.scene import MeasureEntry, Scene, hint, with_tolerances
 from tol3d.units import FACTORS, Quantity

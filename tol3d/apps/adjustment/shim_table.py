@@ -6,10 +6,8 @@ from typing import Final
 from tol3d.apps.adjustment.shim import ShimPlan, closing_of
 from tol3d.apps.adjustment.shim_choice import MINIMUM_WORDS, UM, Shim, Shimmed
 from tol3d.apps.adjustment.stock import thickness_text
-from tol3d.report import NOTHING, value_text
-from tol3d.report.measure_table import CONVERTED_ROWS
+from tol3d.report import CONVERTED_ROWS, NOTHING, STATISTICS, value_text
 from tol3d.report.page import BLANK, Heading, Line, Page, PageItem, Row, Table, line, note, page, warning
-from tol3d.report.published import STATISTICS
 
 ROWS: Final = ("low_3sigma", "mean", "high_3sigma", "p0.135", "sample_min")
 SIDES: Final[Mapping[str, str]] = {
