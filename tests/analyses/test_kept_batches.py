@@ -23,7 +23,7 @@ def test_an_interrupted_analysis_goes_on(
     scene = tmp_path / "pair.yaml"
     scene.write_text(scene_path("spur_pair").read_text() + "# of this test alone\n")
     monkeypatch.setattr(kept_batches, "LONG", 0.0)
-    evaluate, asked = Response._evaluated, list[int]()
+    evaluate, asked = Response._in_pieces, list[int]()
     most = 10**6
 
     def counted(self: Response, trials: Trials) -> tuple[Array, Codes]:
@@ -40,7 +40,7 @@ def test_an_interrupted_analysis_goes_on(
     def files() -> list[Path]:
         return [*cache_folder().glob(f"{PREFIX}{subject_of(str(scene)).batches.owner}-*")]
 
-    monkeypatch.setattr(Response, "_evaluated", counted)
+    monkeypatch.setattr(Response, "_in_pieces", counted)
     truth, whole = found(), len(asked)
     assert whole > SOME
     assert files() == []

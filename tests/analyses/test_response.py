@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from linear_stacks import stack
 from scipy.stats import ks_2samp, norm
 
 from tol3d import InputError, Overrides, run_scene
+from tol3d.analyses import what_if
 from tol3d.analyses.response import Response, Values, response_of
 from tol3d.assembly.zones.float_draw import FloatDraw
 from tol3d.distributions.normal import Normal
@@ -261,10 +263,11 @@ def test_values_in_pieces_are_those_of_all_at_once_to_the_bit() -> None:
 @pytest.mark.parametrize(
     ("fixed", "each", "sizes"),
     [
-        (0.018, 2e-5, [64, 331, 1344, 2994, 3844, 1423]),  # 0.1 / (0.018 + 64 · 2e-5) · 64 = 331, and so on
-        (0.14, 1e-3, [64, 128, 128, 128]),  # a row at 128 costs 0.66 of one at 64, but 0.268 s is long enough
-        (0.14, 1e-4, [64, 128, 256, 512, 1024, 1024]),  # fixed costs: twice as many until a row is no cheaper
-        (0.0, 1e-2, [64, 64, 64]),
+        (0.018, 2e-5, [64, 331, 5296, 8100, 100]),  # 331 = 64 · 0.1 / 0.01928; 16 · 331; (10 - 1) · 0.018 / 2e-5
+        (0.14, 1e-3, [64, 128, 360, 360]),  # twice as many to learn; then (0.5 - 0.14) / 1e-3
+        (0.14, 1e-4, [64, 128, 2048, 3600]),  # at most 16 times as many
+        (0.7, 1e-2, [64, 32, 70, 70]),  # half as many to learn; then as long again as the fixed part
+        (0.0, 1e-2, [64, 32, 10, 10]),
     ],
 )
 def test_pieces_grow_to_a_tenth_of_a_second(
@@ -282,6 +285,26 @@ def test_pieces_grow_to_a_tenth_of_a_second(
     monkeypatch.setattr("time.perf_counter", lambda: clock[0])
     rows = [rows for rows, _ in own.pieces(own.drawn(sum(sizes))[0])]
     assert [one.stop - one.start for one in rows] == sizes
+
+
+def test_an_analysis_stops_within_an_evaluation_and_tells_how_far_it_is() -> None:
+    """What the callback raises comes out, and the bits are those of all at once."""
+    told = list[str]()
+    what_if("spur_pair", factor={"centre distance": 0.5}, trials=400, draws=0, activity=told.append)
+    assert "400 trials before, 400 of 400 builds" in told
+
+    class StoppedError(Exception):
+        pass
+
+    def stop(done: int, builds: int) -> None:
+        raise StoppedError
+
+    own = response("spur_pair")
+    deviations, positions = own.drawn(400)
+    with pytest.raises(StoppedError):
+        replace(own, between=stop).values(deviations, positions)
+    found = replace(own, between=lambda done, builds: None).values(deviations, positions)
+    assert np.array_equal(found.values, own.values(deviations, positions).values, equal_nan=True)
 
 
 def test_slopes_of_some_contributors_are_those_among_all_and_cost_their_builds_alone() -> None:

@@ -5,7 +5,7 @@ A function asks its question of a scene or a run, and keeps the answer in the ru
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +25,7 @@ from tol3d.analyses.methods_section import Methods
 from tol3d.analyses.methods_table import intervals_table
 from tol3d.analyses.rare_events import Method, RareEvent, limits_left
 from tol3d.analyses.rare_section import RareEvents, rare_section
+from tol3d.analyses.response import Response
 from tol3d.analyses.side_by_side import methods as found_side_by_side
 from tol3d.analyses.side_by_side import trials_of
 from tol3d.analyses.stated_changes import change_of, changed, factor_of, slips
@@ -159,13 +160,34 @@ class Variants(Report):
         return stacked({"": whole_table(self.found)})
 
 
+@dataclass
+class _Progress:
+    """A progress callback, which is called between the pieces of an evaluation too."""
+
+    tell: Activity
+    text: str = ""
+
+    def __call__(self, text: str) -> None:
+        self.text = text
+        self.tell(text)
+
+    def between(self, done: int, builds: int) -> None:
+        """Tell how many builds there are of those being evaluated."""
+        self.tell(f"{self.text}, {done} of {builds} builds")
+
+
 @contextmanager
-def _of(asked: Asked | Subject, *, trust_parts: bool, run_builders: bool) -> Iterator[Subject]:
-    """The subject of an analysis, whose batches are kept only until it ends."""
+def _of(
+    asked: Asked | Subject, tell: Activity, *, trust_parts: bool, run_builders: bool
+) -> Iterator[tuple[Subject, Response, Activity]]:
+    """The subject of an analysis, its response and progress; batches are kept only until it ends.
+
+    What `tell` raises stops the analysis within a piece of an evaluation; asked again, it goes on with kept batches.
+    """
     how = {"trust_parts": trust_parts, "run_builders": run_builders}
-    own = asked if isinstance(asked, Subject) else subject_of(asked, **how)
+    own, progress = asked if isinstance(asked, Subject) else subject_of(asked, **how), _Progress(tell)
     with faults_of(own.simulation.mechanism):
-        yield own
+        yield own, replace(own.response, between=progress.between), progress
     own.batches.clear()
 
 
@@ -217,22 +239,21 @@ def what_if(
         draws: of importance sampling, for each limit.
         quick: rates and first order alone, without a simulation.
         seed: of importance sampling.
-        activity: progress callback.
+        activity: progress callback, called every 0.1 s of evaluations or so; what it raises stops the analysis.
         warn: callback for warnings, before anything is simulated.
         trust_parts, run_builders: see run_scene.
 
     Raises:
         InputError: no such tolerance, measure or value, or none on which a measure depends.
     """
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
-        response = own.response
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
         changes = [change_of(response, text) for text in _texts(set)]
         changes += [factor_of(response, text) for text in _texts(factor)]
         warnings = tuple(slips(response, changed(response, changes)))
         for words in warnings:
             warn(words)
         trials, draws = (0, 0) if quick else (trials, draws)
-        found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=activity)
+        found = found_before_after(response, changes, measure, trials=trials, draws=draws, seed=seed, activity=tell)
     numbers = {name: what_if_table(each) for name, each in found.measures.items()}
     return Answer(*_kept(own, "what-if", found, lambda page: numbers), warnings)
 
@@ -263,10 +284,10 @@ def effects(
     Raises:
         InputError: no such measure or position, or a base that is no power of two.
     """
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
-        response = own.response if measure is None else own.response.of(measure)
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+        response = response if measure is None else response.of(measure)
         as_input = _one_of("position", position, ("averaged", "as-input")) == "as-input"
-        found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=activity)
+        found = found_effects(response, base=base, seed=seed, position=as_input, shapley=shapley, activity=tell)
     return Answer(*_kept(own, "effects", found, lambda page: {"": effects_table(found)}), whole=True)
 
 
@@ -294,10 +315,10 @@ def rare(
     Raises:
         InputError: no such measure or method, or no limit.
     """
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
         _one_of("method", method, ("auto", "importance", "subset", "form", "sorm"))
-        events = limits_left(own.response, measure, method=method, draws=draws, seed=seed, activity=activity)
-        found = rare_section(own.name, seed, own.response, events)
+        events = limits_left(response, measure, method=method, draws=draws, seed=seed, activity=tell)
+        found = rare_section(own.name, seed, response, events)
     return RareAnswer(*_kept(own, "rare", found, _first_table), events=tuple(events))
 
 
@@ -327,12 +348,12 @@ def changes(
     """
     if accept is not None and accept_ppk is not None:
         raise InputError("expected accept or accept_ppk, got both")
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
         ppk = own.simulation.study.accept_ppk if accept is None and accept_ppk is None else accept_ppk
         accepted: Accepted = (ACCEPTED_PPM if accept is None else accept) if ppk is None else AcceptedPpk(ppk)
         ppm, aim = (accepted.beyond_one_ppm, accepted.ppk) if isinstance(accepted, AcceptedPpk) else (accepted, AIM)
-        response, bad = own.response, None if own.run is None else not_ok(own.run, accepted)
-        found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=activity)
+        bad = None if own.run is None else not_ok(own.run, accepted)
+        found = changes_of(response, ChangesQuestion(measure, ppm, builds, aim), bad=bad, activity=tell)
 
     def numbers(page: Page) -> Mapping[str, Table]:
         return {"": contributions_table(contributions_of(response, measure))}
@@ -360,9 +381,9 @@ def methods(
     Raises:
         InputError: no such measure.
     """
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
-        response = own.response if measure is None else own.response.of(measure)
-        found = found_side_by_side(response, trials_of(own, response, trials), activity)
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+        response = response if measure is None else response.of(measure)
+        found = found_side_by_side(response, trials_of(own, response, trials), tell)
     numbers = {name: intervals_table(each) for name, each in found.measures.items()}
     return Answer(*_kept(own, "methods", found, lambda page: numbers))
 
@@ -405,8 +426,8 @@ def allocate(
     Raises:
         InputError: no such measure, tolerance or bound, or no tolerances within bounds that do.
     """
-    with _of(subject, trust_parts=trust_parts, run_builders=run_builders) as own:
-        response, groups = own.response, groups_of(own.response)
+    with _of(subject, activity, trust_parts=trust_parts, run_builders=run_builders) as (own, response, tell):
+        groups = groups_of(response)
         question = Question(
             costs=Costs() if cost is None else costs_from(Path(cost), groups),
             bounds=bounds_of("--bounds", bounds),
@@ -417,7 +438,7 @@ def allocate(
             beyond_least=beyond_least,
         )
         targets = targets_of(response, [measure] if isinstance(measure, str) else measure, ppm, ppk)
-        found = allocation(response, targets, question, draws=draws, seed=seed, activity=activity)
+        found = allocation(response, targets, question, draws=draws, seed=seed, activity=tell)
 
     def write() -> Scene:
         return allocated_scene(own.scene, response, found, question.stays)

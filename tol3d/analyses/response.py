@@ -64,8 +64,10 @@ FIRST_PIECE: Final = 64
 PIECE: Final = 0.1
 """Seconds to which pieces grow."""
 MOST_GROWTH: Final = 16.0
-CHEAPER: Final = 0.75
-"""Cost of a build over that in the piece before, below which a piece grows on: most of it does not grow with builds."""
+FIXED_IN: Final = 10.0
+"""Seconds of a piece over those of it that do not grow with builds, up to `LONGEST`."""
+LONGEST: Final = 0.5
+"""Seconds to which that lengthens pieces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +119,34 @@ class _Known(dict[str, T]):
         raise InputError(f"expected {self.what}, got {name!r}{hint(str(name), self)}")
 
 
+@dataclass
+class Pace:
+    """Number of builds of the next piece: a piece of n builds takes fixed + each · n seconds, by the last two sizes.
+
+    Args:
+        count: of the next piece.
+        measured: the least seconds of the last two sizes.
+    """
+
+    count: int = FIRST_PIECE
+    measured: Mapping[int, float] = field(default_factory=dict)
+
+    def took(self, builds: int, seconds: float) -> None:
+        """Take the time of a piece; the second one is larger or smaller, so as to learn what does not grow with it."""
+        seconds = max(min(seconds, self.measured.get(builds, seconds)), 1e-6)
+        others = [(count, its) for count, its in self.measured.items() if count != builds][-1:]
+        self.measured = dict([*others, (builds, seconds)])
+        if not others:
+            longer = min(PIECE / seconds, MOST_GROWTH) if seconds < PIECE else 2.0 if seconds < 2.5 * PIECE else 0.5
+            self.count = max(int(builds * longer), 1)
+            return
+        ((count, its),) = others
+        each = max((seconds - its) / (builds - count), 1e-9)
+        fixed = max(seconds - each * builds, 0.0)
+        wanted = max(PIECE, min(FIXED_IN * fixed, LONGEST), 2.0 * fixed)
+        self.count = max(round(min((wanted - fixed) / each, MOST_GROWTH * builds)), 1)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:
     """The response of a scene to deviations.
@@ -129,6 +159,9 @@ class Response:
         curves: by the name of an end of a curve, the curve.
         count: of evaluations.
         batches: where those that took long are kept, so that an interrupted analysis can go on; None: nowhere.
+        between: called between the pieces of an evaluation, with how many builds are done and how many there are; what
+            it raises stops the evaluation.
+        paces: of the pieces of evaluations by the method and the measures.
     """
 
     simulation: Simulation
@@ -138,6 +171,8 @@ class Response:
     curves: Mapping[str, Measure] = field(default_factory=dict)
     count: Count = field(default_factory=Count)
     batches: KeptBatches | None = None
+    between: Callable[[int, int], None] | None = None
+    paces: dict[tuple[bool, tuple[str, ...]], Pace] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         shown = ", ".join(self.names[:SHOWN]) + (", …" if len(self.names) > SHOWN else "")
@@ -262,11 +297,11 @@ class Response:
         """
         system, trials = self.simulation.system, self._trials(deviations, positions)
         if self.batches is None:
-            values, codes = self._evaluated(trials)
+            values, codes = self._in_pieces(trials)
         else:
             asked = repr((None if self.method is None else self.simulation.study.engine, self.names))
             builds = {"": trials.deviations, **{f"position {name}": own for name, own in trials.positions.items()}}
-            values, codes = self.batches.evaluated(asked, builds, lambda: self._evaluated(trials))
+            values, codes = self.batches.evaluated(asked, builds, lambda: self._in_pieces(trials))
         kept = np.array([own.keeps_overlap for own in self.measures])
         values[(codes != OK) & ~kept] = np.nan
         self.count.evaluations += len(trials)
@@ -306,6 +341,22 @@ class Response:
                 columns[status_column(name)] = system.statuses.by_code[codes]
         return frame_of(columns, {})
 
+    def _in_pieces(self, trials: Trials) -> tuple[Array, Codes]:
+        """As `_evaluated`, piece by piece where somebody wants to know how far it is."""
+        if self.between is None:
+            return self._evaluated(trials)
+        found, first = list[tuple[Array, Codes]](), 0
+        pace = self.paces.setdefault((self.method is None, self.names), Pace())
+        while first < len(trials):
+            last, begun = min(first + pace.count, len(trials)), time.perf_counter()
+            found.append(self._evaluated(trials.part(first, last)))
+            pace.took(last - first, time.perf_counter() - begun)
+            first = last
+            self.between(first, len(trials))
+        if not found:
+            return self._evaluated(trials)
+        return np.concatenate([values for values, _ in found]), np.concatenate([codes for _, codes in found])
+
     def _evaluated(self, trials: Trials) -> tuple[Array, Codes]:
         """Values and codes (n, measures) of builds."""
         values = np.empty((len(trials), len(self.measures)))
@@ -326,26 +377,21 @@ class Response:
     def pieces(self, deviations: Array, positions: Mapping[str, Array] | None = None) -> Iterator[tuple[slice, Values]]:
         """Measures of builds piece by piece, with the rows of each: the same bits as `values` gives all at once.
 
-        Between two pieces the caller shows what there is, or stops. The first has 64 builds; the others grow to 0.1 s
-        each, or further where that makes a build much cheaper and they stay below 0.5 s.
+        Between two pieces the caller shows what there is, or stops. The first has 64 builds; the others last some
+        0.1 s each, or up to 0.5 s where much of that does not grow with builds.
 
         Args:
             deviations, positions: as of `values`.
         """
         builds = np.atleast_2d(np.asarray(deviations, dtype=np.float64))
-        first, count, before = 0, FIRST_PIECE, np.inf
+        whole, pace, first = replace(self, between=None), Pace(), 0
         while first < len(builds):
-            rows = slice(first, min(first + count, len(builds)))
+            rows = slice(first, min(first + pace.count, len(builds)))
             begun = time.perf_counter()
-            values = self.values(builds[rows], _at(positions, rows))
-            took = max(time.perf_counter() - begun, 1e-6)
+            values = whole.values(builds[rows], _at(positions, rows))
+            pace.took(rows.stop - rows.start, time.perf_counter() - begun)
             yield rows, values
-            first, each = rows.stop, took / count
-            if took < PIECE:
-                count = int(count * min(PIECE / took, MOST_GROWTH))
-            elif took < 2.5 * PIECE and each < CHEAPER * before:
-                count *= 2
-            before = each
+            first = rows.stop
 
     def gradient(
         self,
