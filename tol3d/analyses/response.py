@@ -66,6 +66,8 @@ PIECE: Final = 0.1
 MOST_GROWTH: Final = 16.0
 FIXED_IN: Final = 10.0
 """Seconds of a piece over those of it that do not grow with builds, up to `LONGEST`."""
+QUICK: Final = 0.02
+"""Seconds of pieces of fewer builds than asked for that tell nothing."""
 LONGEST: Final = 0.5
 """Seconds to which that lengthens pieces."""
 
@@ -133,6 +135,8 @@ class Pace:
 
     def took(self, builds: int, seconds: float) -> None:
         """Take the time of a piece; the second one is larger or smaller, so as to learn what does not grow with it."""
+        if builds < self.count and seconds < QUICK:
+            return
         seconds = max(min(seconds, self.measured.get(builds, seconds)), 1e-6)
         others = [(count, its) for count, its in self.measured.items() if count != builds][-1:]
         self.measured = dict([*others, (builds, seconds)])
