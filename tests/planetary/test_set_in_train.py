@@ -390,3 +390,11 @@ def test_the_set_turns_with_its_train(tmp_path: Path) -> None:
     before, after = (poses["P1 of planet 3"][:2, 3] - axis for poses in (first, now))
     angle = math.atan2(before[0] * after[1] - before[1] * after[0], before @ after)
     assert angle == pytest.approx(sun * 25 / 104, abs=1e-3)  # the carrier rests anywhere in its play, 0.001 rad
+
+
+def test_a_set_lies_where_its_input_is_on_its_shaft_and_its_output_s_shaft_begins_at_the_output() -> None:
+    """The sun is 24 mm up; ring 2 has a face of 12 mm beside that of ring 1, where P2 lies beside P1."""
+    (link,) = gear_system(load_scene(SCENES / "reducer_3k_train.yaml")).model.links
+    assert link.levels["sun"] == link.levels["ring 1"] == 24.0
+    assert link.offset == pytest.approx(link.levels["ring 2"], abs=1e-12)
+    assert abs(link.offset - 24.0) >= 12.0

@@ -7,8 +7,6 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.contact_kernel import first_contacts
-from tol3d.cycloid.exact.rest_kernel import rests
 from tol3d.cycloid.from_scene import implausible_stage, parts_of, reducer_of
 from tol3d.cycloid.grammar.measures import CycloidMeasureSpec
 from tol3d.cycloid.grammar.moves import RVReducerSpec
@@ -18,20 +16,20 @@ from tol3d.cycloid.reducer.draws import acts_of, draw_of
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import BEND, BentTurning
 from tol3d.cycloid.reducer.problems import problems_at
-from tol3d.cycloid.reducer.resting import exact_turning, linear_turning, lost_motion_rates
+from tol3d.cycloid.reducer.resting import SOLVERS, lost_motion_rates
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import NO_FIT
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning
 from tol3d.cycloid.system import REST_COSTS
-from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
+from tol3d.gearing.links import LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.numerics.plane import turned
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
 from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
@@ -59,6 +57,7 @@ class RVLink(ReducerLink):
     )
     presenter: ClassVar[str] = "tol3d.cycloid.presenting"
     made_of: ClassVar[type[RVDeviated]] = RVDeviated
+    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
 
     own: RVSet
     sun_level: float = 0.0
@@ -68,20 +67,6 @@ class RVLink(ReducerLink):
     def contacts(self) -> int:
         """Every pin of every disc, either way; see RVSystem.cost."""
         return 2 * self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
-
-    def is_compiled(self) -> bool:
-        """See StatedLink."""
-        return bool(rests.kept and cone_programmes.kept if self.own.plays else first_contacts.kept)
-
-    # its play ---------------------------------------------------------------------------------------
-
-    def exact(self, seen: LinkTrials) -> FreeTurn:
-        """The free turn of the output in finite geometry, until pins touch or, of bearings with play, all rests."""
-        return self.free_turn(exact_turning(self.own), seen)
-
-    def analytic(self, seen: LinkTrials) -> FreeTurn:
-        """The same to first order."""
-        return self.free_turn(linear_turning(self.own), seen)
 
     def lost(self, turning: Turning, deviated: RVDeviated, turns: Array) -> Lost:
         """See ReducerLink; NaN where nothing touches."""

@@ -6,19 +6,17 @@ from functools import partial
 from importlib import import_module
 from typing import Any, ClassVar, Final
 
-from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.places import usual_shapes
-from tol3d.cycloid.exact.rest_kernel import rests
 from tol3d.cycloid.model.shapes import lobe_strips
 from tol3d.cycloid.reducer.formula import stages_by_formula
 from tol3d.cycloid.reducer.neglected import neglected
 from tol3d.cycloid.reducer.problems import problems_at
 from tol3d.cycloid.reducer.regressors import TAKEN, regress_touching, slopes_over_turn
-from tol3d.cycloid.reducer.resting import exact_turning, linear_turning
+from tol3d.cycloid.reducer.resting import SOLVERS
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import STATUSES, RVMethod, RVTrials
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.cone_programme import cone_programmes
+from tol3d.reducers.trials import Solver
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.method import ANALYTIC_METHOD, Method, MethodKind
@@ -53,18 +51,13 @@ class RVSystem(RVTrials):
     profile_steps: int = 120
 
     methods: ClassVar[Mapping[str, MethodKind]] = METHODS
+    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
     statuses: ClassVar[Statuses] = STATUSES
 
     def problems(self) -> Iterator[tuple[KeyPath, str]]:
         """See System."""
         mean = self.deviated(mean_build(self, self.measures[0]))
         return problems_at(self.own, self.acts, self.contributors, mean)
-
-    def is_compiled(self, method: str) -> bool:
-        """See System."""
-        if self.own.plays:
-            return cone_programmes.kept and (method != "exact" or rests.kept)
-        return method != "exact" or first_contacts.kept
 
     def materials(self, method: str) -> Any:
         """See System: the strips of a disc's solid, for FCL."""
@@ -79,7 +72,7 @@ class RVSystem(RVTrials):
         if name == FCL:
             made: Method = import_module(WITNESS).witness(self, materials)
             return made
-        return RVMethod(self, linear_turning(self.own) if name == ANALYTIC_METHOD else exact_turning(self.own))
+        return RVMethod(self, self.solvers[name].turning(self.own))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """Every pin of every disc at each position, for each sense; measures of one curve share them; see System."""

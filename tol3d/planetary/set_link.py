@@ -6,13 +6,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tol3d.gearing.links import FreeTurn, LinkTrials, pin_name
+from tol3d.gearing.links import LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
-from tol3d.numerics.programme import NO_ROOM, ranges
+from tol3d.numerics.programme import NO_ROOM
 from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.exact.contact_kernel import seated_ranges
 from tol3d.planetary.exact.shown import Made, ShownSet, heights_of, made_gears, shown_set
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import implausible_set
@@ -25,9 +24,11 @@ from tol3d.planetary.model.planetary_set import PlanetarySet
 from tol3d.planetary.problems import problems_at
 from tol3d.planetary.refusals import parts_of, set_of
 from tol3d.planetary.sections import set_sections
+from tol3d.planetary.trials import SOLVERS
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
 from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
@@ -49,6 +50,7 @@ class SetLink(ReducerLink):
     )
     presenter: ClassVar[str] = "tol3d.planetary.presenting"
     made_of: ClassVar[type[Deviated]] = Deviated
+    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
 
     own: PlanetarySet
     made: Made
@@ -58,20 +60,6 @@ class SetLink(ReducerLink):
     def contacts(self) -> int:
         """One for each mesh of each planet."""
         return self.own.planets * len(self.own.meshes)
-
-    def is_compiled(self) -> bool:
-        """See StatedLink."""
-        return bool(ranges.kept and seated_ranges.kept)
-
-    # its play ---------------------------------------------------------------------------------------
-
-    def exact(self, seen: LinkTrials) -> FreeTurn:
-        """The free turn of the output with all gears placed."""
-        return self.free_turn(Contact(self.own), seen)
-
-    def analytic(self, seen: LinkTrials) -> FreeTurn:
-        """The same to first order."""
-        return self.free_turn(StackUp(self.own), seen)
 
     def lost(self, turning: StackUp | Contact, deviated: Deviated, turns: Array) -> Lost:
         """See ReducerLink; a set that jams lacks room at both ends."""

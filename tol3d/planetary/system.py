@@ -9,9 +9,6 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.programme import ranges
-from tol3d.planetary.exact.contact import Contact
-from tol3d.planetary.exact.contact_kernel import seated_ranges
 from tol3d.planetary.exact.shown import Made, ShownSet, shown_set
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.model.deviated import Deviated
@@ -67,10 +64,6 @@ class PlanetarySystem(SetTrials):
 
     # its methods --------------------------------------------------------------------------------------
 
-    def is_compiled(self, method: str) -> bool:
-        """See System."""
-        return seated_ranges.kept if method == "exact" else ranges.kept
-
     def materials(self, method: str) -> Any:
         """See System: the strips of every gear's solid, for FCL."""
         if method != FCL:
@@ -82,8 +75,8 @@ class PlanetarySystem(SetTrials):
         if name == FCL:
             made: Method = import_module(WITNESS).witness(self, self.made, materials)
             return made
-        kind = StackUp if name == ANALYTIC_METHOD else Contact
-        return PlanetaryMethod(self, kind(self.own), kind(self.overcome))
+        turning = self.solvers[name].turning
+        return PlanetaryMethod(self, turning(self.own), turning(self.overcome))
 
     def cost(self, measures: Sequence[Measure]) -> int:
         """A contact for each mesh of each planet, at each position; measures of one curve share them; see System."""

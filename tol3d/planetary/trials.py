@@ -8,13 +8,17 @@ from typing import Any, ClassVar, Final, Protocol
 import numpy as np
 
 from tol3d.numerics.arrays import Array
-from tol3d.numerics.programme import NO_ROOM, STALLED
+from tol3d.numerics.programme import NO_ROOM, STALLED, ranges
+from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.contact_kernel import seated_ranges
 from tol3d.planetary.first_order.levers import play_bound
+from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.model.deviated import Deviated, Free
 from tol3d.planetary.model.planetary_set import PlanetarySet
-from tol3d.reducers.trials import Read, ReducerMeasure, ReducerMethod, ReducerTrials
+from tol3d.reducers.trials import Read, ReducerMeasure, ReducerMethod, ReducerTrials, Solver
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.positions import Positions
 from tol3d.system.statuses import Statuses
 from tol3d.system.trials import Trials
@@ -28,11 +32,18 @@ STATUSES: Final = Statuses(
 """Statuses by the codes of tol3d.numerics.programme; a set interferes if contacts of a closed loop lack room."""
 
 
+SOLVERS: Final[Mapping[str, Solver]] = {
+    "exact": Solver(Contact, lambda _: seated_ranges.kept),
+    ANALYTIC_METHOD: Solver(StackUp, lambda _: ranges.kept),
+}
+
+
 @dataclass(frozen=True)
 class SetTrials(ReducerTrials):
     """Trial part of the System of a planetary set."""
 
     made_of: ClassVar[type[Deviated]] = Deviated
+    solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
 
     own: PlanetarySet
 

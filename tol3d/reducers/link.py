@@ -16,7 +16,9 @@ from tol3d.gearing.model.brought import Brought, BroughtLink, shaft_of
 from tol3d.gearing.model.contributor import Contributor
 from tol3d.numerics.arrays import Array
 from tol3d.reducers.deviations import Acts, Deviations
+from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
+from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.taken import ROWS_AT_ONCE
 
 Lost = tuple[Array, Array, NDArray[np.bool_]]
@@ -43,6 +45,9 @@ class ReducerLink(StatedLink):
     made_of: ClassVar[type[Deviations]]
     """Deviations of its parts."""
 
+    solvers: ClassVar[Mapping[str, Solver]]
+    """By the names of both methods."""
+
     own: Any
     height: float
     actions: tuple[tuple[str, Acts], ...]
@@ -66,7 +71,19 @@ class ReducerLink(StatedLink):
         """See StatedLink."""
         return str(self.own.held)
 
+    def is_compiled(self) -> bool:
+        """See StatedLink."""
+        return all(solver.is_kept(self.own) for solver in self.solvers.values())
+
     # its play ---------------------------------------------------------------------------------------
+
+    def exact(self, seen: LinkTrials) -> FreeTurn:
+        """The free turn of the output, all parts placed."""
+        return self.free_turn(self.solvers["exact"].turning(self.own), seen)
+
+    def analytic(self, seen: LinkTrials) -> FreeTurn:
+        """The same to first order."""
+        return self.free_turn(self.solvers[ANALYTIC_METHOD].turning(self.own), seen)
 
     def free_turn(self, turning: Any, seen: LinkTrials) -> FreeTurn:
         """The free turn of the output by one method, position by position as a measure of the reducer reads it."""

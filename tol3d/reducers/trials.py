@@ -12,7 +12,7 @@ from tol3d.numerics.arrays import Array
 from tol3d.reducers.deviations import Acts, Deviations
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
-from tol3d.system.method import Answers
+from tol3d.system.method import ANALYTIC_METHOD, Answers
 from tol3d.system.output_system import OutputSystem, Parts
 from tol3d.system.plain import PlainMeasure, one_position, stated_of
 from tol3d.system.pooled_statistic import HalfSpan
@@ -91,12 +91,28 @@ def reducer_measure(
 
 
 @dataclass(frozen=True)
+class Solver:
+    """One of the two solvers of a kind of reducers.
+
+    Args:
+        turning: turns of the shafts of a reducer by it, from the reducer's model.
+        is_kept: True if its kernels for that model are compiled on this machine.
+    """
+
+    turning: Callable[[Any], Any]
+    is_kept: Callable[[Any], bool]
+
+
+@dataclass(frozen=True)
 class ReducerTrials(OutputSystem):
-    """Trial part of the System of a reducer.
+    """The part of the System of a reducer that all models share.
 
     Args:
         acts: effect of each contributor, by its name.
     """
+
+    solvers: ClassVar[Mapping[str, Solver]]
+    """By the names of both methods."""
 
     made_of: ClassVar[type[Deviations]]
     """Deviations of its parts."""
@@ -111,6 +127,10 @@ class ReducerTrials(OutputSystem):
         """Deviations of its parts in trials."""
         drawn = ((name, trials.deviations[:, own]) for name, own in component_slices(self).items())
         return self.made_of.drawn(self.own, self.acts, drawn, len(trials))
+
+    def is_compiled(self, method: str) -> bool:
+        """See System; a witness takes the kernels of the analytic method."""
+        return self.solvers.get(method, self.solvers[ANALYTIC_METHOD]).is_kept(self.own)
 
     def turns_at(self, measure: Measure, trials: Trials) -> Array:
         """Turns of the output (trials,) at the only position of a measure."""

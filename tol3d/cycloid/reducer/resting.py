@@ -6,13 +6,15 @@ build, that one holds nothing. Rates of the analytic method follow from the forc
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from tol3d.cycloid.exact.contact_kernel import first_contacts
 from tol3d.cycloid.exact.rest import RestStage
-from tol3d.cycloid.exact.rest_kernel import NOT_HELD
+from tol3d.cycloid.exact.rest_kernel import NOT_HELD, rests
 from tol3d.cycloid.first_order.linear_rest import Forces, LinearRest
 from tol3d.cycloid.model.stage import Deviated, Play
 from tol3d.cycloid.reducer.deviated import RVDeviated
@@ -30,8 +32,11 @@ from tol3d.cycloid.reducer.trials import NO_CONTACT, NO_FIT, NO_REST
 from tol3d.cycloid.reducer.turning import ExactTurning, LinearTurning, Turned, Turning, leans_of, led_angles
 from tol3d.gears import LEFT, RIGHT
 from tol3d.numerics.arrays import Array, Places
+from tol3d.numerics.cone_programme import cone_programmes
 from tol3d.numerics.plane import as_complex, as_points, evenly
 from tol3d.numerics.programme import NO_ROOM, OK, STALLED
+from tol3d.reducers.trials import Solver
+from tol3d.system.method import ANALYTIC_METHOD
 
 
 def rest_rates(own: RVSet, deviated: RVDeviated, turns: Array, phis: Array, forces: Forces) -> RVDeviated:
@@ -190,6 +195,14 @@ def exact_turning(own: RVSet) -> Turning:
 def linear_turning(own: RVSet) -> Turning:
     """Turning of a reducer by the analytic method."""
     return LinearResting(own) if own.plays else LinearTurning(own)
+
+
+SOLVERS: Final[Mapping[str, Solver]] = {
+    "exact": Solver(
+        exact_turning, lambda own: cone_programmes.kept and rests.kept if own.plays else first_contacts.kept
+    ),
+    ANALYTIC_METHOD: Solver(linear_turning, lambda own: cone_programmes.kept if own.plays else True),
+}
 
 
 def linear_rates(own: RVSet, deviated: RVDeviated, turns: Array, sense: int, found: Turned | None = None) -> RVDeviated:
