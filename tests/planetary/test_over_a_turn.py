@@ -19,6 +19,7 @@ from planetary_sets import (
 
 from tol3d import Overrides, SceneError, load_scene
 from tol3d.planetary.exact.contact import Contact
+from tol3d.planetary.exact.contact_kernel import LOOSE
 from tol3d.planetary.first_order.stack_up import StackUp
 from tol3d.planetary.from_scene import planetary_system
 from tol3d.planetary.model.deviated import Deviated
@@ -62,19 +63,38 @@ def test_a_position_that_goes_on_from_another_is_the_same_as_alone(own: Planetar
                 np.testing.assert_allclose(curves.ends[:, place], alone.ends[:, end], rtol=0, atol=within)
 
 
-def test_a_position_at_which_the_set_jams_spoils_no_other() -> None:
+@pytest.mark.parametrize("own", [reducer_3k(), flexible(springs=PAIRS)])
+def test_planets_that_are_left_out_would_not_have_stopped_a_shaft(
+    own: PlanetarySet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Centres ten times as far off as elsewhere, in steps of the output in which planets change that stop it."""
+    deviated = random_deviations(own, 12, np.random.default_rng(9))
+    deviated.central_offset[...] *= 10.0
+    deviated.planet_offset[...] *= 10.0
+    deviated.central_thickness[...] -= 0.5
+    found = []
+    for loose in (LOOSE, 1e12):  # mm a mm: none is left out then
+        monkeypatch.setattr("tol3d.planetary.exact.contact.LOOSE", loose)
+        found.append(Contact(own).followed(deviated, np.arange(40) / 40, own.output, own.input, 0).ends)
+    np.testing.assert_allclose(found[0], found[1], rtol=0, atol=2e-11)
+    assert np.ptp(found[0]) > 1e-3
+
+
+@pytest.mark.parametrize(("solver", "within"), [(StackUp, 1e-14), (Contact, 2e-11)])
+def test_a_position_at_which_the_set_jams_spoils_no_other(solver: type[StackUp] | type[Contact], within: float) -> None:
+    """Placed gears within twice 1e-11 rad, as above."""
     own = reducer_3k()
     deviated = random_deviations(own, 1, np.random.default_rng(5))
     deviated.central_offset[:, 2] = [[0.07, 0.0]]  # an eccentric output ring
     turns = np.linspace(0.0, 0.08, 60)  # one turn of it against the carrier
-    found = StackUp(own).followed(deviated, turns, own.output, own.input, 0)
-    alone = [StackUp(own).free(deviated, np.array([turn]), own.output, own.input) for turn in turns]
+    found = solver(own).followed(deviated, turns, own.output, own.input, 0)
+    alone = [solver(own).free(deviated, np.array([turn]), own.output, own.input) for turn in turns]
     jams = np.array([each.status[0] == 1 for each in alone])
     assert 5 < jams.sum() < 55
     assert found.status[0] == 1
     assert found.lacking[0] == pytest.approx(max(each.lacking[0] for each in alone), rel=1e-9)
     ends = np.array([each.ends[0, 0] for each in alone])
-    np.testing.assert_allclose(found.ends[0, ~jams], ends[~jams], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(found.ends[0, ~jams], ends[~jams], rtol=0, atol=within)
     assert not found.ends[0, jams].any()
 
 
