@@ -28,8 +28,8 @@ def named(path: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
-    """`__getattr__` of a package whose public names are loaded when they are first used.
+def lazy_names(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """`__getattr__` and `__dir__` of a package whose public names are loaded when they are first used.
 
     Args:
         package: its name.
@@ -41,7 +41,10 @@ def lazy_names(package: str, homes: Mapping[str, str]) -> Callable[[str], Any]:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         return getattr(import_module(homes[name]), name)
 
-    return loaded
+    def names() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *homes})
+
+    return loaded, names
 
 
 def is_named(path: str) -> bool:

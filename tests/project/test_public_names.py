@@ -11,7 +11,7 @@ from places import ROOT
 
 API = (ROOT / "docs" / "api.md").read_text("utf-8")
 MODULES = frozenset(re.findall(r"^\.\. automodule:: (tol3d[\w.]*)$", API, re.MULTILINE))
-NAMES = frozenset(re.findall(r"^\.\. auto(?:class|function|data|exception):: (tol3d[\w.]*)$", API, re.MULTILINE))
+NAMES = frozenset(re.findall(r"^\.\. (?:auto(?:class|function|data)|py:data):: (tol3d[\w.]*)$", API, re.MULTILINE))
 ONLY = dict(re.findall(r"^\.\. automodule:: (tol3d[\w.]*)\n   :members: (\w.*)$", API, re.MULTILINE))
 """Modules of which some members are documented."""
 

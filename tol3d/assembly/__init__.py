@@ -23,4 +23,4 @@ __all__ = [
     "unfit_cones",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

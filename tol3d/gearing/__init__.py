@@ -75,4 +75,4 @@ __all__ = [
     "trains_of",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

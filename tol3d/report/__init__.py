@@ -93,4 +93,4 @@ __all__ = [
     "view_run",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -74,4 +74,4 @@ __all__ = [
     "write_scene",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -100,4 +100,4 @@ __all__ = [
     "surfaces_of",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -21,4 +21,4 @@ __all__ = [
     "drawn",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

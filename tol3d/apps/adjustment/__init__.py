@@ -36,4 +36,4 @@ __all__ = [
     "stock_of",
 ]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -16,4 +16,4 @@ _HOMES = {
 
 __all__ = ["Draft", "Seat", "scene_from"]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

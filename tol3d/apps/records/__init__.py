@@ -37,4 +37,4 @@ _HOMES = {
 
 __all__ = ["Identified", "Rig", "RigPair", "RigPlan", "Settings", "Specimen", "identify", "measured", "plan_rig"]
 
-__getattr__ = lazy_names(__name__, _HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

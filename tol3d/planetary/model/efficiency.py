@@ -43,7 +43,7 @@ def shared_sliding_factor(epsilon_1: float, epsilon_2: float) -> float:
     """The same for any path of contact of at least one base pitch: pairs in contact carry alike.
 
     Pairs stand at s + k, k any integer; between the phases at which one enters, leaves or passes the pitch point their
-    number is constant and the sum of |s + k| linear, so its mean is that in the middle.
+    number is constant and the sum of ``|s + k|`` linear, so its mean is that in the middle.
 
     >>> round(shared_sliding_factor(0.5, 0.7), 12) == round(sliding_factor(0.5, 0.7), 12)
     True
