@@ -13,6 +13,7 @@ from tol3d.assembly.methods import PlacingMethod
 from tol3d.assembly.model import Assembly
 from tol3d.assembly.model.statuses import OK, WITH_LOOPS
 from tol3d.assembly.system import AssemblySystem, assembly_system, meaning_of
+from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -146,10 +147,12 @@ class PosedSystem(AssemblySystem):
         """See System: in any of its poses."""
         if measure.take == "value":
             return self._alone(measure).acting(measure)
-        if measure.name not in self._known_acting:
-            names = {own.name for pose in self.at[measure.name] for own in self.poses[pose].acting(measure)}
-            self._known_acting[measure.name] = [own for own in self.contributors if own.name in names]
-        return self._known_acting[measure.name]
+        return self._acting_on(measure.name)
+
+    @kept
+    def _acting_on(self, name: str) -> Sequence[Contributor]:
+        names = {own.name for pose in self.at[name] for own in self.poses[pose]._acting_on(name)}
+        return [own for own in self.contributors if own.name in names]
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """See System."""

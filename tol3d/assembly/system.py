@@ -31,6 +31,7 @@ from tol3d.assembly.witnessed import reads
 from tol3d.assembly.zones import EnvelopedForm, ZoneDraw, laws_told
 from tol3d.errors import InputError
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import kept
 from tol3d.scene import Scene
 from tol3d.scene.schema import SECTIONS
 from tol3d.system.closed_form import ClosedForm, Share
@@ -126,21 +127,16 @@ class AssemblySystem(PlainSystem):
 
     def acting(self, measure: Measure) -> Sequence[Contributor]:
         """Contributors with a slope, or read by a nonlinear term."""
-        if measure.name not in self._known_acting:
-            slopes = self.slopes_of(measure.name)
-            acts = slopes.coefficients != 0.0
-            acts[list(slopes.bent)] = True
-            slices = component_slices(self).values()
-            touched = np.add.reduceat(acts, [own.start for own in slices]) if len(acts) else ()
-            self._known_acting[measure.name] = [
-                own for own, any_of in zip(self.contributors, touched, strict=True) if any_of
-            ]
-        return self._known_acting[measure.name]
+        return self._acting_on(measure.name)
 
-    @cached_property
-    def _known_acting(self) -> dict[str, Sequence[Contributor]]:
-        """By measure, as far as they were asked for."""
-        return {}
+    @kept
+    def _acting_on(self, name: str) -> Sequence[Contributor]:
+        slopes = self.slopes_of(name)
+        acts = slopes.coefficients != 0.0
+        acts[list(slopes.bent)] = True
+        slices = component_slices(self).values()
+        touched = np.add.reduceat(acts, [own.start for own in slices]) if len(acts) else ()
+        return [own for own, any_of in zip(self.contributors, touched, strict=True) if any_of]
 
     def regressor_key(self, measure: Measure) -> Hashable:
         """As of any system; also which components are squared."""
@@ -173,22 +169,14 @@ class AssemblySystem(PlainSystem):
 
     def closed_form(self, measure: Measure) -> ClosedForm | None:
         """Closed form by torsors; None if the measure is not linear in them."""
-        if measure.name not in self._known_forms:
-            self._known_forms[measure.name] = self._closed_form(measure)
-        return self._known_forms[measure.name]
+        return self._form_of(measure.name) if self.is_linear(measure) else None
 
-    @cached_property
-    def _known_forms(self) -> dict[str, ClosedForm | None]:
-        """By measure, as far as they were asked for."""
-        return {}
-
-    def _closed_form(self, measure: Measure) -> ClosedForm | None:
-        slopes = self.slopes_of(measure.name)
-        if not self.is_linear(measure):
-            return None
+    @kept
+    def _form_of(self, name: str) -> ClosedForm:
+        slopes = self.slopes_of(name)
         slices = component_slices(self)
         shares: list[Share] = []
-        for own in self.acting(measure):
+        for own in self._acting_on(name):
             coefficients = slopes.coefficients[slices[own.name]]
             mean, covariance = moments_of(own)
             size = float(coefficients[0]) if len(coefficients) == 1 else float(np.sqrt(coefficients @ coefficients))
@@ -209,17 +197,10 @@ class AssemblySystem(PlainSystem):
             return True
         return not any(isinstance(own.draw, EnvelopedForm) for own in self.acting(measure))
 
+    @kept
     def slopes_of(self, name: str) -> Slopes:
         """Slopes of a measure of the assembly for each deviation, at the means."""
-        known = self._known_slopes
-        if name not in known:
-            known[name] = torsors.slopes(self.assembly, name, *self._moments)
-        return known[name]
-
-    @cached_property
-    def _known_slopes(self) -> dict[str, Slopes]:
-        """By measure, as far as they were asked for."""
-        return {}
+        return torsors.slopes(self.assembly, name, *self._moments)
 
     @cached_property
     def _moments(self) -> tuple[Array, Array]:

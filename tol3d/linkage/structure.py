@@ -27,6 +27,7 @@ from tol3d.linkage.joint_kinds import (
     SWING,
     UNIVERSAL,
 )
+from tol3d.numerics.kept import kept
 from tol3d.numerics.values import Valued
 
 Array = NDArray[np.float64]
@@ -252,18 +253,9 @@ class Structure(Valued):
         """The frame after in that before, as parts are drawn (4, 4)."""
         return np.asarray(np.linalg.inv(self.world(joint.on)) @ self.world(joint.of))
 
+    @kept
     def rest(self, joint: Joint) -> Array:
         """Transform left of a joint that holds, with all coordinates 0 (4, 4)."""
-        if joint.name not in self._rests:
-            self._rests[joint.name] = self._rest(joint)
-        return self._rests[joint.name]
-
-    @cached_property
-    def _rests(self) -> dict[str, Array]:
-        """Rest transforms by joint, as far as they were asked for."""
-        return {}
-
-    def _rest(self, joint: Joint) -> Array:
         apart, found = self.apart(joint), np.eye(4)
         if joint.kind in ON_AXES_KINDS:
             flip = np.diag([1.0, np.sign(apart[2, 2]) or 1.0, np.sign(apart[2, 2]) or 1.0])

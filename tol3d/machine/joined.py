@@ -21,6 +21,7 @@ from tol3d.gearing.system import GearSystem
 from tol3d.machine.bores import Bores
 from tol3d.machine.drives import JointDrive
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import KnownRows, kept
 from tol3d.system.contributor import Contributor
 from tol3d.system.measure import Measure
 from tol3d.system.stated import component_slices, mean_deviations, stated
@@ -40,6 +41,8 @@ FLAT: Final = 1e-6
 TURN: Final = 1e-2
 """rad; a measure that it does not change depends on no joint that turns by it."""
 
+MOST_BUILDS: Final = 200_000
+"""Builds of a joint's train whose turns are kept."""
 OTHERS: Final = (0.0, 1.0, 2.0, 3.0)
 """Builds in which that is tried: with the other joints in the middle of their plays, then each turned by its own angle.
 
@@ -102,16 +105,15 @@ class Joined:
         """The drives on whose joints a measure of the assembly depends."""
         return tuple(drive for drive in self.drives if drive.joint in self.reaches_of(name))
 
+    @kept
     def reaches_of(self, name: str) -> Mapping[str, float]:
         """Movement of a measure per turn of each joint on which it depends, alone or with others, in some build."""
-        if name not in self._known_reaches:
-            self._known_reaches[name] = dict(self._reaches(name)) if self.drives else {}
-        return self._known_reaches[name]
+        return dict(self._reaches(name)) if self.drives else {}
 
-    @cached_property
-    def _known_reaches(self) -> dict[str, Mapping[str, float]]:
-        """Known reaches by measure, as far as they were asked for."""
-        return {}
+    @kept
+    def known_turns(self, method: str, reading: str) -> KnownRows[float]:
+        """Turns of joints by the builds of their trains, as a method reads them."""
+        return KnownRows(MOST_BUILDS)
 
     def _reaches(self, name: str) -> Iterator[tuple[str, float]]:
         own = self.poses[self.pose_of[name]]

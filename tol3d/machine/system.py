@@ -22,6 +22,7 @@ from tol3d.machine.methods import MachineMethod
 from tol3d.machine.regressors import parts_by_links, regress_bores, with_displacements
 from tol3d.machine.statuses import STATUSES, WITH_CLEARANCES, WITH_LOOPS
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import kept
 from tol3d.system.breakdown import Breakdown
 from tol3d.system.closed_form import ClosedForm
 from tol3d.system.contributor import Contributor
@@ -314,16 +315,9 @@ class MachineSystem(Joined):
             forms.append((factor, its))
         return with_joints(form, forms, [each.name for each in self.contributors])
 
+    @kept
     def _form(self, measure: GearMeasure, *, at_one_position: bool) -> ClosedForm | None:
-        key = measure, at_one_position
-        if key not in self._forms:
-            self._forms[key] = closed_form(self, measure, at_one_position=at_one_position)
-        return self._forms[key]
-
-    @cached_property
-    def _forms(self) -> dict[tuple[GearMeasure, bool], ClosedForm | None]:
-        """Closed forms that are known: where axes lean, each takes a tenth of a second."""
-        return {}
+        return closed_form(self, measure, at_one_position=at_one_position)
 
     def reference_form(self, measure: Measure) -> ClosedForm | None:
         """See System."""

@@ -6,9 +6,6 @@ measures and poses that read a joint in the same position.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from hashlib import blake2b
-from typing import Final
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +14,10 @@ from tol3d.gearing.model.measure import Measure
 from tol3d.gearing.play.linked import DEAR
 from tol3d.machine.joined import Joined
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import kept, row_keys
 from tol3d.system.method import Method
 from tol3d.system.stated import component_slices
 from tol3d.system.trials import Trials
-
-MOST_KEPT: Final = 200_000
-"""Largest number of cached builds of all joints; the cache is then emptied."""
-
-
-_KNOWN: Final[WeakKeyDictionary[Joined, dict[str, dict[tuple[str, bytes], float]]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +33,7 @@ class Turned:
     failed: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Turning:
     """Free motion of a system's trains, by one of its methods.
 
@@ -52,7 +44,6 @@ class Turning:
 
     system: Joined
     method: Method
-    _columns: dict[str, NDArray[np.intp]] = field(default_factory=dict)
 
     def turned(self, trials: Trials, readings: Sequence[Measure]) -> Turned:
         """The lost motions of some readings.
@@ -83,24 +74,17 @@ class Turning:
     def _play(self, trials: Trials, reading: Measure) -> Array:
         """Lost motion (trials,), of builds that are not known solved anew, each once."""
         own = np.ascontiguousarray(trials.deviations[:, self._acting(reading)])
-        keys = [(reading.name, blake2b(row, digest_size=16).digest()) for row in own]
-        known, kind = _KNOWN.setdefault(self.system, {}), type(self.method).__name__
-        kept = known.setdefault(kind, {})
-        if len(kept) + len(keys) > MOST_KEPT:
-            kept = known[kind] = {}  # another thread may still read the other one
-        new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in kept}
-        rows = np.array([*new.values()], dtype=np.intp)
-        if len(rows):
-            part = Trials(trials.deviations[rows], {name: at[rows] for name, at in trials.positions.items()})
-            kept |= zip(new, self._solved(part, [reading])[reading.name].tolist(), strict=True)
-        return np.array([kept[key] for key in keys])
 
+        def find(rows: NDArray[np.intp]) -> Sequence[float]:
+            part = Trials(trials.deviations[rows], {name: at[rows] for name, at in trials.positions.items()})
+            solved: list[float] = self._solved(part, [reading])[reading.name].tolist()
+            return solved
+
+        return np.array(self.system.known_turns(type(self.method).__name__, reading.name).of(row_keys(own), find))
+
+    @kept
     def _acting(self, reading: Measure) -> NDArray[np.intp]:
         """Columns of the deviations that act on a reading."""
-        if reading.name not in self._columns:
-            slices = component_slices(self.system.gears)
-            its = [
-                np.arange(slices[own.name].start, slices[own.name].stop) for own in self.system.gears.acting(reading)
-            ]
-            self._columns[reading.name] = np.concatenate([*its, np.zeros(0)]).astype(np.intp)
-        return self._columns[reading.name]
+        slices = component_slices(self.system.gears)
+        its = [np.arange(slices[own.name].start, slices[own.name].stop) for own in self.system.gears.acting(reading)]
+        return np.concatenate([*its, np.zeros(0)]).astype(np.intp)

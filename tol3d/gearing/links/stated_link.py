@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tol3d.numerics.arrays import Array
+from tol3d.numerics.kept import KnownRows, kept
 from tol3d.system.contributor import Contributor
 from tol3d.system.system import KeyPath
 
@@ -53,6 +54,8 @@ class LinkTrials:
 
 
 STEP: Final = 1e-5  # mm, rad, K; differences over it lose 1e-11 of a play of 1 mrad to rounding
+MOST_KEPT: Final = 200_000
+"""Trials of a link whose contributions are kept."""
 SAME_AXIS: Final = 1e-6  # mm, and rad
 
 
@@ -190,6 +193,11 @@ class StatedLink(ABC):
         (trials, positions), or (trials, 1), by what is left out.
         """
         return {}
+
+    @kept
+    def known_parts(self, about: bytes) -> KnownRows[Array]:
+        """What is known of its `parts` about some means, by the deviations of a trial, (contributors,)."""
+        return KnownRows(MOST_KEPT)
 
     @property
     def contacts(self) -> int:

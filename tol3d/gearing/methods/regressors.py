@@ -6,8 +6,7 @@ whole turn only its length matters. Squares represent one-sided effects such as 
 
 from collections.abc import Hashable, Mapping, Sequence, Set
 from dataclasses import replace
-from hashlib import blake2b
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +16,13 @@ from tol3d.gearing.methods.analytic import analytic_values
 from tol3d.gearing.model import Contributor, Effect, LinkDeviation, LostMotion, Measure, Mesh, Model, Planar
 from tol3d.gearing.play.linked import link_contributors
 from tol3d.numerics.arrays import Array
-from tol3d.system.itself import Itself
+from tol3d.numerics.kept import row_keys
 from tol3d.system.regressors import is_group, regress_plainly, regress_term
 from tol3d.system.stated import mean_deviations, stated
 from tol3d.system.taken import ROWS_AT_ONCE, taken
 from tol3d.system.trials import Trials
 
 Columns = Mapping[str, NDArray[Any]]
-
-MOST_KEPT: Final = 200_000
-"""Trials of links whose contributions are cached."""
-
-_KEPT: Final[list[dict[tuple[Itself, bytes, bytes], Array]]] = [{}]
 
 
 def acting(model: Model, measure: Measure) -> tuple[Contributor, ...]:
@@ -98,17 +92,13 @@ def _parts(link: StatedLink, seen: LinkTrials, means: Mapping[str, Array]) -> Ma
     if not names:
         return {}
     rows = np.concatenate([seen.angles[:, :1], *seen.deviations.values()], axis=1)
-    about = blake2b(np.concatenate([means[name] for name in names] or [np.zeros(0)]).tobytes(), digest_size=16).digest()
-    keys = [(Itself(link), about, blake2b(row, digest_size=16).digest()) for row in np.ascontiguousarray(rows)]
-    known = _KEPT
-    if len(known[0]) + len(keys) > MOST_KEPT:
-        known[0] = {}  # another thread may still read the other one
-    found = known[0]
-    new = {key: row for row, key in reversed([*enumerate(keys)]) if key not in found}
-    if new:
-        parts = link.parts(seen.rows(np.array([*new.values()], dtype=np.intp)), means)
-        found |= zip(new, np.stack([parts[name] for name in names], axis=1), strict=True)
-    every = np.array([found[key] for key in keys])
+    (about,) = row_keys(np.concatenate([means[name] for name in names])[None])
+
+    def find(new: NDArray[np.intp]) -> Sequence[Array]:
+        parts = link.parts(seen.rows(new), means)
+        return [*np.stack([parts[name] for name in names], axis=1)]
+
+    every = np.array(link.known_parts(about).of(row_keys(rows), find))
     return {name: every[:, k] for k, name in enumerate(names)}
 
 
