@@ -9,18 +9,20 @@ from rv_250 import TOLERANCES, rv_250
 from tol3d.cycloid.presenting import PRESENTER
 from tol3d.cycloid.presenting.formulas import stage_blocks
 from tol3d.cycloid.reducer.formula import SOURCES, PaperSources, Source, sigma_of, stage_by_formula, sun_held_factor
-from tol3d.report.page import Page
+from tol3d.report.page import Page, Table
 from tol3d.report.presenter import ShowsNotes
 from tol3d.runs.summary.run import RunSummary
 
 SUN_HELD = sun_held_factor(39, 21, 42)
 
 
-def page_of(sources: tuple[Source, ...] = tuple(TOLERANCES), sun_held: float | None = SUN_HELD) -> Page:
+def page_of(
+    sources: tuple[Source, ...] = tuple(TOLERANCES), sun_held: float | None = SUN_HELD, *, by_formula: bool = True
+) -> Page:
     """Contributors as drawn by the example's tolerances, and one that the formula does not know."""
     drawn = [(own, effect, sigma_of(own, TOLERANCES[own])) for effect, own in SOURCES.items() if own in sources]
     found = PaperSources.of([*drawn, ("lapped pins", "pin radius", 0.001)])
-    return Page(tuple(stage_blocks({"reducer": stage_by_formula(rv_250(), found, sun_held)})))
+    return Page(tuple(stage_blocks({"reducer": stage_by_formula(rv_250(), found, sun_held, by_formula=by_formula)})))
 
 
 @pytest.mark.parametrize(
@@ -72,3 +74,13 @@ def test_a_lost_motion_below_zero_is_said_to_be_no_play(analytic: float | None, 
     assert isinstance(presenter, ShowsNotes)  # on the first screen too
     said = [str(line) for line in presenter.first_notes(cast(RunSummary, SimpleNamespace(measures=measures)))]
     assert [line.strip().startswith("play: negative where pins press on both sides") for line in said] == [True] * noted
+
+
+def test_the_papers_formula_stands_only_beside_its_published_figures() -> None:
+    """Another user's reducer has first principles alone; a run says so by a key that is not there."""
+    table, totals = (own for own in page_of(by_formula=False).blocks if isinstance(own, Table))
+    assert [own.text for own in table.headings] == ["tolerance [µm]", "first principles [″]", "per µm [″]"]
+    assert [row.label for row in totals.rows] == [
+        "cycloid stage, ±3σ", "carrier, ±3σ", "both added", "both, root sum square", "  times 0.96296, sun held",
+    ]  # fmt: skip
+    assert [own.text for own in totals.headings] == ["first principles [″]"]

@@ -10,6 +10,7 @@ from tol3d.cycloid.grammar.measures import (
 )
 from tol3d.cycloid.grammar.moves import RVReducerSpec
 from tol3d.cycloid.grammar.parts import CycloidDiscSpec
+from tol3d.cycloid.grammar.published import PublishedCycloidStages
 from tol3d.cycloid.grammar.tolerances import BearingPlaySpec
 from tol3d.cycloid.model.limits import circle_fault, faults, hole_faults, largest_window, lobes_fault
 from tol3d.cycloid.model.profile import DiscProfile, Modification
@@ -27,6 +28,7 @@ from tol3d.reducers.trials import ReducerMeasure, reducer_measure
 from tol3d.scene import Scene
 from tol3d.scene.part import PartSpec
 from tol3d.scene.place import KeyPath
+from tol3d.scene.published import PublishedColumn
 
 
 def rv_set(scene: Scene) -> RVSet:
@@ -70,7 +72,14 @@ def reducer_of(scene: Scene, name: str, spec: RVReducerSpec) -> RVSet:
         first=_first_stage(scene, name, spec, carrier.radius.internal),
         width=None if disc.width is None else disc.width.internal,
         plays=any(own.of in (spec.disc, spec.carrier) for own in scene.of(BearingPlaySpec).values()),
+        by_formula=any(_by_formula(name, own) for own in scene.published.values()),
     )
+
+
+def _by_formula(name: str, column: PublishedColumn) -> bool:
+    """True if a published column has a stage by the paper's formula."""
+    own = column.cycloid_stages.get(name) if isinstance(column, PublishedCycloidStages) else None
+    return own is not None and own.by_formula is not None
 
 
 def _profile(scene: Scene, spec: RVReducerSpec) -> DiscProfile:

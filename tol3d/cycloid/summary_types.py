@@ -21,7 +21,9 @@ class SourceByFormula(Section):
     tolerance_um: Annotated[Number, Shows("tolerance [µm]", ".4g")] = Field(
         description="tolerance or run-out that its standard deviation stands for"
     )
-    by_formula_arcsec: Annotated[Number, Shows(PAPER, ".2f")]
+    by_formula_arcsec: Annotated[Maybe[Number], Shows(PAPER, ".2f", seldom=True)] = Field(
+        default=LEFT_OUT, description="by the published formula, as reconstructed, where a published column has it"
+    )
     first_principles_arcsec: Annotated[Number, Shows(FIRST_PRINCIPLES, ".2f")]
     arcsec_per_um: Annotated[Number, Shows("per µm [″]", ".4f")] = Field(
         description="first principles: turn of a disc whose best pin alone touches"
@@ -48,7 +50,9 @@ class CycloidStageSummary(Section):
     """The cycloid stage and carrier of an RV reducer by formula."""
 
     sources: Mapping[Label, SourceByFormula]
-    by_formula: FormulaTotals = Field(description="the published formula, as reconstructed")
+    by_formula: Maybe[FormulaTotals] = Field(
+        default=LEFT_OUT, description="the published formula, as reconstructed, where a published column has it"
+    )
     first_principles: StageTotals = Field(description="of the pin with the largest lever alone")
     sun_held: Maybe[Number] = Field(
         default=LEFT_OUT, description="turn of the output while the sun stands per turn of a disc"

@@ -69,22 +69,30 @@ def _blocks(name: str, own: CycloidStageSummary) -> Sequence[PageItem]:
 class TotalRow:
     """A sum of terms by the published formula and by first principles ["]."""
 
-    paper: Annotated[float | str, Shows(PAPER, ".3f")]
-    first_principles: Annotated[float, Shows(FIRST_PRINCIPLES, ".3f")]
+    paper: Annotated[float | str | None, Shows(PAPER, ".3f", seldom=True)]
+    first_principles: Annotated[float | None, Shows(FIRST_PRINCIPLES, ".3f")]
 
 
 def _totals(own: CycloidStageSummary) -> Iterator[tuple[str, TotalRow]]:
     paper, ours = own.by_formula, own.first_principles
-    yield "cycloid stage, ±3σ", TotalRow(paper.cycloid_arcsec, ours.cycloid_arcsec)
-    yield "  99.73 % half-range of its law", TotalRow(paper.cycloid_half_range_arcsec, ours.cycloid_arcsec)
-    yield "carrier, ±3σ", TotalRow(paper.carrier_arcsec, ours.carrier_arcsec)
-    yield "both added, as published", TotalRow(paper.added_arcsec, ours.added_arcsec)
-    yield "both, root sum square", TotalRow(paper.root_sum_square_arcsec, ours.root_sum_square_arcsec)
+    keys = {
+        "cycloid stage, ±3σ": "cycloid_arcsec",
+        "carrier, ±3σ": "carrier_arcsec",
+        "both added" if paper is None else "both added, as published": "added_arcsec",
+        "both, root sum square": "root_sum_square_arcsec",
+    }
+    for words, key in keys.items():
+        yield words, TotalRow(None if paper is None else paper.value(key), ours.value(key))
+        if paper is not None and key == "cycloid_arcsec":
+            yield "  99.73 % half-range of its law", TotalRow(paper.cycloid_half_range_arcsec, ours.cycloid_arcsec)
     if own.sun_held is not None:
-        yield f"  times {own.sun_held:.5f}, sun held", TotalRow("", own.sun_held * ours.root_sum_square_arcsec)
+        held = own.sun_held * ours.root_sum_square_arcsec
+        yield f"  times {own.sun_held:.5f}, sun held", TotalRow(None if paper is None else "", held)
 
 
 def _notes(own: CycloidStageSummary) -> list[str]:
+    if own.by_formula is None:
+        return [f"not in these sums: {', '.join(own.left_out)}"] if own.left_out else []
     law = (
         "the paper's pin circle is a normal length times the sine of a random phase, which is not normal: ±3σ covers "
         f"{own.by_formula.cycloid_coverage_percent:.2f} % of the cycloid stage"

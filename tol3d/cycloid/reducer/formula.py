@@ -1,4 +1,6 @@
-"""Transmission error of an RV reducer by the published formula as reconstructed, and by first principles.
+"""Transmission error of an RV reducer by first principles, and by the published formula as reconstructed.
+
+The formula is shown where a scene publishes its figures, to compare with.
 
 Source: Li, Li, Ye, "The calculation of RV reducer's transmission error based on probability theory", Machine Tool &
 Hydraulics 2004(1), 122-123. The print at hand is garbled and no reading of its variance gives all its digits; this one
@@ -273,22 +275,25 @@ def stages_by_formula(
     if not sources.tolerances:
         return {}
     held = None if first is None else sun_held_factor(own.profile.lobes, *first.teeth)
-    return {own.name: stage_by_formula(own.profile, sources, held)}
+    return {own.name: stage_by_formula(own.profile, sources, held, by_formula=own.by_formula)}
 
 
-def stage_by_formula(profile: DiscProfile, sources: PaperSources, sun_held: float | None) -> CycloidStageSummary:
-    """Each source by both, and totals.
+def stage_by_formula(
+    profile: DiscProfile, sources: PaperSources, sun_held: float | None, *, by_formula: bool
+) -> CycloidStageSummary:
+    """Each source by first principles and, where that is published, by the paper's formula; and totals.
 
     Args:
         sources: of the scene, see PaperSources.
         sun_held: see sun_held_factor; None where the cranks are the input.
+        by_formula: whether the paper's formula is shown.
     """
     own = terms(profile, sources.tolerances)
     cycloid, carrier = first_principles_totals(own)
     return made(
         CycloidStageSummary,
-        sources={term.source: _source(term) for term in own},
-        by_formula=_formula_totals(own),
+        sources={term.source: _source(term, by_formula=by_formula) for term in own},
+        by_formula=_formula_totals(own) if by_formula else None,
         first_principles=made(
             StageTotals,
             cycloid_arcsec=THREE_SIGMA * cycloid,
@@ -301,11 +306,11 @@ def stage_by_formula(profile: DiscProfile, sources: PaperSources, sun_held: floa
     )
 
 
-def _source(term: Term) -> SourceByFormula:
+def _source(term: Term, *, by_formula: bool) -> SourceByFormula:
     return made(
         SourceByFormula,
         tolerance_um=1e3 * term.tolerance,
-        by_formula_arcsec=THREE_SIGMA * term.paper,
+        by_formula_arcsec=THREE_SIGMA * term.paper if by_formula else None,
         first_principles_arcsec=THREE_SIGMA * term.first_principles,
         arcsec_per_um=THREE_SIGMA / 3.0 * term.lever / 1e3,
     )

@@ -57,6 +57,7 @@ class RVSet:
         first: its first stage; None where the cranks are the input.
         width: of the discs [mm]; None where it is not stated, and discs do not tilt.
         plays: whether bearings of cranks have play, so that a torque decides where discs and cranks lie.
+        by_formula: whether a published column has its stage by the paper's formula, which is then shown beside.
     """
 
     name: str
@@ -72,6 +73,7 @@ class RVSet:
     first: FirstStage | None = None
     width: float | None = None
     plays: bool = False
+    by_formula: bool = False
 
     @property
     def input(self) -> str:
