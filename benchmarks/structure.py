@@ -43,6 +43,14 @@ WIDTH = 150  # characters
 
 Arrows = Mapping[str, set[str]]
 
+KERNELS = frozenset(("kernel", "nested", "part", "variant", "inlined"))
+"""Decorators of functions that are compiled, which write their results into arrays that they are given."""
+CHANGES = {
+    *("add", "append", "clear", "discard", "extend", "fill", "insert", "pop", "popitem", "remove", "reverse"),
+    *("setdefault", "sort", "update"),
+}
+"""Methods that change what they are called on."""
+
 
 @dataclass(frozen=True)
 class Lengths:
@@ -90,6 +98,7 @@ class Structure:
     arrows: int
     room_cycles: tuple[str, ...]
     file_cycles: tuple[str, ...]
+    writers: int
     lengths: Lengths
     walk: Walk
 
@@ -162,6 +171,47 @@ def lengths(package: Path) -> Lengths:
     )
 
 
+def writers(source: str) -> list[str]:
+    """Names of functions of a module that write into an argument; compiled ones and `self` are left out."""
+    found = []
+    for own in ast.walk(ast.parse(source)):
+        if not isinstance(own, ast.FunctionDef | ast.AsyncFunctionDef):
+            continue
+        told = (each.func if isinstance(each, ast.Call) else each for each in own.decorator_list)
+        if not KERNELS.isdisjoint(each.id for each in told if isinstance(each, ast.Name)):
+            continue
+        nodes = list(_inside(own))
+        rebound = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+        given = {each.arg for each in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs)}
+        if not (given - rebound - {"self", "cls"}).isdisjoint(map(_written, nodes)):
+            found.append(own.name)
+    return found
+
+
+def _inside(function: ast.AST) -> Iterator[ast.AST]:
+    """Nodes of a function, without those of functions in it."""
+    for node in ast.iter_child_nodes(function):
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            yield node
+            yield from _inside(node)
+
+
+def _written(node: ast.AST) -> str:
+    """The variable into which a node writes: an item or attribute of it, or by a method or `out=`; "" for none."""
+    match node:
+        case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
+            target: ast.AST = node
+        case ast.Call(func=ast.Attribute(attr=attr, value=value)) if attr in CHANGES:
+            target = value
+        case ast.keyword(arg="out", value=value):
+            target = value
+        case _:
+            return ""
+    while isinstance(target, ast.Attribute | ast.Subscript):
+        target = target.value
+    return target.id if isinstance(target, ast.Name) else ""
+
+
 class Follower:
     """Notes the rooms of the package's functions as they are called, by sys.setprofile."""
 
@@ -223,6 +273,7 @@ def structure(package: Path, scene: str, trials: int) -> Structure:
         arrows=sum(len(imported) for imported in rooms.values()),
         room_cycles=named(rooms),
         file_cycles=named(arrows_between_files(type_checking=True)),
+        writers=sum(len(writers(path.read_text("utf-8"))) for path in package.rglob("*.py")),
         lengths=lengths(package),
         walk=walk(package, scene, trials),
     )
@@ -269,6 +320,7 @@ def rows(found: Structure) -> dict[str, str]:
         f"files over {LONGEST_FILE} lines": str(found.lengths.files_over),
         "longest function (lines)": found.lengths.longest_function,
         f"functions over {LONGEST_FUNCTION} lines": str(found.lengths.functions_over),
+        "functions that write into an argument": str(found.writers),
         "run_scene: rooms entered": str(found.walk.entered),
         "run_scene: moves between rooms": str(found.walk.moves),
         "run_scene: distinct moves": str(found.walk.kinds_of_moves),

@@ -1,7 +1,10 @@
 """A scene that is read again after an edit gives what a process gives that reads it first, bit by bit."""
 
+import hashlib
+import os
 import re
 import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -47,7 +50,7 @@ def edited(name: str, folder: Path, edit: tuple[str, str]) -> Iterator[Path]:
     source = scene_path(name)
     for file in source.parent.glob("*.st*p"):
         shutil.copy(file, folder)
-    path, text = folder / source.name, source.read_text("utf-8").replace("steps: 24", "steps: 2")
+    path, text = folder / source.name, source.read_text("utf-8").replace("steps: 24", "steps: 3")
     path.write_text(text, "utf-8")
     yield path
     changed, count = re.subn(*edit, text, count=1)
@@ -73,3 +76,35 @@ def test_an_edited_scene_read_again_is_as_read_first(what: str, tmp_path: Path) 
     states = [state_of(path) for path in edited(name, tmp_path, edit)]
     assert states[1] == cold
     assert states[0] != cold
+
+
+ELSEWHERE = f"""
+import sys
+from pathlib import Path
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from test_read_again import state_of, told
+print(told(state_of(Path(sys.argv[1]))))
+"""
+
+
+def told(state: list[bytes]) -> str:
+    """A state in one word."""
+    return hashlib.sha256(repr(state).encode()).hexdigest()
+
+
+@pytest.mark.parametrize(
+    ("name", "edit"),
+    [
+        ("bracket_in_box", (r"zone: \{diameter: 0\.381 mm\}", "zone: {diameter: 0.4 mm}")),
+        ("stewart", (r"lower: -20 um, upper: 20 um", "lower: -25 um, upper: 20 um")),
+    ],
+)
+def test_an_edited_scene_read_again_is_that_of_a_fresh_process(
+    name: str, edit: tuple[str, str], tmp_path: Path
+) -> None:
+    states = [told(state_of(path)) for path in edited(name, tmp_path, edit)]
+    path = tmp_path / f"{name}.yaml"
+    words = [sys.executable, "-c", ELSEWHERE, str(path)]
+    done = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True, env=os.environ)
+    assert states[1] == done.stdout.split()[-1]
+    assert states[0] != states[1]

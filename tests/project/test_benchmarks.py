@@ -134,6 +134,7 @@ ROWS: Mapping[str, tuple[str, ...]] = {
         rf"rooms +│ +{NUMBER}",
         rf"import levels of rooms +│ +{NUMBER}",
         rf"arrows between rooms +│ +{NUMBER}",
+        rf"functions that write into an argument +│ +{NUMBER}",
         rf"largest file \(lines\) +│ +[\w/.]+ \({NUMBER}\)",
         rf"run_scene: returns to a room left before +│ +{NUMBER}",
         "run_scene calls .*runs > .*execution",
@@ -210,6 +211,27 @@ def test_levels_are_the_longest_path_with_each_cycle_one_place() -> None:
     assert structure.levels(rooms) == 3
     assert structure.named(files) == ()
     assert structure.levels(files) == 4  # hall, desk, library, and below it lamp or cellar
+
+
+def test_functions_that_write_into_an_argument_are_counted_once_each_and_no_others() -> None:
+    source = """
+def item(rows, k): rows[k] = 1.0; rows[k + 1] = 2.0
+def attribute(run): run.made.name += "s"
+def method(found): found.steps.append(1)
+def keyword(values, out): add(values, 1.0, out=out)
+def deleted(names): del names[0]
+def own(): rows = [0]; rows[0] = 1; rows.append(2)
+def copied(rows): rows = rows.copy(); rows[0] = 1
+def read(rows): return rows.index(rows[0])
+def within(rows):
+    def kept(rows): return rows
+    return kept
+class Sum:
+    def add(self, own): self.total += own
+@kernel("f8(f8[:])")
+def compiled(rows): rows[0] = 1.0
+"""
+    assert structure.writers(source) == ["item", "attribute", "method", "keyword", "deleted"]
 
 
 @pytest.mark.parametrize("name", studies.SYSTEMS)

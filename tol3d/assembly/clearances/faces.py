@@ -69,9 +69,8 @@ def needed(vertices: Array, triangles: NDArray[np.int64], other: Array, height: 
     wanted[rows] = _below_something(corners[rows], near_other, height, slack)
     sides, of_triangle, single = _edges(triangles)
     wanted[of_triangle[single].ravel()] = True
-    _add_edges(wanted, corners, vertices, sides[~single], of_triangle[~single], near_other, height, slack)
-    _add_vertices(wanted, vertices, triangles, near_other, height, slack)
-    return wanted
+    wanted = _with_edges(wanted, corners, vertices, sides[~single], of_triangle[~single], near_other, height, slack)
+    return _with_vertices(wanted, vertices, triangles, near_other, height, slack)
 
 
 def nearby(own: Array, other: Array, reach: Array) -> Bools:
@@ -159,7 +158,7 @@ def _edges(triangles: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.
     return found, of_triangle, np.asarray(count != 2)
 
 
-def _add_edges(
+def _with_edges(
     wanted: Bools,
     corners: Array,
     vertices: Array,
@@ -168,8 +167,8 @@ def _add_edges(
     other: Other,
     height: float,
     slack: Array,
-) -> None:
-    """Add a triangle of each edge that is needed and has none yet."""
+) -> Bools:
+    """The triangles wanted, and one of each edge that is needed and has none among them."""
     open_edges = ~wanted[of_triangle].any(axis=1)
     sides, of_triangle = sides[open_edges], of_triangle[open_edges]
     start, end = vertices[sides[:, 0]], vertices[sides[:, 1]]
@@ -177,7 +176,7 @@ def _add_edges(
     near = _boxes_meet(np.minimum(start, end) - reach, np.maximum(start, end) + reach, other.corners)
     start, end, of_triangle = start[near], end[near], of_triangle[near]
     if not len(start):
-        return
+        return wanted
     along = _units(end - start)
     axes, ends = [along, -along], [end, start]
     for k in range(2):
@@ -189,7 +188,9 @@ def _add_edges(
     low = np.minimum(start, end) + over.min(axis=1) - slack
     high = np.maximum(start, end) + over.max(axis=1) + slack
     found = _reached(low, high, np.stack(axes, axis=1), np.stack(limits, axis=1), other)
-    wanted[of_triangle[found, 0]] = True
+    more = wanted.copy()
+    more[of_triangle[found, 0]] = True
+    return more
 
 
 def _between(first: Array, second: Array) -> Array:
@@ -205,14 +206,15 @@ def _between(first: Array, second: Array) -> Array:
     return np.where(opposed[:, :, None], everywhere, points)
 
 
-def _add_vertices(
+def _with_vertices(
     wanted: Bools, vertices: Array, triangles: NDArray[np.int64], other: Other, height: float, slack: Array
-) -> None:
-    """Add a triangle of each vertex that is needed and has none yet."""
+) -> Bools:
+    """The triangles wanted, and one of each vertex that is needed and has none among them."""
     covered = np.zeros(len(vertices), dtype=bool)
     covered[triangles[wanted].ravel()] = True
     reach = height + slack
     near = ~covered & _boxes_meet(vertices - reach, vertices + reach, other.corners)
+    more = wanted.copy()
     for vertex in np.flatnonzero(near):
         around = np.flatnonzero((triangles == vertex).any(axis=1))
         ends = np.unique(triangles[around])
@@ -221,7 +223,8 @@ def _add_vertices(
         limits = axes @ vertices[vertex] + np.abs(axes) @ slack
         at = vertices[vertex][None]
         if _reached(at - reach, at + reach, axes[None], limits[None], other)[0]:
-            wanted[around[0]] = True
+            more[around[0]] = True
+    return more
 
 
 COARSE: Final = 0.1

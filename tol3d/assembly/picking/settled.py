@@ -120,16 +120,16 @@ def _looked_up(scene: Scene, solids: Mapping[str, SolidSpec], *, run_builders: b
     Raises:
         SceneError: a solid cannot be built, or a pick matches no face or several.
     """
-    picks: dict[str, dict[str, tuple[PickedFace, ...]]] = {}
+    picks: dict[str, Mapping[str, tuple[PickedFace, ...]]] = {}
     names: dict[str, tuple[str, ...]] = {}
     places: dict[str, tuple[Triple, Triple, Triple]] = {}
     files = {}
     problems: list[Problem] = []
     for name, own in solids.items():
         if isinstance(own, StepSpec):
-            before = len(problems)
-            picks[name] = looked_up(name, own, scene.files[own.file], problems)
-            if len(problems) == before and (place := place_in_file(own, scene.files[own.file])) is not None:
+            picks[name], unfound = looked_up(name, own, scene.files[own.file])
+            problems += unfound
+            if not unfound and (place := place_in_file(own, scene.files[own.file])) is not None:
                 places[name] = place
             continue
         here: KeyPath = ("parts", name, "builder")

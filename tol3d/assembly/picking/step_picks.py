@@ -1,6 +1,6 @@
 """Features that a scene selects on parts from STEP files: what their faces are, and the features by numbers."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Final
 
@@ -15,7 +15,7 @@ from tol3d.files import FileContent
 from tol3d.scene.place import KeyPath
 from tol3d.solids.pick import PickedFace, Triple
 from tol3d.step.found import FoundFeature
-from tol3d.step.reading import StepFile, StepPart, read_step
+from tol3d.step.reading import StepFile, read_step
 from tol3d.step.refused import StepError
 from tol3d.step.selecting import SelectionError, Selector, numbers, selected
 
@@ -38,41 +38,34 @@ FACE_KINDS: Final[dict[str, FaceKind]] = {
 
 
 def looked_up(
-    part: str, spec: StepSpec, file: FileContent, problems: list[Problem]
-) -> dict[str, tuple[PickedFace, ...]]:
-    """Faces that a part's features select, by feature; errors are added to the problems."""
+    part: str, spec: StepSpec, file: FileContent
+) -> tuple[Mapping[str, tuple[PickedFace, ...]], Sequence[Problem]]:
+    """Faces that a part's features select, by feature, and problems where they select none."""
     try:
         read = _read(file)
     except StepError as error:
-        problems.append((("parts", part, "file"), str(error)))
-        return {}
+        return {}, [(("parts", part, "file"), str(error))]
     try:
         found = read.part(spec.product, spec.use)
     except StepError as error:
         field = "use" if spec.use is not None else "file" if spec.product is None else "product"
-        problems.append((("parts", part, field), str(error)))
-        return {}
-    return dict(_each(part, spec, found, problems))
+        return {}, [(("parts", part, field), str(error))]
+    faces, problems = dict[str, tuple[PickedFace, ...]](), list[Problem]()
+    for name, own in spec.selectors.items():
+        path: KeyPath = ("parts", part, "features", name)
+        try:
+            faces[name] = tuple(face_of(each) for each in selected(found, selector_of(own)))
+        except SelectionError as error:
+            problems.append(((*path, *([error.field] if error.field else [])), str(error)))
+        except StepError as error:
+            problems.append((path, str(error)))
+    return faces, problems
 
 
 @lru_cache(maxsize=FILES)
 def _read(file: FileContent) -> StepFile:
     """A file as it was read before, by its content."""
     return read_step(file)
-
-
-def _each(
-    part: str, spec: StepSpec, found: StepPart, problems: list[Problem]
-) -> Iterator[tuple[str, tuple[PickedFace, ...]]]:
-    for name, own in spec.selectors.items():
-        path: KeyPath = ("parts", part, "features", name)
-        try:
-            features = selected(found, selector_of(own))
-            yield name, tuple(face_of(each) for each in features)
-        except SelectionError as error:
-            problems.append(((*path, *([error.field] if error.field else [])), str(error)))
-        except StepError as error:
-            problems.append((path, str(error)))
 
 
 def selector_of(spec: SelectorSpec) -> Selector:

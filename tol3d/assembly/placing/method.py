@@ -226,9 +226,9 @@ def _apart(plan: PlacingPlan, block: _Block, name: str, codes: Codes) -> tuple[A
     measured = plan.assembly.measures[name]
     world = block.worlds[-1] if measured.after < 0 else block.worlds[measured.after + 1]
     poses = [world.poses[part].matrices(world.trials) for part in measured.parts]
-    values, placed = np.full(len(codes), np.nan), codes == OK
-    values[placed], codes[placed] = plan.solids.read(name, poses[0][placed], poses[1][placed])
-    return values, codes
+    values, found, placed = np.full(len(codes), np.nan), codes.copy(), codes == OK
+    values[placed], found[placed] = plan.solids.read(name, poses[0][placed], poses[1][placed])
+    return values, found
 
 
 def _over_rests(plan: PlacingPlan, block: _Block, name: str, deviations: Array) -> tuple[Array, Codes]:
