@@ -239,29 +239,14 @@ class StripContact:
 
 @dataclass(frozen=True)
 class PlanetaryWitness(Witnesses, PlanetaryMethod):
-    """Implements WitnessMethod.
-
-    Args:
-        strips: of every gear, by name.
-    """
-
-    strips: Mapping[str, FlankStrips]
-
-    @property
-    def chord_error(self) -> float:
-        """See Method."""
-        return max(own.chord_error for own in self.strips.values())
-
-    @property
-    def errors(self) -> tuple[list[float], list[float]]:
-        """See Witnesses: by chords of both flanks of each mesh, and by all else."""
-        meshes = self.system.own.meshes
-        chords = [sum(self.strips[gear.name].chord_error for gear in (mesh.central, mesh.planet)) for mesh in meshes]
-        return chords, [ALLOWANCE * mesh.central.module for mesh in meshes]
+    """Implements WitnessMethod."""
 
 
 def witness(system: SetTrials, made: Made, strips: Mapping[str, FlankStrips]) -> PlanetaryWitness:
-    """The method of a set's trials by FCL."""
-    turning = StripContact(system.own, made, StripGaps(system.own, strips))
-    overcome = StripContact(system.overcome, made, StripGaps(system.overcome, strips))
-    return PlanetaryWitness(system, turning, overcome, strips)
+    """The method of a set's trials by FCL, from the strips of every gear by name."""
+    turning, overcome = (StripContact(own, made, StripGaps(own, strips)) for own in (system.own, system.overcome))
+    meshes = system.own.meshes
+    chords = [strips[mesh.central.name].chord_error + strips[mesh.planet.name].chord_error for mesh in meshes]
+    others = [ALLOWANCE * mesh.central.module for mesh in meshes]
+    largest = max(own.chord_error for own in strips.values())
+    return PlanetaryWitness(system, turning, overcome, chord_error=largest, errors=(chords, others))

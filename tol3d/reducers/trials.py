@@ -191,11 +191,7 @@ class ReducerMethod(ABC):
     """Implements Method."""
 
     system: ReducerTrials
-
-    @property
-    def chord_error(self) -> float:
-        """See Method."""
-        return 0.0
+    chord_error: float = field(default=0.0, kw_only=True)
 
     @abstractmethod
     def read(self, measure: Any, deviated: Any, trials: Trials, known: dict[Hashable, Any]) -> Read:
@@ -218,21 +214,21 @@ MOST_POSITIONS: Final = 24
 """Largest number of positions of a measure that a witness reads: a turn of 200 would take it seconds a trial."""
 
 
-class Witnesses(ABC):
-    """A method that witnesses another by faceted parts; implements the rest of WitnessMethod."""
+@dataclass(frozen=True, kw_only=True)
+class Witnesses:
+    """The rest of WitnessMethod, of a ReducerMethod by faceted parts.
 
-    system: ReducerTrials
+    Args:
+        errors: of gaps by chords, and by all else, as the system's gap_bound takes them.
+    """
 
-    @property
-    @abstractmethod
-    def errors(self) -> tuple[Any, Any]:
-        """Errors of gaps by chords, and by all else, as the system's gap_bound takes them."""
+    errors: tuple[Any, Any]
 
-    def reads(self, measure: Measure) -> bool:
+    def reads(self: Any, measure: Measure) -> bool:
         """See WitnessMethod: all but counts."""
         return not self.system.read[measure.name].counts and measure.positions.in_a_trial <= MOST_POSITIONS
 
-    def bounds(self, measure: Measure) -> tuple[float, float]:
+    def bounds(self: Any, measure: Measure) -> tuple[float, float]:
         """See WitnessMethod."""
-        chords, others = self.errors
-        return self.system.gap_bound(measure, chords), self.system.gap_bound(measure, others)
+        chords, others = (self.system.gap_bound(measure, each) for each in self.errors)
+        return chords, others

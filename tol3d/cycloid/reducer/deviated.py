@@ -1,7 +1,8 @@
 """Effects of contributors on an RV reducer: deviations of its cycloid stage, and of the gears before it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final
 
 import numpy as np
 
@@ -9,14 +10,53 @@ from tol3d.cycloid.model.stage import Deviated
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
-from tol3d.reducers.deviations import Acts, Along, Deviations, shaped
+from tol3d.reducers.deviations import Acts, Along, Deviations
 
-Effect = Literal[
-    "pin circle", "pin ring", "pin outwards", "pin round", "pin place", "pin radius", "lobe pitch", "lobe profile",
-    "disc offset", "disc hole", "disc tilt", "disc play", "carrier play", "crank throw", "crank throw of a disc",
-    "crank phase", "carrier hole", "carrier circle", "carrier offset", "sun thickness", "planet thickness",
-    "sun offset", "planet offset",
-]  # fmt: skip
+
+@dataclass(frozen=True)
+class Reach:
+    """Deviations that an effect reaches.
+
+    Args:
+        array: their name.
+        each: words for the parts along their axes that each have a component; "" where all of an axis share one.
+        planar: True for displacements, or tilts, in a direction.
+        part: of displacements outwards (0) or counter-clockwise (1) alone; None: all.
+    """
+
+    array: str
+    each: tuple[str, ...] = ()
+    planar: bool = False
+    part: int | None = None
+
+
+RING: Final = "pin ring"
+EFFECTS: Final[Mapping[str, Reach]] = {
+    "pin circle": Reach("pins", ("",), part=0),
+    RING: Reach("pins", planar=True),  # of all pins, turned to each
+    "pin outwards": Reach("pins", ("pin",), part=0),
+    "pin round": Reach("pins", ("pin",), part=1),
+    "pin place": Reach("pins", ("pin",), planar=True),
+    "pin radius": Reach("pin_radii", ("pin",)),
+    "lobe pitch": Reach("lobe_pitch", ("disc", "lobe")),
+    "lobe profile": Reach("lobe_profile", ("disc", "lobe")),
+    "disc offset": Reach("disc_offsets", ("disc",), planar=True),
+    "disc hole": Reach("disc_holes", ("disc", "hole"), planar=True),
+    "disc tilt": Reach("disc_tilts", ("disc",), planar=True),
+    "disc play": Reach("disc_play", ("disc", "hole")),
+    "carrier play": Reach("carrier_play", ("hole",)),
+    "crank throw": Reach("crank_errors", ("crank", "disc"), planar=True),
+    "crank throw of a disc": Reach("crank_errors", ("", "disc"), planar=True),
+    "crank phase": Reach("crank_phases", ("crank",)),
+    "carrier hole": Reach("carrier_holes", ("hole",), planar=True),
+    "carrier circle": Reach("carrier_holes", ("",), planar=True),
+    "carrier offset": Reach("carrier_offsets", planar=True),
+    "sun thickness": Reach("sun_thickness"),
+    "planet thickness": Reach("planet_thickness", ("planet",)),
+    "sun offset": Reach("sun_offset", planar=True),
+    "planet offset": Reach("planet_offset", ("planet",), planar=True),
+}
+"""Effects of contributors, by their words."""
 
 
 @dataclass(frozen=True)
@@ -59,38 +99,13 @@ class RVDeviated(Deviations):
 
     def reached(self, own: RVSet, acts: Acts) -> tuple[Array, Along]:
         """See Deviations."""
-        stage = self.stage
-        reached: dict[str, tuple[Array, Along]] = {
-            "pin circle": (stage.pins[..., 0], _alike),
-            "pin ring": (stage.pins, _ring_moved(own.profile.pins)),
-            "pin outwards": (stage.pins[..., 0], shaped(stage.pins[..., 0])),
-            "pin round": (stage.pins[..., 1], shaped(stage.pins[..., 1])),
-            "pin place": (stage.pins, shaped(stage.pins)),
-            "pin radius": (stage.pin_radii, shaped(stage.pin_radii)),
-            "lobe pitch": (stage.lobe_pitch, shaped(stage.lobe_pitch)),
-            "lobe profile": (stage.lobe_profile, shaped(stage.lobe_profile)),
-            "disc offset": (stage.disc_offsets, shaped(stage.disc_offsets)),
-            "disc hole": (stage.disc_holes, shaped(stage.disc_holes)),
-            "disc tilt": (self.disc_tilts, shaped(self.disc_tilts)),
-            "disc play": (self.disc_play, shaped(self.disc_play)),
-            "carrier play": (self.carrier_play, shaped(self.carrier_play)),
-            "crank throw": (stage.crank_errors, shaped(stage.crank_errors)),
-            "crank throw of a disc": (stage.crank_errors, shaped(stage.crank_errors[:, :1])),
-            "crank phase": (stage.crank_phases, shaped(stage.crank_phases)),
-            "carrier hole": (stage.carrier_holes, shaped(stage.carrier_holes)),
-            "carrier circle": (stage.carrier_holes, shaped(stage.carrier_holes[:, :1])),
-            "carrier offset": (stage.carrier_offsets, shaped(stage.carrier_offsets)),
-            "sun thickness": (self.sun_thickness, lambda own: own[:, 0]),
-            "planet thickness": (self.planet_thickness, shaped(self.planet_thickness)),
-            "sun offset": (self.sun_offset, shaped(self.sun_offset)),
-            "planet offset": (self.planet_offset, shaped(self.planet_offset)),
-        }
-        return reached[acts.effect]
-
-
-def _alike(components: Array) -> Array:
-    """One deviation (trials, 1) of all."""
-    return components
+        reach = EFFECTS[acts.effect]
+        array: Array = getattr(self if hasattr(self, reach.array) else self.stage, reach.array)
+        if acts.effect == RING:
+            return array, _ring_moved(own.profile.pins)
+        into = array if reach.part is None else array[..., reach.part]
+        sizes = [size if word else 1 for size, word in zip(into.shape[1:], reach.each, strict=False)]
+        return into, lambda components: components.reshape(len(components), *sizes, *(2,) * reach.planar)
 
 
 def _ring_moved(pins: int) -> Along:

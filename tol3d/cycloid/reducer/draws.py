@@ -1,6 +1,7 @@
 """Effect of each tolerance on an RV reducer, and the draw of its components."""
 
 import math
+from itertools import product
 from typing import Any
 
 from tol3d.cycloid.grammar.tolerances import (
@@ -19,7 +20,7 @@ from tol3d.cycloid.grammar.tolerances import (
     PinRadiusSpec,
     PinRingOffsetSpec,
 )
-from tol3d.cycloid.reducer.deviated import Effect
+from tol3d.cycloid.reducer.deviated import EFFECTS
 from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.gearing.grammar.tolerances.composite import ToothRunOutSpec
 from tol3d.gearing.grammar.tolerances.gears import EccentricitySpec, TeethOffAxisSpec, ToothThicknessSpec
@@ -30,7 +31,7 @@ from tol3d.scene.direction import At
 from tol3d.scene.entry import kind_of
 from tol3d.system.draw import Draw
 
-OF_THE_STAGE: dict[type, Effect] = {
+OF_THE_STAGE: dict[type, str] = {
     PinCircleSpec: "pin circle",
     PinRingOffsetSpec: "pin ring",
     PinRadiusSpec: "pin radius",
@@ -58,7 +59,7 @@ def acts_of(scene: Scene, own: RVSet, name: str, spec: Any) -> Acts:
     if type(spec) in OF_THE_STAGE:
         return Acts(OF_THE_STAGE[type(spec)])
     if isinstance(spec, PinPositionSpec):
-        directions: dict[str, Effect] = {"radial": "pin outwards", "tangential": "pin round", "random": "pin place"}
+        directions = {"radial": "pin outwards", "tangential": "pin round", "random": "pin place"}
         return Acts(directions[spec.direction])
     if isinstance(spec, CrankEccentricitySpec):
         return Acts("crank throw" if spec.each == "crank" else "crank throw of a disc")
@@ -88,36 +89,7 @@ def _of_a_gear(scene: Scene, own: RVSet, name: str, spec: ToothThicknessSpec | T
 
 def draw_of(scene: Scene, own: RVSet, acts: Acts, spec: Any) -> Draw:
     """Draw of the components of a tolerance."""
-    discs = numbered("disc", own.discs)
-    pins, cranks = numbered("pin", own.profile.pins), numbered("crank", own.cranks)
-    names: dict[str, tuple[str, ...]] = {
-        "pin outwards": pins,
-        "pin round": pins,
-        "pin place": pins,
-        "pin radius": pins,
-        "lobe pitch": _of_each(discs, numbered("lobe", own.profile.lobes)),
-        "lobe profile": _of_each(discs, numbered("lobe", own.profile.lobes)),
-        "disc offset": discs,
-        "disc tilt": discs,
-        "disc hole": _of_each(discs, numbered("hole", own.cranks)),
-        "crank throw": _of_each(cranks, discs),
-        "crank throw of a disc": discs,
-        "crank phase": cranks,
-        "carrier hole": numbered("hole", own.cranks),
-        "disc play": _of_each(discs, numbered("hole", own.cranks)),
-        "carrier play": numbered("hole", own.cranks),
-        "planet thickness": numbered("planet", own.cranks),
-        "planet offset": numbered("planet", own.cranks),
-    }
-    return drawn(law_of(scene, spec), names.get(acts.effect, ()), planar=acts.effect in PLANAR)
-
-
-PLANAR: tuple[Effect, ...] = (
-    "pin ring", "pin place", "disc offset", "disc tilt", "disc hole", "crank throw", "crank throw of a disc",
-    "carrier hole", "carrier circle", "carrier offset", "sun offset", "planet offset",
-)  # fmt: skip
-"""Effects of a length, or a tilt, in a random direction."""
-
-
-def _of_each(outer: tuple[str, ...], inner: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(f"{one} {other}" for one in outer for other in inner)
+    reach, profile = EFFECTS[acts.effect], own.profile
+    counts = {"pin": profile.pins, "lobe": profile.lobes, "disc": own.discs}
+    each = [numbered(word, counts.get(word, own.cranks)) for word in reach.each if word]
+    return drawn(law_of(scene, spec), tuple(map(" ".join, product(*each))) if each else (), planar=reach.planar)

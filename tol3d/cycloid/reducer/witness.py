@@ -187,19 +187,8 @@ class StripTurning:
 class RVWitness(Witnesses, RVMethod):
     """Implements WitnessMethod."""
 
-    strips: LobeStrips
-
-    @property
-    def chord_error(self) -> float:
-        """See Method."""
-        return self.strips.chord_error
-
-    @property
-    def errors(self) -> tuple[float, float]:
-        """See Witnesses."""
-        return self.chord_error, ALLOWANCE
-
 
 def witness(system: RVTrials, strips: LobeStrips) -> RVWitness:
     """The method of a reducer's trials by FCL."""
-    return RVWitness(system, StripTurning(system.own, StripContact(system.own.contact, strips)), strips)
+    turning = StripTurning(system.own, StripContact(system.own.contact, strips))
+    return RVWitness(system, turning, chord_error=strips.chord_error, errors=(strips.chord_error, ALLOWANCE))
