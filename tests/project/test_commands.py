@@ -21,8 +21,8 @@ from tol3d.cli import app
 from tol3d.scene.bundled import bundled_scenes
 
 TRIALS: Final = 64
-HISTORY: Final = {"changelog.md", "plain_english.md"}
-"""They quote what was there once."""
+HISTORY: Final = {"changelog.md"}
+"""It quotes what was there once."""
 
 OTHERS: Final = {"records.md": "tests/records/test_records_page.py"}
 """Pages whose commands another test runs."""

@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import venv
 from pathlib import Path
 
@@ -71,6 +72,7 @@ def test_a_source_archive_builds_its_wheel(tmp_path: Path) -> None:
     clone = tree_at(tmp_path / "tol3d")
     subprocess.run([sys.executable, "-m", "build", "--outdir", str(tmp_path / "dist"), str(clone)], check=True)
     (archive,) = (tmp_path / "dist").glob("*.tar.gz")
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
     with tarfile.open(archive) as files:
-        assert "tol3d-0.1.0/.build/past_namespace.py" in files.getnames()
+        assert f"tol3d-{version}/.build/past_namespace.py" in files.getnames()
     assert len(list((tmp_path / "dist").glob("*.whl"))) == 1
