@@ -10,7 +10,16 @@ from typing import Any, Final
 
 import numpy as np
 
-from tol3d.cycloid.exact.pin_contact import TURN, ContactShape, lobe_at, lobe_turn, placed, standing_gap, touched
+from tol3d.cycloid.exact.pin_contact import (
+    TURN,
+    ContactShape,
+    crank_at,
+    lobe_at,
+    lobe_turn,
+    placed,
+    standing_gap,
+    touched,
+)
 from tol3d.numerics.compiled import kernel, part
 
 MORE: Final = 1.25  # times a pin's own turn to first order, and
@@ -68,13 +77,14 @@ def bound(shape: Any, reach: float, most: float, own: float, bent: float, far: f
 
 @part
 def screened(
-    shape: Any, linkage: Any, throw: float, drifting: float, flanks: Any, pins: Any, around: Any, phi: float,
+    shape: Any, linkage: Any, throw: float, drifting: float, flanks: Any, pins: Any, around: Any, crank: Any,
     sense: float, disc: int, lean: Any, firsts: Any, slacks: Any,
 ) -> None:  # fmt: skip
     """Write the turn of each pin of a disc in a sense to first order, and its error at most; inf where it is idle.
 
     Args:
         around: cosine and sine of the pins' azimuths (pins, 2).
+        crank: of pin_contact.crank_at.
         sense: +1 where the disc turns counter-clockwise, -1 back; turns are counted in it.
         lean: see touched, with half the disc's width for the height.
         firsts, slacks: of all discs' pins (discs pins,); written. A slack of inf is that of a pin whose bound is none.
@@ -82,10 +92,9 @@ def screened(
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
     count = around.shape[0]
-    lead = (phi + throw) / shape.lobes
+    lead = (crank[0] + throw) / shape.lobes
     clock = -throw / shape.lobes
-    chi = -phi / shape.lobes
-    cos_psi, sin_psi, centre_x, centre_y = placed(linkage, np.cos(phi), np.sin(phi), np.cos(chi), np.sin(chi))
+    cos_psi, sin_psi, centre_x, centre_y = placed(linkage, crank[1], crank[2], crank[3], crank[4])
     cos_clock, sin_clock = np.cos(clock), np.sin(clock)
     cos_psi, sin_psi = cos_psi * cos_clock - sin_psi * sin_clock, sin_psi * cos_clock + cos_psi * sin_clock
     cos_lead, sin_lead, e, f = np.cos(lead), np.sin(lead), np.cos(shape.pins * lead), np.sin(shape.pins * lead)
@@ -131,31 +140,38 @@ def screened(
 
 @part
 def exact(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, extra: float,
-    leans: Any,
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, place: int, extra: float,
+    leans: Any, sense: float, enough: float,
 ) -> tuple[float, bool]:  # fmt: skip
-    """The turn at which a pin touches; its place counts all discs' pins. Pins that are thicker touch earlier."""
+    """The turn at which a pin touches; its place counts all discs' pins. Pins that are thicker touch earlier.
+
+    For enough see touched; of a disc that leans all turns are found.
+    """
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
     disc, j = place // around.shape[0], place % around.shape[0]
-    u = TURN * j / shape.pins + (phi + throws[disc]) / shape.lobes
+    u = TURN * j / shape.pins + (crank[0] + throws[disc]) / shape.lobes
     clock = -throws[disc] / shape.lobes
     pin = (places[j, 0], places[j, 1], radii[j])
     own = (lobe_pitch[disc], lobe_profile[disc])
     x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
     low = -high
-    turn, above, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, high))
-    if x * x + y * y == 0.0 or high == 0.0 or not found:
+    flat = x * x + y * y == 0.0 or high == 0.0
+    most = enough if flat else np.inf
+    turn, above, found = touched(shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, high), sense, most)
+    if flat or not found:
         return turn, found
-    other, below, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, low))
+    other, below, found = touched(shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, low), sense, most)
     # a pin on a right flank is cleared by a larger turn, on a left one by a smaller one
-    right = np.sin(phi + throws[disc] - TURN * j / shape.pins) > 0.0
+    right = np.sin(crank[0] + throws[disc] - TURN * j / shape.pins) > 0.0
     turn = max(turn, other) if right else min(turn, other)
     for _ in range(MOST_CUTS):
         if not (found and below < 0.0 < above):
             break
         height = (low * above - high * below) / (above - below)
-        other, slope, found = touched(shape, linkage[disc], clock, own, pin, phi, u, extra, (x, y, height))
+        other, slope, found = touched(
+            shape, linkage[disc], clock, own, pin, crank, u, extra, (x, y, height), sense, most
+        )
         turn = max(turn, other) if right else min(turn, other)
         if abs(slope) * (high - low) < FLAT:
             break
@@ -168,27 +184,27 @@ def exact(
 
 @part
 def clear(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, place: int, turn: float,
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, place: int, turn: float,
     leans: Any,
 ) -> bool:  # fmt: skip
     """True if a pin has a gap at the carrier's position, on a leaning disc at both faces and between them."""
     lobe_pitch, lobe_profile = flanks
     places, radii = pins
     disc, j = place // around.shape[0], place % around.shape[0]
-    u = TURN * j / shape.pins + (phi + throws[disc]) / shape.lobes
+    u = TURN * j / shape.pins + (crank[0] + throws[disc]) / shape.lobes
     pin = (places[j, 0], places[j, 1], radii[j])
     own = (lobe_pitch[disc], lobe_profile[disc])
     x, y, high = leans[disc, 0], leans[disc, 1], leans[disc, 2]
     for height in (-high, 0.0, high):
         clock = -throws[disc] / shape.lobes
-        if not standing_gap(shape, linkage[disc], clock, own, pin, phi, u, turn, (x, y, height)) > 0.0:
+        if not standing_gap(shape, linkage[disc], clock, own, pin, crank, u, turn, (x, y, height)) > 0.0:
             return False
     return True
 
 
 @part
 def first_of(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float, screen: Any,
     leans: Any,
 ) -> tuple[float, int]:  # fmt: skip
     """The first contact in a sense: the carrier's turn and the pin's place; NaN where there is none, or none is known.
@@ -203,13 +219,15 @@ def first_of(
             best, begun = firsts[place], place
     if begun == NO_PIN:
         return np.nan, NO_PIN
-    turn, found = exact(shape, linkage, throws, flanks, pins, around, phi, begun, 0.0, leans)
+    turn, found = exact(shape, linkage, throws, flanks, pins, around, crank, begun, 0.0, leans, sense, np.inf)
     at, missed = begun, 0
     if not found:
         turn, at, missed = sense * np.inf, NO_PIN, 1
     for place in range(firsts.shape[0]):
         if firsts[place] < np.inf and place != begun and firsts[place] - slacks[place] < sense * turn:
-            other, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
+            other, found = exact(
+                shape, linkage, throws, flanks, pins, around, crank, place, 0.0, leans, sense, sense * turn
+            )  # fmt: skip
             if not found:
                 missed += 1
             elif sense * other < sense * turn:
@@ -220,10 +238,10 @@ def first_of(
         for place in range(firsts.shape[0]):
             if place == at or not (firsts[place] < np.inf and firsts[place] - slacks[place] < sense * turn):
                 continue
-            _, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, 0.0, leans)
+            _, found = exact(shape, linkage, throws, flanks, pins, around, crank, place, 0.0, leans, sense, np.inf)
             if not found and not (
                 firsts[place] > sense * turn
-                and clear(shape, linkage, throws, flanks, pins, around, phi, place, turn, leans)
+                and clear(shape, linkage, throws, flanks, pins, around, crank, place, turn, leans)
             ):
                 return np.nan, NO_PIN
     return turn, at
@@ -231,7 +249,7 @@ def first_of(
 
 @part
 def near(
-    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, phi: float, sense: float, screen: Any,
+    shape: Any, linkage: Any, throws: Any, flanks: Any, pins: Any, around: Any, crank: Any, sense: float, screen: Any,
     turn: float, leans: Any,
 ) -> int:  # fmt: skip
     """Number of working pins with a gap of at most shape.deflection at a turn."""
@@ -241,7 +259,7 @@ def near(
     for place in range(firsts.shape[0]):
         if not firsts[place] < np.inf:
             continue
-        phase = TURN * (place % around.shape[0]) / shape.pins - phi - throws[place // around.shape[0]]
+        phase = TURN * (place % around.shape[0]) / shape.pins - crank[0] - throws[place // around.shape[0]]
         shortening = shape.eccentricity * shape.pins / shape.ground_circle
         speed = np.sqrt(1.0 + shortening * (shortening - 2.0 * np.cos(phase)))
         arm = shape.eccentricity * lobes * abs(np.sin(phase)) / speed * (1.0 + shape.rolling / lobes)
@@ -249,7 +267,9 @@ def near(
         if room > slacks[place]:
             count += 1
         elif room >= -slacks[place]:
-            other, found = exact(shape, linkage, throws, flanks, pins, around, phi, place, shape.deflection, leans)
+            other, found = exact(
+                shape, linkage, throws, flanks, pins, around, crank, place, shape.deflection, leans, sense, np.inf
+            )  # fmt: skip
             if found and sense * other <= sense * turn:
                 count += 1
     return count
@@ -288,15 +308,16 @@ def first_contacts(
         for disc in range(discs):
             drifting[disc] = drift(shape, linkage[i, disc], throws[disc])
         for p in range(phis.shape[1]):
+            crank = crank_at(shape, phis[i, p])
             for s in range(senses.shape[0]):
                 for disc in range(discs):
                     own = (lobe_pitch[i, disc], lobe_profile[i, disc])
                     screened(
-                        shape, linkage[i, disc], throws[disc], drifting[disc], own, pins, around, phis[i, p],
+                        shape, linkage[i, disc], throws[disc], drifting[disc], own, pins, around, crank,
                         senses[s], disc, leans[i, disc], screen[0], screen[1],
                     )  # fmt: skip
                 turn, place = first_of(
-                    shape, linkage[i], throws, flanks, pins, around, phis[i, p], senses[s], screen, leans[i]
+                    shape, linkage[i], throws, flanks, pins, around, crank, senses[s], screen, leans[i]
                 )  # fmt: skip
                 turns[i, p, s] = turn
                 at[i, p, s] = place
@@ -304,6 +325,6 @@ def first_contacts(
                     counts[i, p, s] = 0
                     if place != NO_PIN:
                         counts[i, p, s] = near(
-                            shape, linkage[i], throws, flanks, pins, around, phis[i, p], senses[s], screen, turn,
+                            shape, linkage[i], throws, flanks, pins, around, crank, senses[s], screen, turn,
                             leans[i],
                         )  # fmt: skip

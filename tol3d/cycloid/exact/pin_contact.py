@@ -23,8 +23,10 @@ import numpy as np
 from tol3d.numerics.compiled import part
 
 MOST_STEPS: Final = 30  # three are needed where errors are some 20 um
-TURN_XTOL: Final = 1e-14  # rad; the next step is a thousandth of it
+TURN_XTOL: Final = 1e-12  # rad; the next step is a thousandth of it
 FOOT_XTOL: Final = 1e-9  # rad; gaps change by the square of it
+LITTLE: Final = 2.0**-5  # rad; the first term that a series leaves out is 2e-17 there
+SETTLED: Final = 0.01  # of the step before; Newton's method then errs by less than its last step
 LONGEST_STEP: Final = 0.05  # of a lobe pitch, by which the foot moves
 TURN: Final = 2.0 * np.pi
 
@@ -91,26 +93,54 @@ def lobe_turn(shape: Any, lobe_pitch: Any, lobe: int, right: float) -> float:
 
 
 @part
-def seen_from_lobe(shape: Any, linkage: Any, phi: float, turn: float, pin: Any, own: float, lean: Any) -> Any:
-    """Contact point of a pin and a section of a disc, and tau, in the frame of a lobe turned by own in its disc."""
+def turned_by(c: float, s: float, turn: float) -> tuple[float, float]:
+    """Cosine and sine of an angle turned on; by the series where the turn is little."""
+    if abs(turn) < LITTLE:
+        t = turn * turn
+        cos = 1.0 - t * (1.0 / 2 - t * (1.0 / 24 - t * (1.0 / 720)))
+        sin = turn * (1.0 - t * (1.0 / 6 - t * (1.0 / 120 - t * (1.0 / 5040))))
+    else:
+        cos, sin = np.cos(turn), np.sin(turn)
+    return cos * c - sin * s, cos * s + sin * c
+
+
+@part
+def crank_at(shape: Any, phi: float) -> tuple[float, float, float, float, float]:
+    """A crank angle, and cosine and sine of it and of the nominal turn of the carrier."""
+    chi = -phi / shape.lobes
+    return phi, np.cos(phi), np.sin(phi), np.cos(chi), np.sin(chi)
+
+
+@part
+def seen_from_lobe(shape: Any, linkage: Any, crank: Any, turn: float, pin: Any, own: Any, lean: Any) -> Any:
+    """Contact point of a pin and a section of a disc, and tau, in the frame of a lobe turned by own in its disc.
+
+    Args:
+        crank: of crank_at.
+        own: cosine and sine.
+    """
     tau_x, tau_y, height = lean
-    crank = phi + shape.rolling * turn
-    chi = turn - phi / shape.lobes
-    cos_psi, sin_psi, x, y = placed(linkage, np.cos(crank), np.sin(crank), np.cos(chi), np.sin(chi))
+    _, cos_phi, sin_phi, cos_chi, sin_chi = crank
+    cos_phi, sin_phi = turned_by(cos_phi, sin_phi, shape.rolling * turn)
+    cos_chi, sin_chi = turned_by(cos_chi, sin_chi, turn)
+    cos_psi, sin_psi, x, y = placed(linkage, cos_phi, sin_phi, cos_chi, sin_chi)
     x, y = pin[0] - x, pin[1] - y
     x, y = cos_psi * x + sin_psi * y, cos_psi * y - sin_psi * x
     stretch = 1.0 / (1.0 + np.sqrt(1.0 + tau_x * tau_x + tau_y * tau_y))  # (1 / cos - 1) / tan^2
     across = stretch * (tau_x * x + tau_y * y) + height
     x, y = x + across * tau_x, y + across * tau_y
-    c, s = np.cos(own), np.sin(own)
+    c, s = own
     return c * x + s * y, c * y - s * x, c * tau_x + s * tau_y, c * tau_y - s * tau_x
 
 
 @part
 def touched(
-    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, phi: float, u: float, extra: float, lean: Any
+    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, crank: Any, u: float, extra: float, lean: Any,
+    sense: float, enough: float,
 ) -> tuple[float, float, bool]:  # fmt: skip
     """The carrier's turn [rad] at which one pin touches one section of a disc, beyond -phi / Zc.
+
+    A step that is settled is more than what is left to go: a turn that is enough is only shown to be, not found.
 
     Args:
         shape: ContactShape.
@@ -118,10 +148,11 @@ def touched(
         clock: angle by which the disc's profile is turned against its crank holes [rad].
         flanks: pitch and profile errors of the disc's lobes.
         pin: x and y of its centre, and its radius [mm].
-        phi: crank angle [rad].
+        crank: of crank_at.
         u: where the foot is sought first [rad].
         extra: added to the pin's radius [mm].
         lean: tau in the frame of the disc's holes, and the section's height [mm].
+        sense, enough: turns beyond this one in a sense are all alike to who asks [rad]; infinite where they are not.
 
     Returns:
         The turn, the growth of the gap per height, and True if they were found.
@@ -129,14 +160,14 @@ def touched(
     lobe_pitch, lobe_profile = flanks
     longest = LONGEST_STEP * TURN / shape.lobes
     shortening = shape.eccentricity * shape.pins / shape.ground_circle
-    turn = 0.0
+    cos_clock, sin_clock = np.cos(clock), np.sin(clock)
+    c, s, e, f = np.cos(u), np.sin(u), np.cos(shape.pins * u), np.sin(shape.pins * u)
+    turn, before = 0.0, 0.0
     for _ in range(MOST_STEPS):
-        c, s = np.cos(u), np.sin(u)
-        e, f = np.cos(shape.pins * u), np.sin(shape.pins * u)
         right = f * c - e * s  # sin(Zc u)
         lobe = lobe_at(u, shape.lobes)
-        own = clock + lobe_turn(shape, lobe_pitch, lobe, right)
-        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+        own = turned_by(cos_clock, sin_clock, lobe_turn(shape, lobe_pitch, lobe, right))
+        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, crank, turn, pin, own, lean)
         speed = np.sqrt((c - shortening * e) ** 2 + (s - shortening * f) ** 2)
         n_x, n_y = (c - shortening * e) / speed, (s - shortening * f) / speed
         leans = n_x * tau_x + n_y * tau_y
@@ -158,6 +189,11 @@ def touched(
         u += foot
         if abs(step) < TURN_XTOL and abs(foot) < FOOT_XTOL:
             return turn, leans, True
+        if abs(step) < SETTLED * before and sense * turn - abs(step) > enough:
+            return turn, leans, True
+        before = abs(step)
+        c, s = turned_by(c, s, foot)
+        e, f = turned_by(e, f, shape.pins * foot)
     return np.nan, 0.0, False
 
 
@@ -166,18 +202,20 @@ FEET: Final = 64  # parameters over a lobe, from the nearest of which Newton's m
 
 @part
 def standing_gap(
-    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, phi: float, u: float, turn: float, lean: Any
+    shape: Any, linkage: Any, clock: float, flanks: Any, pin: Any, crank: Any, u: float, turn: float, lean: Any
 ) -> float:
     """Gap along the normal [mm] between a pin and a section of a disc; below 0 they overlap, -inf where it is unknown.
 
     Args:
-        shape, linkage, clock, flanks, pin, phi, u, lean: see touched.
+        shape, linkage, clock, flanks, pin, crank, u, lean: see touched.
         turn: of the carrier beyond -phi / Zc [rad].
     """
     lobe_pitch, lobe_profile = flanks
     shortening = shape.eccentricity * shape.pins / shape.ground_circle
-    own = clock + lobe_turn(shape, lobe_pitch, lobe_at(u, shape.lobes), np.sin(shape.lobes * u))
-    x, y, _, _ = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+    cos_clock, sin_clock = np.cos(clock), np.sin(clock)
+    turned = lobe_turn(shape, lobe_pitch, lobe_at(u, shape.lobes), np.sin(shape.lobes * u))
+    own = turned_by(cos_clock, sin_clock, turned)
+    x, y, _, _ = seen_from_lobe(shape, linkage, crank, turn, pin, own, lean)
     nearest, foot = np.inf, u
     for k in range(FEET + 1):
         at = u + TURN / shape.lobes * (k / FEET - 0.5)
@@ -188,8 +226,8 @@ def standing_gap(
     for _ in range(MOST_STEPS):
         c, s, e, f = np.cos(foot), np.sin(foot), np.cos(shape.pins * foot), np.sin(shape.pins * foot)
         lobe = lobe_at(foot, shape.lobes)
-        own = clock + lobe_turn(shape, lobe_pitch, lobe, f * c - e * s)
-        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, phi, turn, pin, own, lean)
+        own = turned_by(cos_clock, sin_clock, lobe_turn(shape, lobe_pitch, lobe, f * c - e * s))
+        x, y, tau_x, tau_y = seen_from_lobe(shape, linkage, crank, turn, pin, own, lean)
         speed = np.sqrt((c - shortening * e) ** 2 + (s - shortening * f) ** 2)
         n_x, n_y = (c - shortening * e) / speed, (s - shortening * f) / speed
         leans = n_x * tau_x + n_y * tau_y
