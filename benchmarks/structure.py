@@ -20,12 +20,14 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from graphlib import TopologicalSorter
 from itertools import pairwise
 from pathlib import Path
+from statistics import median
 from types import FrameType
 
 import grimp
@@ -38,6 +40,7 @@ from scipy.sparse.csgraph import connected_components
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST_FILE = 350  # lines
 LONGEST_FUNCTION = 60  # lines, docstring included
+SHORT_FILE, SHORT_FUNCTION = 40, 6  # lines
 
 WIDTH = 150  # characters
 
@@ -61,6 +64,33 @@ class Lengths:
     files_over: int
     longest_function: str
     functions_over: int
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a reader of a tree meets.
+
+    Args:
+        lines: of all files, and of one in the middle.
+        short_files: of fewer than SHORT_FILE lines.
+        imports: share of the lines that are imports [%].
+        function: lines of the function in the middle.
+        private: functions of modules whose names begin with an underscore.
+        once: those of them that are named at one place, and their lines.
+        short: those of them of SHORT_FUNCTION lines or fewer.
+        own: how often a variable `own` is read.
+    """
+
+    lines: int
+    file: float
+    short_files: int
+    imports: float
+    function: float
+    private: int
+    once: int
+    once_lines: int
+    short: int
+    own: int
 
 
 @dataclass(frozen=True)
@@ -100,6 +130,7 @@ class Structure:
     file_cycles: tuple[str, ...]
     writers: int
     lengths: Lengths
+    reading: Reading
     walk: Walk
 
 
@@ -168,6 +199,40 @@ def lengths(package: Path) -> Lengths:
         files_over=sum(lines > LONGEST_FILE for lines, _ in files),
         longest_function="{1} ({0})".format(*max(found)),
         functions_over=sum(lines > LONGEST_FUNCTION for lines, _ in found),
+    )
+
+
+def reading(package: Path) -> Reading:
+    """What a reader of a package meets."""
+    sizes, imports, found, private, own = list[int](), 0, list[int](), 0, 0
+    once = list[int]()
+    for path in sorted(package.rglob("*.py")):
+        text = path.read_text("utf-8")
+        tree = ast.parse(text)
+        sizes.append(len(text.splitlines()))
+        found += [lines for _, lines in functions(path)]
+        nodes = [*ast.walk(tree)]
+        names = Counter(node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load))
+        own += names["own"]
+        imports += sum(
+            (node.end_lineno or node.lineno) - node.lineno + 1
+            for node in nodes
+            if isinstance(node, ast.Import | ast.ImportFrom)
+        )
+        hidden = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name.startswith("_")]
+        private += len(hidden)
+        once += [(node.end_lineno or node.lineno) - node.lineno + 1 for node in hidden if names[node.name] == 1]
+    return Reading(
+        lines=sum(sizes),
+        file=median(sizes),
+        short_files=sum(size < SHORT_FILE for size in sizes),
+        imports=100 * imports / sum(sizes),
+        function=median(found),
+        private=private,
+        once=len(once),
+        once_lines=sum(once),
+        short=sum(lines <= SHORT_FUNCTION for lines in once),
+        own=own,
     )
 
 
@@ -275,6 +340,7 @@ def structure(package: Path, scene: str, trials: int) -> Structure:
         file_cycles=named(arrows_between_files(type_checking=True)),
         writers=sum(len(writers(path.read_text("utf-8"))) for path in package.rglob("*.py")),
         lengths=lengths(package),
+        reading=reading(package),
         walk=walk(package, scene, trials),
     )
 
@@ -302,7 +368,14 @@ def counted(tree: Path, scene: str, trials: int) -> Structure:
             env=os.environ | {"PYTHONPATH": str(folder)},
         )
     found = json.loads(done.stdout.splitlines()[-1])
-    return Structure(**found | {"lengths": Lengths(**found["lengths"]), "walk": Walk(**found["walk"])})
+    return Structure(
+        **found
+        | {
+            "lengths": Lengths(**found["lengths"]),
+            "reading": Reading(**found["reading"]),
+            "walk": Walk(**found["walk"]),
+        }
+    )
 
 
 def rows(found: Structure) -> dict[str, str]:
@@ -320,6 +393,16 @@ def rows(found: Structure) -> dict[str, str]:
         f"files over {LONGEST_FILE} lines": str(found.lengths.files_over),
         "longest function (lines)": found.lengths.longest_function,
         f"functions over {LONGEST_FUNCTION} lines": str(found.lengths.functions_over),
+        "lines": str(found.reading.lines),
+        "lines of a file, median": f"{found.reading.file:g}",
+        f"files under {SHORT_FILE} lines": str(found.reading.short_files),
+        "lines that are imports [%]": f"{found.reading.imports:.1f}",
+        "lines of a function, median": f"{found.reading.function:g}",
+        "private functions of modules": str(found.reading.private),
+        "  named at one place": str(found.reading.once),
+        "  their lines": str(found.reading.once_lines),
+        f"  of {SHORT_FUNCTION} lines or fewer": str(found.reading.short),
+        "reads of a variable `own`": str(found.reading.own),
         "functions that write into an argument": str(found.writers),
         "run_scene: rooms entered": str(found.walk.entered),
         "run_scene: moves between rooms": str(found.walk.moves),
