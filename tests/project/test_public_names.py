@@ -16,6 +16,7 @@ ONLY = dict(re.findall(r"^\.\. automodule:: (tol3d[\w.]*)\n   :members: (\w.*)$"
 """Modules of which some members are documented."""
 
 APPLICATIONS = sorted(own.parent for own in (ROOT / "tol3d" / "apps").glob("*/__init__.py"))
+PAGES = [page for page in sorted((ROOT / "docs").glob("*.md")) if "```python\n" in page.read_text("utf-8")]
 MODULE_NAMED = re.compile(r"(tol3d(?:\.\w+)+):(\w+)")
 
 
@@ -96,6 +97,14 @@ def test_an_application_imports_public_names_alone(application: Path) -> None:
     assert len(files) > 5
     private = {name for file in files for name in private_imports(file.read_text("utf-8"), own)}
     assert sorted(private) == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
+def test_a_page_imports_public_names_alone(page: Path) -> None:
+    fences = re.findall(r"^```python\n(.*?)^```", page.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    assert fences
+    private = {name for fence in fences for name in private_imports(fence, "tol3d.apps.none")}
+    assert sorted(name for name in private if name.rpartition(".")[0] != "tol3d") == []  # those are tested as they run
 
 
 def test_documented_names_are_there() -> None:
