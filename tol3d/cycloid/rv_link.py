@@ -21,14 +21,13 @@ from tol3d.cycloid.reducer.rv_set import RVSet
 from tol3d.cycloid.reducer.shown import ShownReducer
 from tol3d.cycloid.reducer.trials import NO_FIT
 from tol3d.cycloid.reducer.turning import LinearTurning, Turning
-from tol3d.cycloid.system import REST_COSTS
 from tol3d.gearing.links import LinkTrials, pin_name
 from tol3d.gearing.model.brought import Brought
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import turned
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
-from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.link import UNFOLLOWED, Lost, ReducerLink, brought_by, ends_of, refuse_alone
 from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
@@ -51,10 +50,7 @@ class RVLink(ReducerLink):
     """
 
     kind: ClassVar[str] = "rv_reducer"
-    unfollowed: ClassVar[str] = (
-        "whose error recurs with turns of its output, not of the motor (cycloid_transmission_error reads it, in a "
-        "scene of its own)"
-    )
+    unfollowed: ClassVar[str] = UNFOLLOWED.format("cycloid_transmission_error")
     presenter: ClassVar[str] = "tol3d.cycloid.presenting"
     made_of: ClassVar[type[RVDeviated]] = RVDeviated
     solvers: ClassVar[Mapping[str, Solver]] = SOLVERS
@@ -65,8 +61,8 @@ class RVLink(ReducerLink):
 
     @property
     def contacts(self) -> int:
-        """Every pin of every disc, either way; see RVSystem.cost."""
-        return 2 * self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
+        """Either way."""
+        return 2 * self.own.contacts
 
     def lost(self, turning: Turning, deviated: RVDeviated, turns: Array) -> Lost:
         """See ReducerLink; NaN where nothing touches."""

@@ -27,7 +27,6 @@ from tol3d.system.system import Columns, KeyPath, Published
 from tol3d.system.trials import Trials
 
 FCL: Final = "fcl"
-REST_COSTS: Final = 80  # times a first contact
 WITNESS: Final = "tol3d.cycloid.reducer.witness"  # it loads FCL, in the worker
 METHODS: Final[Mapping[str, MethodKind]] = {
     "exact": MethodKind("kernels", compiled=True, contacts_per_minute=900_000_000),
@@ -83,8 +82,7 @@ class RVSystem(RVTrials):
         ]
         counted = {(positions, sense) for positions, sense, deflection in read if deflection is not None}
         apart = {own for own in read if own[2] is not None or own[:2] not in counted}
-        pins = self.own.profile.pins * self.own.discs * (REST_COSTS if self.own.plays else 1)
-        return int(sum(positions.in_a_trial for positions, _, _ in apart)) * pins
+        return int(sum(positions.in_a_trial for positions, _, _ in apart)) * self.own.contacts
 
     def regress(
         self, measure: Measure, contributors: Sequence[Contributor], columns: Columns, rows: Mapping[str, Array]

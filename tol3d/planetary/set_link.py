@@ -27,7 +27,7 @@ from tol3d.planetary.sections import set_sections
 from tol3d.planetary.trials import SOLVERS
 from tol3d.reducers.deviations import Acts
 from tol3d.reducers.from_scene import contributors_in_trains, refuse_unused
-from tol3d.reducers.link import Lost, ReducerLink, brought_by, ends_of, refuse_alone
+from tol3d.reducers.link import UNFOLLOWED, Lost, ReducerLink, brought_by, ends_of, refuse_alone
 from tol3d.reducers.trials import Solver
 from tol3d.scene import Scene
 from tol3d.system.contributor import Contributor
@@ -44,10 +44,7 @@ class SetLink(ReducerLink):
     """
 
     kind: ClassVar[str] = "planetary_set"
-    unfollowed: ClassVar[str] = (
-        "whose error recurs with turns of its output, not of the motor (planetary_transmission_error reads it, in a "
-        "scene of its own)"
-    )
+    unfollowed: ClassVar[str] = UNFOLLOWED.format("planetary_transmission_error")
     presenter: ClassVar[str] = "tol3d.planetary.presenting"
     made_of: ClassVar[type[Deviated]] = Deviated
     solvers: ClassVar[Mapping[str, Solver]] = SOLVERS

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from tol3d.scene import Scene
 from tol3d.system.method import ANALYTIC_METHOD
 from tol3d.system.taken import ROWS_AT_ONCE
 
+UNFOLLOWED: Final = "whose error recurs with turns of its output, not of the motor ({} reads it, in a scene of its own)"
 Lost = tuple[Array, Array, NDArray[np.bool_]]
 """Free turn and its middle [rad], and where the reducer jams, (trials,) each."""
 

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -22,6 +23,8 @@ from tol3d.cycloid.model.profile import DiscProfile
 from tol3d.gears import SpurGear, SpurPair
 from tol3d.numerics.arrays import Array
 from tol3d.numerics.plane import evenly
+
+REST_COSTS: Final = 80  # times a first contact
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,11 @@ class RVSet:
     def held(self) -> str:
         """The part that is fixed."""
         return self.ring
+
+    @property
+    def contacts(self) -> int:
+        """Contacts to be found at a position, one way: of every pin of every disc."""
+        return self.profile.pins * self.discs * (REST_COSTS if self.plays else 1)
 
     @property
     def pair(self) -> SpurPair:
